@@ -1,0 +1,48 @@
+"""One-sided rocking masonry walls in MuJoCo, and the energy lost at every impact.
+
+Units are SI, angles radians, damping ratios fractions. `Block` is the wall, `Case` the problem, `Contacts` the
+compliant interfaces; `simulate` asks MuJoCo, `solve_compliant` asks SciPy the same contact law, `solve_analytical` asks
+classical rocking theory, and `compare` sets two answers side by side.
+"""
+
+from ._version import __version__
+from .analytical import solve_analytical
+from .block import GRAVITY, Block
+from .case import Case
+from .compare import Comparison, compare
+from .compliant import solve_compliant
+from .contact import ContactParameters, contact_parameters, contact_stiffness
+from .damping import PUBLISHED, DampingLaw, PowerLaw
+from .interface import Contacts, Interface, reference_frequency
+from .mjcf import wall_mjcf
+from .response import Impact, Outcome, Response
+from .restitution import Restitution
+from .simulation import SimulationError, automatic_timestep, simulate
+
+__all__ = [
+    "GRAVITY",
+    "PUBLISHED",
+    "Block",
+    "Case",
+    "Comparison",
+    "ContactParameters",
+    "Contacts",
+    "DampingLaw",
+    "Impact",
+    "Interface",
+    "Outcome",
+    "PowerLaw",
+    "Response",
+    "Restitution",
+    "SimulationError",
+    "__version__",
+    "automatic_timestep",
+    "compare",
+    "contact_parameters",
+    "contact_stiffness",
+    "reference_frequency",
+    "simulate",
+    "solve_analytical",
+    "solve_compliant",
+    "wall_mjcf",
+]

@@ -1,0 +1,180 @@
+"""The contact law itself, integrated by SciPy: unilateral Kelvin-Voigt points. Knows no restitution and no MuJoCo.
+
+Each contact point carries f = max(0, -(k r + c dr/dt)) while its gap r is negative, so never a tension. The base does
+not slip: while an edge of it is loaded, the lower edge keeps its place along the base. An edge that lands with a
+sliding velocity loses it at once, in the impulse that friction without a bound would give.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from tqdm import tqdm
+
+from .block import GRAVITY
+from .case import Case
+from .interface import Contacts
+from .pose import mechanical_energy, release_pose
+from .response import Response, ending, rocking_history
+
+Array = NDArray[np.float64]
+SWITCHES = 100_000
+"""Most changes between a held and a free base in one run, against an endless loop."""
+
+
+class _Wall:
+    """Right-hand side of the equations of motion; y = (x, z, theta, and their rates), as in `pose`."""
+
+    def __init__(self, case: Case, contacts: Contacts) -> None:
+        wall = case.block
+        self.b, self.h, self.mass, self.inertia = wall.b, wall.h, wall.mass, wall.inertia
+        self.base, self.side = contacts.base, contacts.side if case.side_stop else None
+
+    def base_forces(self, y: Array) -> tuple[Array, Array]:
+        """Signed forces of the base points before clipping [N], and their levers about the centroid [m]."""
+        _, z, theta, _, vz, omega = y
+        sine, cosine = math.sin(theta), math.cos(theta)
+        gap = z + self.h * (1 - cosine) - self.base.positions * sine
+        lever = self.base.positions * cosine - self.h * sine
+        force = -(self.base.stiffness * gap + self.base.damping * (vz - omega * lever))
+        return np.where(gap < 0, force, -self.base.stiffness * gap), lever
+
+    def edge_load(self, t: float, y: Array) -> float:
+        """Positive while an edge of the base is loaded, so that friction holds it [N]."""
+        force, _ = self.base_forces(y)
+        return float(max(force[0], force[-1]))
+
+    def edge_lever(self, theta: float) -> tuple[float, float]:
+        """Position of the lower edge from the centroid (along, above) [m]."""
+        s = math.copysign(self.b, theta)
+        sine, cosine = math.sin(theta), math.cos(theta)
+        return s * cosine - self.h * sine, -s * sine - self.h * cosine
+
+    def free(self, t: float, y: Array) -> Array:
+        """Rates of the state of a wall whose base may slide."""
+        force, lever = self.base_forces(y)
+        force = np.maximum(force, 0)
+        Fx, Fz, moment = 0.0, float(force.sum()), -float(force @ lever)
+        if self.side is not None:
+            x, _, theta, vx, _, omega = y
+            sine, cosine = math.sin(theta), math.cos(theta)
+            gap = x + self.b * (1 - cosine) + self.side.positions * sine
+            height = self.b * sine + self.side.positions * cosine
+            push = -(self.side.stiffness * gap + self.side.damping * (vx + omega * height))
+            push = np.where(gap < 0, np.maximum(push, 0), 0)
+            Fx, moment = float(push.sum()), moment + float(push @ height)
+        return np.array([y[3], y[4], y[5], Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
+
+    def held(self, t: float, y: Array) -> Array:
+        """Rates of the state of a wall whose lower edge does not slip."""
+        rates = self.free(t, y)
+        along, above = self.edge_lever(y[2])
+        slipping = rates[3] + rates[5] * above - y[5] ** 2 * along
+        friction = -slipping / (1 / self.mass + above**2 / self.inertia)
+        rates[3] += friction / self.mass
+        rates[5] += friction * above / self.inertia
+        return rates
+
+    def caught(self, y: Array) -> Array:
+        """The state after friction has stopped a sliding edge."""
+        _, above = self.edge_lever(y[2])
+        impulse = -(y[3] + y[5] * above) / (1 / self.mass + above**2 / self.inertia)
+        kick: Array = impulse * np.array([0, 0, 0, 1 / self.mass, 0, above / self.inertia])
+        return y + kick
+
+
+def solve_compliant(
+    case: Case, contacts: Contacts, *, rtol: float = 1e-8, atol: float = 1e-10, output_step: float = 5e-4
+) -> Response:
+    """Free rocking of a wall on compliant contacts: what `simulate` has to reproduce.
+
+    Args:
+        case: the wall, its release, its sides.
+        contacts: the interfaces.
+        rtol, atol: tolerances of the integration (scipy, DOP853) [m, rad, m/s, rad/s].
+        output_step: spacing of the returned samples [s].
+
+    Raises:
+        ValueError: if the contacts do not fit the case, or for a tolerance or step that is not positive.
+        RuntimeError: if the integration fails.
+    """
+    for name, value in (("rtol", rtol), ("atol", atol), ("output_step", output_step)):
+        if not value > 0:
+            raise ValueError(f"{name} = {value:g} is outside the valid range {name} > 0")
+    wall = case.block
+    contacts.require_fit(wall, side_stop=case.side_stop)
+    started = time.perf_counter()
+    system = _Wall(case, contacts)
+
+    def release(t: float, y: Array) -> float:
+        return system.edge_load(t, y)
+
+    def overturning(t: float, y: Array) -> float:
+        return abs(float(y[2])) - math.pi / 2
+
+    release.terminal = overturning.terminal = True  # type: ignore[attr-defined]
+    period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.side_stop)
+
+    t, y = 0.0, np.concatenate(release_pose(case, contacts))
+    output = np.linspace(0.0, case.duration, max(2, math.ceil(case.duration / output_step) + 1))
+    states = [y[:, None]]
+    times = [np.zeros(1)]
+    evaluations = steps = 0
+    with tqdm(total=case.duration, desc="compliant", unit="s", delay=3, disable=None, leave=False) as bar:
+        for _ in range(SWITCHES):
+            held = system.edge_load(t, y) > 0
+            if held:
+                y = system.caught(y)
+            release.direction = -1 if held else 1  # type: ignore[attr-defined]
+            arc = solve_ivp(
+                system.held if held else system.free,
+                (t, case.duration),
+                y,
+                method="DOP853",
+                t_eval=output[output > t],
+                events=(release, overturning),
+                rtol=rtol,
+                atol=atol,
+                max_step=10 * period,
+            )
+            if arc.status < 0:
+                raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
+            evaluations += arc.nfev
+            times.append(arc.t)
+            states.append(np.reshape(arc.y, (6, -1)))
+            if arc.status == 0 or arc.t_events[1].size:
+                break
+            bar.update(float(arc.t_events[0][0]) - t)
+            t, y = float(arc.t_events[0][0]), arc.y_events[0][0]
+            steps += 1
+        else:
+            raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")
+    history = np.concatenate(states, axis=1).T
+    sampled = np.concatenate(times)
+    theta, omega = history[:, 2], history[:, 5]
+    energy = mechanical_energy(case, contacts, history[:, :3], history[:, 3:])
+    _, peaks, impacts = rocking_history(case, sampled, theta, omega, contacts.uplift_rotation(wall))
+    outcome, message = ending(case, sampled, theta, energy, contacts.uplift_energy(wall))
+    return Response(
+        case=case,
+        solver="compliant",
+        t=sampled,
+        theta=theta,
+        omega=omega,
+        energy=energy,
+        impacts=impacts,
+        peaks=peaks,
+        outcome=outcome,
+        message=message,
+        stats={
+            "wall_time": time.perf_counter() - started,
+            "evaluations": evaluations,
+            "switches": steps,
+            "rtol": rtol,
+            "atol": atol,
+        },
+    )

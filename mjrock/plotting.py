@@ -1,0 +1,102 @@
+"""Pictures: functions that draw on an Axes and return it. The only module that imports matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from .response import Response
+
+STYLES: dict[str, dict[str, object]] = {
+    "analytical": {"color": "0.15", "linestyle": "-", "linewidth": 1.1},
+    "MuJoCo": {"color": "#d95f02", "linestyle": "--", "linewidth": 1.6},
+    "compliant": {"color": "#1b6ca8", "linestyle": ":", "linewidth": 1.8},
+}
+"""Lines that a black-and-white print still tells apart."""
+
+
+def rotation(ax: Axes, responses: Sequence[Response]) -> Axes:
+    """Rotation in multiples of alpha against time."""
+    for response in responses:
+        ax.plot(response.t, response.theta / response.case.block.alpha, label=response.solver, **_style(response))
+    ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
+    ax.set_xlabel("time $t$ [s]")
+    ax.set_ylabel(r"rotation $\theta/\alpha$ [–]")
+    return ax
+
+
+def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
+    """Energy above the wall at rest against time."""
+    for response in responses:
+        ax.plot(response.t, response.energy / 1e3, label=response.solver, **_style(response))
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("time $t$ [s]")
+    ax.set_ylabel("total energy $E$ [kJ]")
+    return ax
+
+
+def comparison(responses: Sequence[Response], title: str = "") -> Figure:
+    """Rotation above, energy below, in the manner of the paper's Figure 3."""
+    figure = Figure(figsize=(6.3, 5.0), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    rotation(above, responses).set_xlabel("")
+    energy(below, responses)
+    below.set_xlim(0, max(r.t[-1] for r in responses))
+    above.legend(loc="upper right", frameon=False)
+    above.set_title(title, fontsize=10)
+    return figure
+
+
+def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2) -> Figure:
+    """Rotation histories of several cases, one panel each, in the manner of the paper's Figure 4."""
+    rows = -(-len(panels) // columns)
+    figure = Figure(figsize=(3.4 * columns, 2.2 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for ax, (title, responses) in zip(axes.flat, panels, strict=False):
+        rotation(ax, responses).set_title(title, fontsize=9)
+    for ax in axes.flat[len(panels) :]:
+        ax.set_visible(False)
+    for ax in axes[:-1].flat:
+        ax.set_xlabel("")
+    for ax in axes[:, 1:].flat:
+        ax.set_ylabel("")
+    axes[0, 0].legend(loc="upper right", frameon=False, fontsize=8)
+    return figure
+
+
+def convergence(ax: Axes, steps: ArrayLike, errors: dict[str, ArrayLike], orders: Sequence[int] = (1, 2)) -> Axes:
+    """Errors against the step on logarithmic axes, with slopes to compare by."""
+    steps = np.asarray(steps, dtype=float)
+    for (label, values), marker in zip(errors.items(), "osD^v", strict=False):
+        ax.loglog(steps * 1e3, values, marker=marker, markersize=4, linewidth=1.2, label=label)
+    anchor = min(float(np.min(np.asarray(v))) for v in errors.values())
+    for order in orders:
+        slope = 0.5 * anchor * (steps / steps.min()) ** order
+        ax.loglog(steps * 1e3, slope, color="0.6", linewidth=0.8, linestyle="--")
+        ax.annotate(f"order {order}", (steps.max() * 1e3, slope[steps.argmax()]), fontsize=8, color="0.4", ha="right")
+    ax.set_xlabel("step $h$ [ms]")
+    ax.grid(True, which="major", linewidth=0.4, color="0.9")
+    ax.legend(frameon=False, fontsize=8)
+    return ax
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes)."""
+    figure.savefig(path, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
+    return path
+
+
+def single(draw: Callable[[Axes], Axes], size: tuple[float, float] = (5.2, 3.6)) -> Figure:
+    """A figure with one Axes, drawn by `draw`."""
+    figure = Figure(figsize=size, layout="constrained")
+    draw(figure.subplots())
+    return figure
+
+
+def _style(response: Response) -> dict[str, object]:
+    return STYLES.get(response.solver, {})

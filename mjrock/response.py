@@ -1,0 +1,183 @@
+"""What a solver returns: the motion, its impacts and rotation peaks, and how it ended."""
+
+from __future__ import annotations
+
+import enum
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .block import Block
+from .case import Case
+
+Array = NDArray[np.float64]
+
+
+class Outcome(enum.Enum):
+    """How a run ended."""
+
+    AT_REST = "at rest"
+    OVERTURNED = "overturned"
+    TIME_ENDED = "time ended"
+
+
+@dataclass(frozen=True)
+class Impact:
+    """One rebound: what arrives at the upright position and what leaves it.
+
+    Args:
+        t: time of the impact [s].
+        omega_before: angular velocity just before [rad/s].
+        omega_after: angular velocity just after [rad/s].
+        energy_before: energy of the rigid wall just before, above the wall at rest [J].
+        energy_after: energy just after [J].
+    """
+
+    t: float
+    omega_before: float
+    omega_after: float
+    energy_before: float
+    energy_after: float
+
+    @property
+    def restitution(self) -> float:
+        """|e| [-]."""
+        return math.sqrt(self.energy_after / self.energy_before) if self.energy_before > 0 else math.nan
+
+    @property
+    def energy_loss(self) -> float:
+        """Energy lost in the impact [J]."""
+        return self.energy_before - self.energy_after
+
+
+@dataclass(frozen=True)
+class Response:
+    """The motion that a solver found.
+
+    Args:
+        case: what was asked.
+        solver: which solver answered.
+        t: times [s], shape (n,).
+        theta: rotation [rad], shape (n,).
+        omega: angular velocity [rad/s], shape (n,).
+        energy: kinetic, potential and, where contacts are compliant, elastic energy above the wall at rest [J],
+            shape (n,).
+        impacts: the impacts in order.
+        peaks: rotation maxima |theta| [rad], the release first, shape (m,).
+        outcome: how the run ended.
+        message: the same in words, for the user.
+        energy_residual: closure error of the energy ledger [J], or None where none was asked for.
+        stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s].
+    """
+
+    case: Case
+    solver: str
+    t: Array
+    theta: Array
+    omega: Array
+    energy: Array
+    impacts: tuple[Impact, ...]
+    peaks: Array
+    outcome: Outcome
+    message: str
+    energy_residual: Array | None = None
+    stats: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def restitution(self) -> Array:
+        """|e| of each rebound, from successive peaks [-], shape (m - 1,).
+
+        e_n = sqrt(V_(n+1) / V_n), V the potential energy of the rigid wall at a rotation peak. Every solver is measured
+        with this one rule, which is exact for a rigid wall, and the energy that a compliant base still stores under a
+        pivoting wall is not taken for a loss.
+        """
+        return restitution_of(self.case.block, self.peaks)
+
+
+def restitution_of(wall: Block, peaks: Array) -> Array:
+    """|e| between successive rotation peaks [-]; NaN after a peak of no energy."""
+    energy = wall.potential_energy(np.asarray(peaks, dtype=float))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.sqrt(energy[1:] / energy[:-1])
+
+
+def rocking_history(
+    case: Case, t: Array, theta: Array, omega: Array, threshold: float
+) -> tuple[Array, Array, tuple[Impact, ...]]:
+    """Times and sizes of the rotation peaks, and the impacts between them, of a sampled free rocking motion.
+
+    Args:
+        case: the case, whose release is the first peak unless it is released on its way out.
+        t, theta, omega: the motion [s, rad, rad/s], shape (n,), finely sampled.
+        threshold: rotation below which a maximum is the spring of the base and not rocking [rad]. With a side stop a
+            maximum on its side of theta = 0 is the spring of the stop, whatever its size.
+
+    Returns:
+        Peak times [s], peaks |theta| [rad], and one impact between each pair of peaks, at the time when the wall
+        passes theta = 0, or comes closest to it.
+    """
+    side = np.sign(theta)
+    outward = omega * side
+    turns = np.flatnonzero((outward[:-1] > 0) & (outward[1:] <= 0))
+    share = outward[turns] / (outward[turns] - outward[turns + 1])
+    times = t[turns] + share * (t[turns + 1] - t[turns])
+    sizes = np.abs(theta[turns]) + 0.5 * share * (t[turns + 1] - t[turns]) * outward[turns]
+    rocking = (sizes > threshold) & ((theta[turns] > 0) | (not case.side_stop))
+    times, sizes = times[rocking], sizes[rocking]
+    if not case.released_outwards:
+        times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
+    wall = case.block
+    impacts = []
+    for i in range(len(times) - 1):
+        first, last = np.searchsorted(t, times[i : i + 2])
+        s = math.copysign(1.0, theta[first])
+        segment = theta[first:last] * s
+        crossing = np.flatnonzero((segment[:-1] > 0) & (segment[1:] <= 0))
+        if crossing.size:
+            j = first + crossing[0]
+            when = t[j] + theta[j] / (theta[j] - theta[j + 1]) * (t[j + 1] - t[j])
+        else:
+            j = first + int(np.argmin(segment))
+            when = t[j]
+        before, after = (float(e) for e in wall.potential_energy(sizes[i : i + 2]))
+        leaving = math.copysign(1.0, theta[min(last, len(theta) - 1)])
+        impacts.append(
+            Impact(
+                t=float(when),
+                omega_before=-s * math.sqrt(2 * before / wall.toe_inertia),
+                omega_after=leaving * math.sqrt(2 * after / wall.toe_inertia),
+                energy_before=before,
+                energy_after=after,
+            )
+        )
+    return times, sizes, tuple(impacts)
+
+
+def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:
+    """How a run on compliant contacts ended, and the same in words.
+
+    The wall is at rest when its energy above the settled wall no longer lifts an edge off the base; it has overturned
+    when it lies on its face or ends beyond alpha, where its weight no longer brings it back.
+    """
+    if abs(theta[-1]) > case.block.alpha:
+        outcome = Outcome.OVERTURNED
+    elif energy[-1] < uplift_energy:
+        outcome = Outcome.AT_REST
+    else:
+        outcome = Outcome.TIME_ENDED
+    return outcome, describe(outcome, case, float(t[-1]), float(theta[-1]))
+
+
+def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
+    """The ending in words."""
+    share = abs(theta_end) / case.block.alpha
+    match outcome:
+        case Outcome.AT_REST:
+            return f"The wall came to rest; last looked at {t_end:.4g} s."
+        case Outcome.OVERTURNED:
+            return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
+        case Outcome.TIME_ENDED:
+            return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
