@@ -1,8 +1,8 @@
 """The contact law itself, integrated by SciPy: unilateral Kelvin-Voigt points. Knows no restitution and no MuJoCo.
 
 Each contact point carries f = max(0, -(k r + c dr/dt)) while its gap r is negative, so never a tension. The base does
-not slip: while an edge of it is loaded, the lower edge keeps its place along the base. An edge that lands with a
-sliding velocity loses it at once, in the impulse that friction without a bound would give.
+not slip: while an edge of it is loaded, friction without a bound holds the lower edge, halfway between the two faces
+that overlap there. An edge that lands with a sliding velocity loses it at once, in the impulse of that friction.
 """
 
 from __future__ import annotations
@@ -22,6 +22,9 @@ from .pose import mechanical_energy, release_pose
 from .response import Response, ending, rocking_history
 
 Array = NDArray[np.float64]
+CAUGHT = 1e-3
+"""Load of an edge at which friction catches it again, as a share of the weight [-]. It is released at none: between the
+two, a hardly loaded edge is caught and released at a finite rate where the ideal law would do both at once."""
 SWITCHES = 100_000
 """Most changes between a held and a free base in one run, against an endless loop."""
 
@@ -48,11 +51,16 @@ class _Wall:
         force, _ = self.base_forces(y)
         return float(max(force[0], force[-1]))
 
-    def edge_lever(self, theta: float) -> tuple[float, float]:
-        """Position of the lower edge from the centroid (along, above) [m]."""
+    def grip(self, y: Array) -> tuple[float, float]:
+        """Height above the centroid of the point where friction acts [m], and its rate [m/s].
+
+        It is at the lower edge, halfway between the two faces that overlap there.
+        """
+        _, z, theta, _, vz, omega = y
         s = math.copysign(self.b, theta)
         sine, cosine = math.sin(theta), math.cos(theta)
-        return s * cosine - self.h * sine, -s * sine - self.h * cosine
+        edge, rate = -s * sine - self.h * cosine, -(s * cosine - self.h * sine) * omega
+        return 0.5 * (edge - z - self.h), 0.5 * (rate - vz)
 
     def free(self, t: float, y: Array) -> Array:
         """Rates of the state of a wall whose base may slide."""
@@ -72,16 +80,16 @@ class _Wall:
     def held(self, t: float, y: Array) -> Array:
         """Rates of the state of a wall whose lower edge does not slip."""
         rates = self.free(t, y)
-        along, above = self.edge_lever(y[2])
-        slipping = rates[3] + rates[5] * above - y[5] ** 2 * along
+        above, rate = self.grip(y)
+        slipping = rates[3] + rates[5] * above + y[5] * rate
         friction = -slipping / (1 / self.mass + above**2 / self.inertia)
         rates[3] += friction / self.mass
         rates[5] += friction * above / self.inertia
         return rates
 
     def caught(self, y: Array) -> Array:
-        """The state after friction has stopped a sliding edge."""
-        _, above = self.edge_lever(y[2])
+        """The state after friction has stopped the sliding of an edge."""
+        above, _ = self.grip(y)
         impulse = -(y[3] + y[5] * above) / (1 / self.mass + above**2 / self.inertia)
         kick: Array = impulse * np.array([0, 0, 0, 1 / self.mass, 0, above / self.inertia])
         return y + kick
@@ -110,33 +118,33 @@ def solve_compliant(
     started = time.perf_counter()
     system = _Wall(case, contacts)
 
-    def release(t: float, y: Array) -> float:
-        return system.edge_load(t, y)
+    def switch(t: float, y: Array) -> float:
+        return system.edge_load(t, y) - (0.0 if held else CAUGHT * wall.weight)
 
     def overturning(t: float, y: Array) -> float:
         return abs(float(y[2])) - math.pi / 2
 
-    release.terminal = overturning.terminal = True  # type: ignore[attr-defined]
+    switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.side_stop)
 
     t, y = 0.0, np.concatenate(release_pose(case, contacts))
+    held = system.edge_load(t, y) > 0
     output = np.linspace(0.0, case.duration, max(2, math.ceil(case.duration / output_step) + 1))
     states = [y[:, None]]
     times = [np.zeros(1)]
-    evaluations = steps = 0
+    evaluations = switches = 0
     with tqdm(total=case.duration, desc="compliant", unit="s", delay=3, disable=None, leave=False) as bar:
         for _ in range(SWITCHES):
-            held = system.edge_load(t, y) > 0
             if held:
                 y = system.caught(y)
-            release.direction = -1 if held else 1  # type: ignore[attr-defined]
+            switch.direction = -1 if held else 1  # type: ignore[attr-defined]
             arc = solve_ivp(
                 system.held if held else system.free,
                 (t, case.duration),
                 y,
                 method="DOP853",
                 t_eval=output[output > t],
-                events=(release, overturning),
+                events=(switch, overturning),
                 rtol=rtol,
                 atol=atol,
                 max_step=10 * period,
@@ -150,7 +158,8 @@ def solve_compliant(
                 break
             bar.update(float(arc.t_events[0][0]) - t)
             t, y = float(arc.t_events[0][0]), arc.y_events[0][0]
-            steps += 1
+            held = not held
+            switches += 1
         else:
             raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")
     history = np.concatenate(states, axis=1).T
@@ -173,7 +182,7 @@ def solve_compliant(
         stats={
             "wall_time": time.perf_counter() - started,
             "evaluations": evaluations,
-            "switches": steps,
+            "switches": switches,
             "rtol": rtol,
             "atol": atol,
         },

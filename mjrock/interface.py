@@ -37,11 +37,11 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     over the contact points of the base and I_base = m (b^2 + h^2)/3 + m h^2. Base and side dashpots share it.
 
     The paper prints xi as a fraction of critical damping and does not print the frequency; this reading is inferred.
-    Its evidence, on the paper's Figure 3 wall (xi_b = 5.3 %, target e_2s = 0.970): with this omega a compliant model
-    returns 0.970 for two corner lines (30.1 rad/s) and 0.971-0.977 for a uniform bed (17.4 rad/s), whereas with the
-    vertical bounce sqrt(k_n A / m) (245 rad/s) it loses next to nothing (0.995). One frequency for both dashpots also
-    explains why Eq. 6, for the side, contains the stiffness of the base and not its own. `scripts/layouts.py` prints
-    these figures from `solve_compliant`.
+    Its evidence, on the paper's Figure 3 wall (xi_b = 5.3 %, targets e_2s = 0.970 and |e_1s| = 0.442): with this omega
+    `solve_compliant` returns 0.970 and 0.558 for two corner lines (30.1 rad/s), 0.977 and 0.485 for a bed of 32
+    (17.4 rad/s), whereas with the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost against the side:
+    0.983 and 0.920, 0.998 and 0.939. One frequency for both dashpots also explains why Eq. 6, for the side, contains
+    the stiffness of the base and not its own. `scripts/layouts.py` prints these figures.
     """
     positions, widths = contact_lines(2 * wall.b, points)
     K_rot = float(np.sum(k_n * widths * wall.length * positions**2))

@@ -77,9 +77,9 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     _add_scenery(root, case)
 
     world = _add(root, "worldbody")
-    _add(world, "light", name="sun", directional="true", pos=(2 * h, -2 * h, 4 * h), dir=(-0.4, 0.5, -0.8))
-    _add(world, "camera", name="front", pos=(0.6 * h, -6 * h, 1.3 * h), xyaxes=(1, 0, 0, 0, 0.05, 1), fovy="35")
-    _add(world, "geom", name="base", type="plane", size=(3 * h, 3 * h, 1), pos=(0, 0, -RADIUS), material="paving")
+    _add(world, "light", name="sun", directional="true", castshadow="false", dir=(-0.4, 0.5, -0.8))
+    _add(world, "camera", name="front", pos=(0.2 * h, -6 * h, 1.3 * h), xyaxes=(1, 0, 0, 0, 0.05, 1), fovy="28")
+    _add(world, "geom", name="base", type="plane", size=(0, 0, 1), pos=(0, 0, -RADIUS), material="paving")
     if case.side_stop:
         plane = (-b - RADIUS, 0, h)
         _add(world, "geom", name="side", type="plane", size=(h, 0.6 * length, 1), pos=plane, zaxis=(1, 0, 0), group="3")
@@ -166,6 +166,8 @@ def _add_scenery(root: Element, case: Case) -> None:
     _add(visual, "headlight", ambient=(0.35, 0.35, 0.35), diffuse=(0.4, 0.4, 0.4), specular=(0, 0, 0))
     _add(_add(root, "default"), "geom", contype="0", conaffinity="0", group="1")
     asset = _add(root, "asset")
+    sky = {"rgb1": (0.93, 0.95, 0.97), "rgb2": (0.62, 0.70, 0.80), "width": "64", "height": "384"}
+    _add(asset, "texture", name="sky", type="skybox", builtin="gradient", **sky)
     paving = {"rgb1": (0.72, 0.72, 0.70), "rgb2": (0.66, 0.66, 0.64), "width": "256", "height": "256"}
     _add(asset, "texture", name="paving", type="2d", builtin="checker", **paving)
     _add(asset, "material", name="paving", texture="paving", texrepeat=(1, 1), texuniform="true")

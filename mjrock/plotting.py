@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from .response import Response
 
-STYLES: dict[str, dict[str, object]] = {
-    "analytical": {"color": "0.15", "linestyle": "-", "linewidth": 1.1},
-    "MuJoCo": {"color": "#d95f02", "linestyle": "--", "linewidth": 1.6},
-    "compliant": {"color": "#1b6ca8", "linestyle": ":", "linewidth": 1.8},
+STYLES: dict[str, dict[str, Any]] = {
+    "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
+    "MuJoCo": {"label": "MuJoCo", "color": "#d95f02", "linestyle": "--", "linewidth": 1.6},
+    "compliant": {"label": "contact law, SciPy", "color": "#1b6ca8", "linestyle": ":", "linewidth": 1.8},
 }
 """Lines that a black-and-white print still tells apart."""
 
@@ -23,17 +24,17 @@ STYLES: dict[str, dict[str, object]] = {
 def rotation(ax: Axes, responses: Sequence[Response]) -> Axes:
     """Rotation in multiples of alpha against time."""
     for response in responses:
-        ax.plot(response.t, response.theta / response.case.block.alpha, label=response.solver, **_style(response))
+        ax.plot(response.t, response.theta / response.case.block.alpha, **_style(response))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set_xlabel("time $t$ [s]")
-    ax.set_ylabel(r"rotation $\theta/\alpha$ [–]")
+    ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")
     return ax
 
 
 def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
     """Energy above the wall at rest against time."""
     for response in responses:
-        ax.plot(response.t, response.energy / 1e3, label=response.solver, **_style(response))
+        ax.plot(response.t, response.energy / 1e3, **_style(response))
     ax.set_ylim(bottom=0)
     ax.set_xlabel("time $t$ [s]")
     ax.set_ylabel("total energy $E$ [kJ]")
@@ -69,7 +70,7 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2) -> 
     return figure
 
 
-def convergence(ax: Axes, steps: ArrayLike, errors: dict[str, ArrayLike], orders: Sequence[int] = (1, 2)) -> Axes:
+def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], orders: Sequence[int] = (1, 2)) -> Axes:
     """Errors against the step on logarithmic axes, with slopes to compare by."""
     steps = np.asarray(steps, dtype=float)
     for (label, values), marker in zip(errors.items(), "osD^v", strict=False):
@@ -98,5 +99,5 @@ def single(draw: Callable[[Axes], Axes], size: tuple[float, float] = (5.2, 3.6))
     return figure
 
 
-def _style(response: Response) -> dict[str, object]:
-    return STYLES.get(response.solver, {})
+def _style(response: Response) -> dict[str, Any]:
+    return STYLES.get(response.solver, {"label": response.solver})

@@ -117,43 +117,57 @@ def rocking_history(
 
     Returns:
         Peak times [s], peaks |theta| [rad], and one impact between each pair of peaks, at the time when the wall
-        passes theta = 0, or comes closest to it.
+        passes theta = 0, or comes closest to it. An impact after which the wall no longer rocks is the last one: what
+        it leaves is the energy of the largest rotation that follows.
     """
-    side = np.sign(theta)
-    outward = omega * side
-    turns = np.flatnonzero((outward[:-1] > 0) & (outward[1:] <= 0))
-    share = outward[turns] / (outward[turns] - outward[turns + 1])
-    times = t[turns] + share * (t[turns + 1] - t[turns])
-    sizes = np.abs(theta[turns]) + 0.5 * share * (t[turns + 1] - t[turns]) * outward[turns]
-    rocking = (sizes > threshold) & ((theta[turns] > 0) | (not case.side_stop))
+    wall = case.block
+    times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
+    rocking = sizes > threshold
+    residual = times > (times[rocking][-1] if rocking.any() else t[0])
+    left_over = float(sizes[residual].max()) if residual.any() else math.nan
     times, sizes = times[rocking], sizes[rocking]
     if not case.released_outwards:
         times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
-    wall = case.block
+
     impacts = []
-    for i in range(len(times) - 1):
-        first, last = np.searchsorted(t, times[i : i + 2])
+    for i, start in enumerate(times):
+        last = i == len(times) - 1
+        if last and math.isnan(left_over):
+            break  # the run ends before the wall has come back out
+        first, stop = np.searchsorted(t, [start, t[-1] if last else times[i + 1]])
         s = math.copysign(1.0, theta[first])
-        segment = theta[first:last] * s
-        crossing = np.flatnonzero((segment[:-1] > 0) & (segment[1:] <= 0))
-        if crossing.size:
-            j = first + crossing[0]
+        segment = s * theta[first : stop + 1]
+        crossed = np.flatnonzero((segment[:-1] > 0) & (segment[1:] <= 0))
+        if crossed.size:
+            j = first + crossed[0]
             when = t[j] + theta[j] / (theta[j] - theta[j + 1]) * (t[j + 1] - t[j])
+        elif last:
+            break
         else:
             j = first + int(np.argmin(segment))
             when = t[j]
-        before, after = (float(e) for e in wall.potential_energy(sizes[i : i + 2]))
-        leaving = math.copysign(1.0, theta[min(last, len(theta) - 1)])
+        before = float(wall.potential_energy(float(sizes[i])))
+        after = float(wall.potential_energy(float(left_over if last else sizes[i + 1])))
+        arriving, leaving = -s, s if case.side_stop else (-s if last else math.copysign(1.0, theta[stop]))
         impacts.append(
             Impact(
                 t=float(when),
-                omega_before=-s * math.sqrt(2 * before / wall.toe_inertia),
+                omega_before=arriving * math.sqrt(2 * before / wall.toe_inertia),
                 omega_after=leaving * math.sqrt(2 * after / wall.toe_inertia),
                 energy_before=before,
                 energy_after=after,
             )
         )
     return times, sizes, tuple(impacts)
+
+
+def _maxima(t: Array, theta: Array, omega: Array, *, one_sided: bool) -> tuple[Array, Array]:
+    """Times and sizes of the maxima of |theta|, or of theta alone, interpolated between samples."""
+    outward = omega * np.sign(theta)
+    turns = np.flatnonzero((outward[:-1] > 0) & (outward[1:] <= 0) & ((theta[:-1] > 0) | (not one_sided)))
+    share = outward[turns] / (outward[turns] - outward[turns + 1])
+    lead = share * (t[turns + 1] - t[turns])
+    return t[turns] + lead, np.abs(theta[turns]) + 0.5 * lead * outward[turns]
 
 
 def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:

@@ -1,0 +1,60 @@
+"""What the scripts share: arguments, output folder, files that are whole or absent, errors without a traceback."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from mjrock import SimulationError
+
+
+def parser(description: str | None, out: str) -> argparse.ArgumentParser:
+    """A parser with the options that every script has."""
+    made = argparse.ArgumentParser(
+        description=(description or "").splitlines()[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
+    )
+    made.add_argument("--out", type=Path, default=Path("out") / out, help="folder for the files that are written")
+    made.add_argument("--quick", action="store_true", help="a shorter study, to see that it works")
+    return made
+
+
+def folder(path: Path) -> Path:
+    """Make the output folder, and find out before any work whether it can be written to."""
+    path.mkdir(parents=True, exist_ok=True)
+    write(path / ".writable", "").unlink()
+    return path
+
+
+def write(path: Path, text: str) -> Path:
+    """Write a text file whole or not at all: an interrupted or failed write leaves the old file as it was."""
+    partial = path.with_name(path.name + ".partial")
+    try:
+        with open(partial, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Rows as aligned text for a terminal."""
+    cells = [[str(cell) for cell in row] for row in (header, *rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in cells]
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
+
+
+def run(main: Callable[[Sequence[str] | None], None]) -> int:
+    """Call a script's main; an error that the user can mend is printed, not traced. Returns the exit code."""
+    try:
+        main(None)
+    except (ValueError, OSError, SimulationError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
