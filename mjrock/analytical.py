@@ -72,7 +72,7 @@ def solve_analytical(
     s = case.direction
     impacts: list[Impact] = []
     peaks: list[float] = []
-    arcs: list[tuple[float, Callable[[Array], Array]]] = []
+    arcs: list[tuple[float, float, Callable[[Array], Array]]] = []
     evaluations = 0
     outcome = Outcome.TIME_ENDED
     rising = case.released_outwards
@@ -96,7 +96,7 @@ def solve_analytical(
             evaluations += arc.nfev
             if arc.status < 0:
                 raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
-            arcs.append((t, arc.sol))
+            arcs.append((t, float(arc.t[-1]), arc.sol))
             t, y = float(arc.t[-1]), arc.y[:, -1]
             if arc.t_events[1].size:
                 outcome = Outcome.OVERTURNED
@@ -124,8 +124,7 @@ def solve_analytical(
     t_end = t if outcome is Outcome.OVERTURNED else case.duration
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
     theta, omega = np.zeros_like(samples), np.zeros_like(samples)
-    ends = [start for start, _ in arcs[1:]] + [t]
-    for (start, solution), end in zip(arcs, ends, strict=True):
+    for start, end, solution in arcs:
         within = (samples >= start) & (samples <= end)
         if within.any():
             theta[within], omega[within] = solution(samples[within])

@@ -17,7 +17,7 @@ from .interface import Contacts, Interface
 from .pose import release_pose
 
 RADIUS = 1e-6
-"""Radius of the contact spheres [m]: friction acts at their surface, so it is kept far below a penetration."""
+"""Radius of the contact spheres in half heights [-]: friction acts at their surface, so it is tiny."""
 FRICTION = 30.0
 """Friction coefficient of the edges of the base [-]. The base is not to slip when a side impact throws it while it is
 hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %, from mu = 10 nothing changes
@@ -55,7 +55,7 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     require_within("timestep", timestep, 1e-9, 1.0, "s")
     wall = case.block
     contacts.require_fit(wall, side_stop=case.side_stop)
-    b, h, length = wall.b, wall.h, wall.length
+    b, h, length, radius = wall.b, wall.h, wall.length, RADIUS * wall.h
     base_rows = _rows(contacts.base, timestep, inverse_weight(wall.mass), newmark_beta)
     hold, impratio = friction_that_holds(base_rows[0], timestep=timestep, held_inertia=HELD_MASSES * wall.mass)
     pose, velocity = release_pose(case, contacts)
@@ -79,9 +79,9 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     world = _add(root, "worldbody")
     _add(world, "light", name="sun", directional="true", castshadow="false", dir=(-0.4, 0.5, -0.8))
     _add(world, "camera", name="front", pos=(0.2 * h, -6 * h, 1.3 * h), xyaxes=(1, 0, 0, 0, 0.05, 1), fovy="28")
-    _add(world, "geom", name="base", type="plane", size=(0, 0, 1), pos=(0, 0, -RADIUS), material="paving")
+    _add(world, "geom", name="base", type="plane", size=(0, 0, 1), pos=(0, 0, -radius), material="paving")
     if case.side_stop:
-        plane = (-b - RADIUS, 0, h)
+        plane = (-b - radius, 0, h)
         _add(world, "geom", name="side", type="plane", size=(h, 0.6 * length, 1), pos=plane, zaxis=(1, 0, 0), group="3")
         extent = (b, 0.6 * length, h)
         _add(world, "geom", name="side_wall", type="box", size=extent, pos=(-2 * b, 0, h), material="plaster")
@@ -97,13 +97,15 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     grip: dict[str, object] = {"condim": "3", "friction": (FRICTION, FRICTION, 0, 0, 0), "solreffriction": hold}
     for i, (x, row) in enumerate(zip(contacts.base.positions, base_rows, strict=True)):
         edge = i in (0, len(base_rows) - 1)
-        _add_point(body, pairs, f"base_{i}", (x, 0, -h), "base", row, grip if edge else {"condim": "1"})
+        sphere = {"size": radius, "pos": (x, 0, -h)}
+        _add_point(body, pairs, f"base_{i}", sphere, "base", row, grip if edge else {"condim": "1"})
     facts = {"k_n_base": contacts.base.k_n, "xi_base": contacts.base.xi}
     if case.side_stop:
         assert contacts.side is not None
         side_rows = _rows(contacts.side, timestep, inverse_weight(wall.mass), newmark_beta)
         for i, (z, row) in enumerate(zip(contacts.side.positions, side_rows, strict=True)):
-            _add_point(body, pairs, f"side_{i}", (-b, 0, z), "side", row, {"condim": "1"})
+            sphere = {"size": radius, "pos": (-b, 0, z)}
+            _add_point(body, pairs, f"side_{i}", sphere, "side", row, {"condim": "1"})
         facts |= {"k_n_side": contacts.side.k_n, "xi_side": contacts.side.xi}
     facts |= {"reference_frequency": contacts.base.frequency, "newmark_beta": newmark_beta}
 
@@ -147,13 +149,13 @@ def _add_point(
     body: Element,
     pairs: Element,
     name: str,
-    place: tuple[float, float, float],
+    sphere: dict[str, object],
     plane: str,
     row: ContactParameters,
     friction: dict[str, object],
 ) -> None:
     """A contact point of the wall: its sphere, and its pair with a plane."""
-    _add(body, "geom", name=name, type="sphere", size=RADIUS, pos=place, group="3")
+    _add(body, "geom", name=name, type="sphere", group="3", **sphere)
     _add(pairs, "pair", name=name, geom1=name, geom2=plane, solref=row.solref, solimp=row.solimp, **friction)
 
 

@@ -70,16 +70,16 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2) -> 
     return figure
 
 
-def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], orders: Sequence[int] = (1, 2)) -> Axes:
-    """Errors against the step on logarithmic axes, with slopes to compare by."""
+def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], order: int) -> Axes:
+    """Errors against the step on logarithmic axes, with the slope of an order to compare by."""
     steps = np.asarray(steps, dtype=float)
     for (label, values), marker in zip(errors.items(), "osD^v", strict=False):
         ax.loglog(steps * 1e3, values, marker=marker, markersize=4, linewidth=1.2, label=label)
     anchor = min(float(np.min(np.asarray(v))) for v in errors.values())
-    for order in orders:
-        slope = 0.5 * anchor * (steps / steps.min()) ** order
-        ax.loglog(steps * 1e3, slope, color="0.6", linewidth=0.8, linestyle="--")
-        ax.annotate(f"order {order}", (steps.max() * 1e3, slope[steps.argmax()]), fontsize=8, color="0.4", ha="right")
+    slope = 0.5 * anchor * (steps / steps.min()) ** order
+    ax.loglog(steps * 1e3, slope, color="0.5", linewidth=0.8, linestyle="--", label=f"order {order}")
+    for axis_format in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
+        axis_format("{x:g}")
     ax.set_xlabel("step $h$ [ms]")
     ax.grid(True, which="major", linewidth=0.4, color="0.9")
     ax.legend(frameon=False, fontsize=8)

@@ -118,13 +118,18 @@ def rocking_history(
     Returns:
         Peak times [s], peaks |theta| [rad], and one impact between each pair of peaks, at the time when the wall
         passes theta = 0, or comes closest to it. An impact after which the wall no longer rocks is the last one: what
-        it leaves is the energy of the largest rotation that follows.
+        it leaves is the energy of the largest rotation that follows, or of the motion with which the run ends.
     """
     wall = case.block
     times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
     rocking = sizes > threshold
     residual = times > (times[rocking][-1] if rocking.any() else t[0])
-    left_over = float(sizes[residual].max()) if residual.any() else math.nan
+    if residual.any():
+        left_over = float(wall.potential_energy(float(sizes[residual].max())))
+    elif abs(theta[-1]) > threshold:  # the run ends on the way out
+        left_over = float(wall.potential_energy(float(theta[-1]))) + 0.5 * wall.toe_inertia * float(omega[-1]) ** 2
+    else:
+        left_over = math.nan
     times, sizes = times[rocking], sizes[rocking]
     if not case.released_outwards:
         times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
@@ -133,7 +138,7 @@ def rocking_history(
     for i, start in enumerate(times):
         last = i == len(times) - 1
         if last and math.isnan(left_over):
-            break  # the run ends before the wall has come back out
+            break  # the run ends in the impact
         first, stop = np.searchsorted(t, [start, t[-1] if last else times[i + 1]])
         s = math.copysign(1.0, theta[first])
         segment = s * theta[first : stop + 1]
@@ -147,13 +152,13 @@ def rocking_history(
             j = first + int(np.argmin(segment))
             when = t[j]
         before = float(wall.potential_energy(float(sizes[i])))
-        after = float(wall.potential_energy(float(left_over if last else sizes[i + 1])))
+        after = left_over if last else float(wall.potential_energy(float(sizes[i + 1])))
         arriving, leaving = -s, s if case.side_stop else (-s if last else math.copysign(1.0, theta[stop]))
         impacts.append(
             Impact(
                 t=float(when),
-                omega_before=arriving * math.sqrt(2 * before / wall.toe_inertia),
-                omega_after=leaving * math.sqrt(2 * after / wall.toe_inertia),
+                omega_before=arriving * math.sqrt(2 * max(0.0, before) / wall.toe_inertia),
+                omega_after=leaving * math.sqrt(2 * max(0.0, after) / wall.toe_inertia),
                 energy_before=before,
                 energy_after=after,
             )

@@ -45,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     steps = [4e-3, 2e-3, 1e-3] if args.quick else [6e-3, 4e-3, 3e-3, 2e-3, 1.5e-3, 1e-3]
     found = {name: errors(steps, beta) for name, beta in tqdm(BETAS.items(), disable=None, leave=False)}
-    figure = plotting.single(lambda ax: plotting.convergence(ax, steps, found, orders=(2, 4)))
+    figure = plotting.single(lambda ax: plotting.convergence(ax, steps, found, order=2))
     figure.axes[0].set_ylabel(r"largest error of $\theta$ / release [-]")
     plotting.save(figure, out / "convergence.png")
     rows = [[name, *(f"{e:.2e}" for e in values), f"{order(steps, values):.2f}"] for name, values in found.items()]

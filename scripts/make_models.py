@@ -90,8 +90,9 @@ Made by `scripts/make_models.py`; a test makes it again and compares.
 | --- | --- | --- |
 | base | k_n = {contacts.base.k_n:g} N/m3 | xi_b = {contacts.base.xi:.4f} |
 {side if self.case.side_stop else ""}
-Law: {contacts.law} (Eqs. 5-6 of the paper){"" if inside else ", here outside the ranges of its Table 1"}. 
-A line carries k_i = k_n times its tributary area and c_i = (2 xi / omega) k_i, omega = {contacts.base.frequency:.5g} rad/s.
+Law: {contacts.law} (Eqs. 5-6 of the paper){"" if inside else ", here outside the ranges of its Table 1"}.
+A line carries k_i = k_n times its tributary area and c_i = (2 xi / omega) k_i,
+omega = {contacts.base.frequency:.5g} rad/s.
 
 `scene.xml`: step {self.timestep:g} s, Euler. In stock MuJoCo reset to the keyframe `release` and step. The hinge
 `theta` is the rotation [rad], positive away from the side stop; `x` and `z` displace the centroid [m].

@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N)
         notes += [f"{specimen.name}: {warning.message}" for warning in caught]
         assert contacts.side is not None
-        case = mr.Case(wall, theta0=0.5 * wall.alpha, duration=0.5 if args.quick else 2.0)
+        case = mr.Case(wall, theta0=0.5 * wall.alpha, duration=0.5 if args.quick else 1.2)
         theory = mr.solve_analytical(case, e)
         run = mr.simulate(case, contacts, 1e-3 if args.quick else None)
         panels.append((specimen.name, [theory, run]))

@@ -1,0 +1,74 @@
+import csv
+import dataclasses
+import io
+import math
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+
+@pytest.fixture(scope="module")
+def comparison(two_sided, contacts, e):
+    return mr.compare(mr.solve_analytical(two_sided, e), mr.simulate(two_sided, contacts, 1e-3))
+
+
+def test_a_response_equals_itself(two_sided, e):
+    response = mr.solve_analytical(two_sided, e)
+    same = mr.compare(response, response)
+    assert same.rms == 0
+    np.testing.assert_array_equal(same.restitution[:, 0], same.restitution[:, 1])
+
+
+def test_rms_is_in_multiples_of_alpha(two_sided, e):
+    response = mr.solve_analytical(two_sided, e)
+    shifted = dataclasses.replace(response, theta=response.theta + 0.01 * two_sided.block.alpha)
+    assert mr.compare(response, shifted).rms == pytest.approx(0.01)
+
+
+def test_different_grids_and_lengths(two_sided, e):
+    long = mr.solve_analytical(two_sided, e)
+    other = mr.solve_analytical(two_sided, e, output_step=1.7e-4)
+    assert mr.compare(long, other).rms < 1e-6
+    half = dataclasses.replace(other, t=other.t[: len(other.t) // 2], theta=other.theta[: len(other.t) // 2])
+    assert mr.compare(long, half).rms < 1e-6
+
+
+def test_a_wall_that_stops_dead_is_told_from_one_that_rebounds(one_sided, e):
+    """RMS alone would score it well: what tells them apart is the restitution per rebound."""
+    exact = mr.solve_analytical(one_sided, e)
+    stop = exact.impacts[0].t
+    dead = dataclasses.replace(exact, theta=np.where(exact.t < stop, exact.theta, 0.0), peaks=exact.peaks[:1])
+    found = mr.compare(exact, dead)
+    assert found.rms == pytest.approx(0.0185 * math.sqrt(4 / 3), abs=3e-4)  # 0.0185 over 4 s
+    assert np.isnan(found.restitution[0, 1])
+    assert found.restitution[0, 0] == pytest.approx(abs(e.lumped))
+
+
+def test_losses_add_up(comparison):
+    released = comparison.reference.case.release_energy
+    np.testing.assert_allclose(comparison.energy_share, comparison.energy_loss / released)
+    assert comparison.energy_loss[0, 0] == pytest.approx((1 - 0.97**2) * released, rel=1e-6)
+
+
+def test_table_and_csv_say_the_same(comparison):
+    rows = list(csv.DictReader(io.StringIO(comparison.csv())))
+    assert len(rows) == len(comparison.impact_times)
+    assert float(rows[0]["restitution, analytical [-]"]) == comparison.restitution[0, 0]
+    assert all("[" in name for name in rows[0] if name != "impact")
+    table = comparison.table()
+    assert "energy loss [J]" in table
+    assert f"{comparison.rms:.5f}" in table
+    assert len({len(line) for line in table.splitlines()[:5]}) == 1
+
+
+def test_more_impacts_than_the_other_are_shown_as_missing(one_sided, contacts, e):
+    comparison = mr.compare(mr.solve_analytical(one_sided, e), mr.simulate(one_sided, contacts, 1e-3))
+    assert math.isnan(comparison.rows()[-1]["impact time, MuJoCo [s]"])
+    assert "nan" not in comparison.table(most=50)
+
+
+def test_different_cases_are_not_compared(two_sided, one_sided, e):
+    with pytest.raises(ValueError, match="different cases"):
+        mr.compare(mr.solve_analytical(two_sided, e), mr.solve_analytical(one_sided, e))

@@ -1,0 +1,46 @@
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.response import restitution_of, rocking_history
+
+
+def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):
+    for case in (two_sided, one_sided):
+        exact = mr.solve_analytical(case, e, output_step=2e-3)
+        _, peaks, impacts = rocking_history(case, exact.t, exact.theta, exact.omega, 1e-3 * case.block.alpha)
+        n = len(peaks)
+        np.testing.assert_allclose(peaks, exact.peaks[:n], rtol=1e-4)
+        for sampled, true in zip(impacts[: n - 1], exact.impacts, strict=False):
+            assert sampled.t == pytest.approx(true.t, abs=2e-3)
+            assert sampled.omega_before == pytest.approx(true.omega_before, rel=1e-4)
+            assert sampled.omega_after == pytest.approx(true.omega_after, rel=1e-3)
+            assert sampled.restitution == pytest.approx(true.restitution, rel=1e-3)
+
+
+def test_a_wall_that_stops_dead_has_one_impact_and_no_rebound(one_sided):
+    t = np.linspace(0, 1, 1001)
+    theta = np.maximum(0.05 * np.cos(2 * np.pi * t), 0) * (t < 0.5)
+    theta += (t > 0.5) * 1e-5 * np.sin(20 * np.pi * t)
+    _, peaks, impacts = rocking_history(one_sided, t, theta, np.gradient(theta, t), 1e-3)
+    assert len(peaks) == 1
+    assert len(impacts) == 1
+    assert impacts[0].t == pytest.approx(0.25, abs=2e-3)
+    assert impacts[0].restitution < 0.05
+
+
+def test_maxima_on_the_side_of_the_stop_are_not_rocking(one_sided, two_sided):
+    t = np.linspace(0, 4, 4001)
+    theta = 0.05 * np.cos(2 * np.pi * t)
+    omega = np.gradient(theta, t)
+    _, peaks, _ = rocking_history(two_sided, t, theta, omega, 1e-3)
+    assert len(peaks) == 8
+    _, peaks, _ = rocking_history(one_sided, t, theta, omega, 1e-3)
+    assert len(peaks) == 4
+
+
+def test_restitution_of_peaks(wall):
+    energy = wall.potential_energy(0.05)
+    peaks = [0.05, wall.rotation_at(0.81 * energy), wall.rotation_at(0.81 * 0.25 * energy), 0.0, 0.0]
+    np.testing.assert_allclose(restitution_of(wall, peaks)[:3], [0.9, 0.5, 0.0], atol=1e-7)
+    assert np.isnan(restitution_of(wall, peaks)[3])

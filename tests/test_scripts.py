@@ -1,0 +1,87 @@
+"""Every script runs in its quick mode, writes what it says, and meets bad input with an error and no traceback."""
+
+import csv
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import cli
+import compare_wall
+import mjrock as mr
+
+SCRIPTS = Path(__file__).parents[1] / "scripts"
+WRITES = {
+    "compare_wall": {"scene.xml", "comparison.png", "comparison.csv"},
+    "figure3": {"figure3_one_sided.png", "figure3_two_sided.png", "figure3.csv"},
+    "table2": {"table2.png", "table2.csv"},
+    "layouts": {"layouts.txt"},
+    "friction": {"friction.txt"},
+    "convergence": {"convergence.png", "convergence.txt"},
+    "make_models": {"figure3_one_sided"},
+}
+
+
+def test_no_script_is_forgotten():
+    assert {p.stem for p in SCRIPTS.glob("*.py")} == set(WRITES) | {"cli", "paper"}
+
+
+@pytest.mark.parametrize("name", WRITES)
+def test_quick(name, tmp_path, capsys):
+    importlib.import_module(name).main(["--quick", "--out", str(tmp_path / "deep" / "er")])
+    assert {p.name for p in (tmp_path / "deep" / "er").iterdir()} == WRITES[name]
+    if name != "make_models":
+        assert capsys.readouterr().out.strip()
+
+
+@pytest.mark.parametrize("name", WRITES)
+def test_help(name, capsys):
+    with pytest.raises(SystemExit) as stop:
+        importlib.import_module(name).main(["--help"])
+    assert stop.value.code == 0
+    assert "--out" in capsys.readouterr().out
+
+
+def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
+    compare_wall.main(["--out", str(tmp_path)])
+    step = mr.automatic_timestep(one_sided.block, contacts, side_stop=True)
+    assert (tmp_path / "scene.xml").read_text() == mr.wall_mjcf(one_sided, contacts, step)
+    with open(tmp_path / "comparison.csv") as file:
+        assert float(next(csv.DictReader(file))["restitution, analytical [-]"]) == pytest.approx(0.442223)
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (["--thickness", "600"], "half thickness b = 300 m is outside the valid range"),
+        (["--k-base", "500"], "k_n = 500 N/m3"),
+        (["--release", "30"], "theta0 = 4.25691 rad is outside the valid range"),
+        (["--lumped", "0.4"], "lumped restitution = 0.4"),
+        (["--timestep", "-1"], "timestep = -1 s"),
+        (["--out", "/dev/null/here"], "Not a directory"),
+    ],
+)
+def test_bad_input_is_an_error_without_a_traceback(options, complaint, tmp_path):
+    out = [] if "--out" in options else ["--out", str(tmp_path / "out")]
+    run = subprocess.run(
+        [sys.executable, str(SCRIPTS / "compare_wall.py"), *options, *out], capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 2
+    assert complaint in run.stderr
+    assert "Traceback" not in run.stderr
+    assert run.stdout == ""
+
+
+def test_a_full_disk_leaves_the_old_file_whole(tmp_path, monkeypatch):
+    target = cli.write(tmp_path / "table.csv", "old")
+
+    def full(descriptor):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cli.os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        cli.write(target, "new")
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]

@@ -1,0 +1,184 @@
+import dataclasses
+import math
+
+import mujoco
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock import simulation
+from mjrock.mjcf import FRICTION
+from paper import K_N
+
+
+def test_the_automatic_step_follows_the_stiffest_contact(wall, contacts):
+    free = mr.automatic_timestep(wall, contacts, side_stop=False)
+    stopped = mr.automatic_timestep(wall, contacts, side_stop=True)
+    vertical = math.sqrt(contacts.base.stiffness.sum() / wall.mass)
+    assert free == pytest.approx(2 * math.sqrt(1e-3) / vertical)
+    assert stopped < free
+    stiffer = mr.Contacts.from_damping(wall, k_base=4 * K_N, xi_base=0.05)
+    assert mr.automatic_timestep(wall, stiffer, side_stop=False) == pytest.approx(free / 2)
+
+
+def test_the_step_is_chosen_or_taken(two_sided, contacts):
+    assert mr.simulate(two_sided, contacts).stats["timestep"] == mr.automatic_timestep(
+        two_sided.block, contacts, side_stop=False
+    )
+    run = mr.simulate(two_sided, contacts, timestep=1e-3)
+    assert run.stats["timestep"] == 1e-3
+    assert run.t[-1] == pytest.approx(two_sided.duration)
+    assert len(run.t) == run.stats["steps"]
+
+
+def test_output_step_thins_the_samples_and_nothing_else(one_sided, contacts):
+    every = mr.simulate(one_sided, contacts, 1e-4)
+    thinned = mr.simulate(one_sided, contacts, 1e-4, output_step=1e-3)
+    assert len(thinned.t) == pytest.approx(len(every.t) / 10, abs=1)
+    np.testing.assert_array_equal(thinned.theta, every.theta[::10])
+    np.testing.assert_array_equal(thinned.omega, every.omega[::10])
+    np.testing.assert_allclose(thinned.peaks[:3], every.peaks[:3], rtol=1e-3)
+
+
+def test_thinning_goes_on_across_chunks(one_sided, contacts, monkeypatch):
+    whole = mr.simulate(one_sided, contacts, 1e-3, output_step=7e-3)
+    monkeypatch.setattr(simulation, "CHUNK", 100)
+    chunked = mr.simulate(one_sided, contacts, 1e-3, output_step=7e-3)
+    np.testing.assert_array_equal(chunked.t, whole.t)
+    np.testing.assert_array_equal(chunked.theta, whole.theta)
+
+
+def test_velocities_are_synchronised_with_rotations(two_sided, contacts):
+    run = mr.simulate(two_sided, contacts, 1e-3)
+    flight = (run.t > 0.1) & (run.t < 0.6)
+    np.testing.assert_allclose(np.gradient(run.theta, run.t)[flight], run.omega[flight], atol=3e-6)
+    # the twin that must fail: half a step back, as the engine keeps it
+    stale = np.interp(run.t - 0.5e-3, run.t, run.omega)
+    assert np.abs(np.gradient(run.theta, run.t) - stale)[flight].max() > 1e-4
+
+
+def test_energy_is_that_of_the_release_until_the_first_impact(two_sided, contacts):
+    run = mr.simulate(two_sided, contacts, 1e-3)
+    flight = run.t < 0.7
+    np.testing.assert_allclose(run.energy[flight], run.energy[0], rtol=2e-4)
+
+
+def test_the_same_call_gives_the_same_motion(one_sided, contacts):
+    first, second = (mr.simulate(one_sided, contacts, 1e-3) for _ in range(2))
+    np.testing.assert_array_equal(first.theta, second.theta)
+
+
+def test_a_wall_at_rest_stays_at_rest(wall, contacts):
+    run = mr.simulate(mr.Case(wall, 0.0, 5.0), contacts)
+    assert np.abs(run.theta).max() < 1e-9
+    assert run.outcome is mr.Outcome.AT_REST
+
+
+def test_overturning_is_a_result(wall, contacts):
+    run = mr.simulate(mr.Case(wall, 1.01 * wall.alpha, 10.0), contacts)
+    assert run.outcome is mr.Outcome.OVERTURNED
+    assert run.t[-1] < 10.0
+    assert abs(run.theta[-1]) >= math.pi / 2
+
+
+def test_leaning_the_other_way_is_the_mirror_image(wall, contacts):
+    left, right = (mr.simulate(mr.Case(wall, s * 0.05, 2.0, side_stop=False), contacts, 1e-3) for s in (-1, 1))
+    np.testing.assert_allclose(left.theta, -right.theta, atol=1e-9)
+
+
+def test_a_push_at_release(wall, contacts, e):
+    case = mr.Case(wall, 0.05, 1.5, omega0=0.1)
+    reference, run = mr.solve_analytical(case, e), mr.simulate(case, contacts)
+    assert run.omega[0] == pytest.approx(0.1, rel=1e-6)
+    assert run.peaks[0] == pytest.approx(reference.peaks[0], rel=2e-3)
+
+
+def test_energy_from_nowhere_is_an_error_that_names_a_sound_step(wall):
+    """Central difference beyond its stability limit: the step is named, and the largest that would have been sound."""
+    contacts = mr.Contacts.from_damping(wall, k_base=3e9, xi_base=0.001)
+    case = mr.Case(wall, 0.5 * wall.alpha, 3.0, side_stop=False)
+    sound = mr.automatic_timestep(wall, contacts, side_stop=False)
+    with pytest.raises(mr.SimulationError, match=r"with a step of 0.005 s; the largest sound step is ") as caught:
+        mr.simulate(case, contacts, 5e-3, newmark_beta=0.0)
+    assert f"{sound:.3g} s" in str(caught.value)
+    mr.simulate(case, contacts, sound, newmark_beta=0.0)  # and it is sound
+
+
+def test_gain_from_peak_to_peak_is_what_counts():
+    t = np.linspace(0, 4, 5)
+    gain, when = simulation.energy_gain(np.array([0.0, 2.0]), t, np.array([10.0, 14.0, 11.0, 8.0, 8.5]))
+    assert (gain, when) == (1.0, 2.0)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_nan_or_a_warning_of_the_engine_is_an_error(two_sided, contacts, monkeypatch):
+    released = simulation.release
+
+    def thrown(model):
+        data = released(model)
+        data.qvel[1] = 1e12
+        return data
+
+    monkeypatch.setattr(simulation, "release", thrown)
+    with pytest.raises(
+        mr.SimulationError, match=r"(MuJoCo warned|not finite).*with a step of 0.01 s; the largest sound"
+    ):
+        mr.simulate(two_sided, contacts, 1e-2)
+
+
+def test_an_engine_that_weighs_contacts_otherwise_is_refused(two_sided, contacts, wall):
+    text = mr.wall_mjcf(two_sided, contacts, 1e-3).replace(
+        '<joint name="x"', '<joint name="y" type="slide" axis="0 1 0"/><joint name="x"'
+    )
+    text = text.replace('qpos="', 'qpos="0 ').replace('qvel="', 'qvel="0 ')
+    with pytest.raises(mr.SimulationError, match="inverse weight"):
+        simulation.compile_wall(text, wall)
+
+
+@pytest.mark.parametrize("timestep", [0.0, -1e-3, math.nan, 2.0])
+def test_bad_steps(two_sided, contacts, timestep):
+    with pytest.raises(ValueError, match="timestep"):
+        mr.simulate(two_sided, contacts, timestep)
+
+
+def test_the_rows_of_the_wall_are_the_law(one_sided, contacts, wall):
+    """During the side impact every solved normal force is max(0, -(k r + c v + m_i a)), friction and all."""
+    h = 1e-4
+    model = simulation.compile_wall(mr.wall_mjcf(one_sided, contacts, h), wall)
+    data = simulation.release(model)
+    seen, sliding = set(), 0
+    while data.time < 0.72:
+        mujoco.mj_step1(model, data)
+        mujoco.mj_step2(model, data)
+        if data.time < 0.70:
+            continue
+        jacobian = np.reshape(data.efc_J, (data.nefc, model.nv))
+        # the velocity that the rows saw is the one before this step's
+        seen |= {model.pair(i).name for i in range(model.npair) if any(_is(model, c, i) for c in data.contact)}
+        velocity = jacobian @ (data.qvel - h * data.qacc)
+        acceleration = jacobian @ data.qacc
+        for contact in data.contact:
+            row = contact.efc_address
+            name = next(n for n in (model.geom(g).name for g in contact.geom) if n[-1].isdigit())
+            interface = contacts.base if name.startswith("base") else contacts.side
+            i = int(name[-1])
+            k, c = interface.stiffness[i], interface.damping[i]
+            inertia = 1 / data.efc_R[row]
+            force = -(k * contact.dist + c * velocity[row] + inertia * acceleration[row])
+            # while an edge slides, the elliptic cone adds some of its friction to the normal force
+            along = np.hypot(*data.efc_force[row + 1 : row + 3]) if contact.dim == 3 else 0.0
+            slides = along > 0.999 * FRICTION * data.efc_force[row]
+            allowed = 1e-2 if slides else 1e-6
+            sliding += slides
+            assert data.efc_force[row] == pytest.approx(max(0.0, force), abs=allowed * wall.weight)
+    assert {"base_0", "base_1", "side_1"} <= seen
+    assert sliding < 20  # of 200 steps
+
+
+def _is(model, contact, pair):
+    return {model.pair_geom1[pair], model.pair_geom2[pair]} == set(contact.geom.tolist())
+
+
+def test_contacts_in_place_of_a_case_without_them(two_sided, contacts):
+    no_side = dataclasses.replace(contacts, side=None)
+    assert mr.simulate(two_sided, no_side, 1e-3).outcome is mr.Outcome.TIME_ENDED
