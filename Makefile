@@ -22,12 +22,12 @@ lint: $(READY)
 models: $(READY)
 	$(BIN)/python scripts/make_models.py
 
-figures: $(READY)
-	$(BIN)/python scripts/figure3.py
-	$(BIN)/python scripts/table2.py
-	$(BIN)/python scripts/convergence.py
-	$(BIN)/python scripts/layouts.py
-	$(BIN)/python scripts/friction.py
+figures: $(READY) # the pictures and tables of the README
+	$(BIN)/python scripts/figure3.py --out docs/figures
+	$(BIN)/python scripts/table2.py --out docs/figures
+	$(BIN)/python scripts/convergence.py --out docs/figures
+	$(BIN)/python scripts/layouts.py --out docs/figures
+	$(BIN)/python scripts/friction.py --out docs/figures
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

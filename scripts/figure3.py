@@ -40,14 +40,14 @@ def main(argv: Sequence[str] | None = None) -> None:
             plotting.comparison([theory, law, runs[0]], label.replace("_", "-")), out / f"figure3_{label}.png"
         )
         for response in (theory, law, *runs):
-            step = response.stats.get("timestep", np.nan)
+            step = response.stats.get("timestep")
             rms = [mr.compare(reference, response).rms for reference in (theory, law)]
             rebounds = np.append(response.restitution, np.full(4, np.nan))[:4]
             rows.append(
                 [
                     label,
                     response.solver,
-                    f"{step * 1e3:.3g}",
+                    f"{step * 1e3:.3g}" if step else "-",
                     *(f"{r:.4f}" for r in rebounds),
                     *(f"{r:.5f}" for r in rms),
                 ]

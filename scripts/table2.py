@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import sys
 import warnings
 from collections.abc import Sequence
@@ -39,7 +40,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         run = mr.simulate(case, contacts, 1e-3 if args.quick else None)
         panels.append((specimen.name, [theory, run]))
         comparison = mr.compare(theory, run)
-        first_peaks = comparison.rebound_peaks[0] if len(comparison.rebound_peaks) else (float("nan"),) * 2
+        peaks = comparison.rebound_peaks[0] if len(comparison.rebound_peaks) else (math.nan, math.nan)
         rows.append(
             [
                 specimen.name,
@@ -51,13 +52,12 @@ def main(argv: Sequence[str] | None = None) -> None:
                 f"{specimen.lumped:.3f}",
                 f"{-run.impacts[0].restitution:.3f}" if run.impacts else "-",
                 len(run.restitution),
-                f"{first_peaks[0]:.4f}",
-                f"{first_peaks[1]:.4f}",
+                *("-" if math.isnan(peak) else f"{peak:.4f}" for peak in peaks),
                 f"{comparison.rms:.4f}",
             ]
         )
     header = [
-        "specimen", "xi_b Eq. 5", "printed", "xi_s Eq. 6", "printed", "difference",
+        "specimen", "xi_b Eq. 5", "xi_b printed", "xi_s Eq. 6", "xi_s printed", "xi_s difference",
         "e_1s measured", "e_1s MuJoCo", "rebounds MuJoCo", "peak/alpha theory", "peak/alpha MuJoCo", "RMS/alpha",
     ]  # fmt: skip
     text = io.StringIO()
