@@ -111,7 +111,8 @@ def test_gain_from_peak_to_peak_is_what_counts():
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_nan_or_a_warning_of_the_engine_is_an_error(two_sided, contacts, monkeypatch):
+def test_a_nan_or_a_warning_of_the_engine_is_an_error(two_sided, contacts, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)  # MuJoCo leaves MUJOCO_LOG.TXT where it warns
     released = simulation.release
 
     def thrown(model):
