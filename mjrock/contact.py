@@ -18,6 +18,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .block import Real
+
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP: MuJoCo clamps an impedance outside it without a word, and the stiffness with it."""
 
@@ -42,9 +44,20 @@ class ContactParameters:
         return self.solimp[0]
 
 
-def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) -> float:
+def newmark_inertia(k: Real, c: Real, timestep: float, newmark_beta: float) -> Real:
     """m_i = h c/2 + beta h^2 k [kg], what makes the Euler step Newmark's with centred damping."""
     return timestep * c / 2 + newmark_beta * timestep**2 * k
+
+
+def impedance(inertia: Real, inverse_weight: float) -> Real:
+    """d of a row with the inertia m_i [-], from m_i = d / ((1 - d) W)."""
+    return inverse_weight * inertia / (1 + inverse_weight * inertia)
+
+
+def least_inertia(inverse_weight: float) -> float:
+    """The smallest row inertia whose impedance MuJoCo does not clamp [kg]."""
+    d = IMPEDANCE_RANGE[0] * (1 + 1e-9)
+    return d / ((1 - d) * inverse_weight)
 
 
 def least_beta(k: float, c: float, timestep: float, inverse_weight: float) -> float:
@@ -53,8 +66,7 @@ def least_beta(k: float, c: float, timestep: float, inverse_weight: float) -> fl
     It exceeds 1/4 only where the row's inertia falls below 1e-4 / inverse_weight: a soft spring with little damping
     and a small step. More inertia than asked then moves a frequency by less than 1e-4, and damps nothing.
     """
-    d = IMPEDANCE_RANGE[0] * (1 + 1e-9)
-    return (d / ((1 - d) * inverse_weight) - timestep * c / 2) / (timestep**2 * k)
+    return (least_inertia(inverse_weight) - timestep * c / 2) / (timestep**2 * k)
 
 
 def contact_parameters(
@@ -83,7 +95,7 @@ def contact_parameters(
         if not 0 <= value < float("inf"):
             raise ValueError(f"{name} = {value:g} is outside the valid range, which starts at 0")
     inertia = newmark_inertia(k, c, timestep, newmark_beta)
-    d = inverse_weight * inertia / (1 + inverse_weight * inertia)
+    d = impedance(inertia, inverse_weight)
     low, high = IMPEDANCE_RANGE
     if not low <= d <= high:
         remedy = "raise the timestep or newmark_beta" if d < low else "lower the timestep"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .block import Block
 from .case import Case
+from .ledger import Ledger
 
 Array = NDArray[np.float64]
 
@@ -69,7 +70,7 @@ class Response:
         peaks: rotation maxima |theta| [rad], the release first, shape (m,).
         outcome: how the run ended.
         message: the same in words, for the user.
-        energy_residual: closure error of the energy ledger [J], or None where none was asked for.
+        ledger: every part of the energy, or None where none was asked for.
         stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s].
     """
 
@@ -83,8 +84,13 @@ class Response:
     peaks: Array
     outcome: Outcome
     message: str
-    energy_residual: Array | None = None
+    ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def energy_residual(self) -> Array | None:
+        """Closure error of the energy ledger [J], shape (n,), or None where none was asked for."""
+        return None if self.ledger is None else self.ledger.residual
 
     @property
     def restitution(self) -> Array:
@@ -187,7 +193,7 @@ def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: flo
         outcome = Outcome.AT_REST
     else:
         outcome = Outcome.TIME_ENDED
-    return outcome, describe(outcome, case, float(t[-1]), float(theta[-1]))
+    return outcome, describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
 
 
 def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:

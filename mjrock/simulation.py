@@ -1,4 +1,4 @@
-"""MuJoCo: compile the text of a case, step it, record it. The only module that steps MuJoCo."""
+"""MuJoCo: compile the text of a case, step it, and turn what it did into a response."""
 
 from __future__ import annotations
 
@@ -7,22 +7,21 @@ import time
 
 import mujoco
 import numpy as np
-from mujoco import rollout
 from numpy.typing import NDArray
-from tqdm import tqdm
+from scipy.interpolate import CubicHermiteSpline
 
 from .block import Block, require_within
 from .case import Case
 from .interface import Contacts
+from .ledger import Ledger
 from .mjcf import inverse_weight, wall_mjcf
 from .pose import mechanical_energy
 from .response import Response, ending, rocking_history
+from .stepping import StepError, Steps, fitted_steps, fixed_steps, short_step
 
 Array = NDArray[np.float64]
 ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, as a share of the energy of release [-]."""
-CHUNK = 20_000
-"""Steps between two looks at the wall: whether it has overturned, whether MuJoCo has warned."""
 
 
 class SimulationError(RuntimeError):
@@ -80,87 +79,108 @@ def simulate(
     contacts: Contacts,
     timestep: float | None = None,
     *,
+    accuracy: float = 1e-3,
     newmark_beta: float = 0.25,
     output_step: float | None = None,
+    ledger: bool = False,
 ) -> Response:
     """Free rocking of a wall on compliant contacts in MuJoCo.
 
     Args:
         case: the wall, its release, its sides.
         contacts: the interfaces.
-        timestep: fixed step [s]; None takes `automatic_timestep`.
-        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.contact`.
-        output_step: spacing of the returned samples [s], rounded to whole steps; None returns every step.
+        timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.stepping`.
+        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1.
+        newmark_beta: Newmark's beta of the contact rows at a fixed step [-], see `mjrock.contact`.
+        output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
+            all; fitted steps are interpolated, None stands for 1 ms.
+        ledger: whether to account for every part of the energy, see `mjrock.ledger`.
 
     Raises:
-        ValueError: if the contacts do not fit the case, or cannot be represented at this step.
+        ValueError: if the contacts do not fit the case or cannot be represented at this step, or for a value outside
+            its range.
         SimulationError: if the run produces a NaN, an engine warning, or more energy than was there before.
     """
     wall = case.block
     contacts.require_fit(wall, side_stop=case.side_stop)
+    require_within("accuracy", accuracy, 1e-8, 0.1, "-")
+    if output_step is not None:
+        require_within("output_step", output_step, 1e-9, case.duration, "s")
     sound = automatic_timestep(wall, contacts, side_stop=case.side_stop)
-    h = sound if timestep is None else require_within("timestep", timestep, 1e-9, 1.0, "s")
+    fitted = timestep is None
+    h = (
+        short_step(case, contacts, accuracy)
+        if timestep is None
+        else require_within("timestep", timestep, 1e-9, 1.0, "s")
+    )
     started = time.perf_counter()
     model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), wall)
     data = release(model)
-    total = max(1, round(case.duration / h)) + 1  # a sample needs the velocity half a step after it
-    stride = max(1, round(output_step / h)) if output_step else 1
 
     def broken(what: str, t: float) -> SimulationError:
+        if fitted:
+            return SimulationError(
+                f"{what} at t = {t:.4g} s with fitted steps from {h:.3g} s at accuracy = {accuracy:g}; "
+                f"lower the accuracy, or take a fixed step: the largest sound one is {sound:.3g} s"
+            )
         advice = f"the largest sound step is {sound:.3g} s" if h > sound * (1 + 1e-9) else "check the contacts"
         return SimulationError(f"{what} at t = {t:.4g} s with a step of {h:.3g} s; {advice}")
 
-    spec = mujoco.mjtState.mjSTATE_FULLPHYSICS
-    state = np.empty(mujoco.mj_stateSize(model, spec))
-    mujoco.mj_getState(model, data, state, spec)
-    kept = []  # every stride-th pose, with the velocities half a step before and after it
-    done = 0
-    with tqdm(total=total * h, desc="simulate", unit="s", delay=3, disable=None, leave=False) as bar:
-        while done < total:
-            steps = min(CHUNK, total - done)
-            run, _ = rollout.rollout(model, data, state[None], nstep=steps)
-            chunk = np.vstack([state, run[0]])
-            first = -done % stride
-            kept.append(np.hstack([chunk[:-1], chunk[1:, 4:]])[first::stride])
-            done, state = done + steps, run[0, -1]
-            bar.update(steps * h)
-            warned = [mujoco.mjtWarning(i).name for i, w in enumerate(data.warning) if w.number]
-            if warned or not np.isfinite(state).all():
-                what = f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite"
-                raise broken(what, state[0])
-            if abs(state[3]) > math.pi / 2:
-                break
-    history = np.vstack(kept)
-    fallen = np.flatnonzero(np.abs(history[:, 3]) > math.pi / 2)
-    if fallen.size:
-        history = history[: fallen[0] + 1]
-    t, pose, velocity = history[:, 0], history[:, 1:4], 0.5 * (history[:, 4:7] + history[:, 7:10])
-    theta, omega = pose[:, 2], velocity[:, 2]
-    energy = mechanical_energy(case, contacts, pose, velocity)
-    times, peaks, impacts = rocking_history(case, t, theta, omega, contacts.uplift_rotation(wall))
+    try:
+        if fitted:
+            steps = fitted_steps(model, data, case, contacts, accuracy)
+        else:
+            steps = fixed_steps(model, data, case.duration, newmark_beta)
+    except StepError as error:
+        raise broken(str(error), error.t) from None
+    stepped = time.perf_counter() - started
 
-    worst, when = energy_gain(times, t, energy)
+    theta, omega = steps.pose[:, 2], steps.velocity[:, 2]
+    energy = mechanical_energy(case, contacts, steps.pose, steps.velocity)
+    times, peaks, impacts = rocking_history(case, steps.t, theta, omega, contacts.uplift_rotation(wall))
+    worst, when = energy_gain(times, steps.t, energy)
     scale = max(float(energy[0]), contacts.uplift_energy(wall))
-    if worst > ENERGY_GAIN * scale:
+    if not worst <= ENERGY_GAIN * scale:
         raise broken(f"{worst:.3g} J, {worst / scale:.2%} of the release energy, appeared from nowhere", when)
-    outcome, message = ending(case, t, theta, energy, contacts.uplift_energy(wall))
+    outcome, message = ending(case, steps.t, theta, energy, contacts.uplift_energy(wall))
+
+    t = _output_times(steps, case, output_step, fitted=fitted)
+    if fitted:
+        spline = CubicHermiteSpline(steps.t, theta, omega)
+        theta, omega = spline(t), spline(t, 1)
+    else:
+        stride = max(1, round(output_step / h)) if output_step else 1
+        theta, omega = theta[::stride], omega[::stride]
+    book = Ledger.of(case, contacts, steps).at(t) if ledger else None
     return Response(
         case=case,
         solver="MuJoCo",
         t=t,
         theta=theta,
         omega=omega,
-        energy=energy,
+        energy=np.interp(t, steps.t, energy),
         impacts=impacts,
         peaks=peaks,
         outcome=outcome,
         message=message,
+        ledger=book,
         stats={
             "wall_time": time.perf_counter() - started,
-            "steps": done,
+            "stepping_time": stepped,
+            "steps": len(steps.t),
             "timestep": h,
+            "longest_timestep": float(steps.h.max()),
             "sound_timestep": sound,
+            "touches": steps.touches,
+            "accuracy": accuracy if fitted else None,
             "newmark_beta": newmark_beta,
             "mujoco": mujoco.__version__,
         },
     )
+
+
+def _output_times(steps: Steps, case: Case, output_step: float | None, *, fitted: bool) -> Array:
+    if not fitted:
+        return steps.t[:: max(1, round(output_step / steps.h[0])) if output_step else 1]
+    end = min(float(steps.t[-1]), case.duration)
+    return np.linspace(0.0, end, max(2, math.ceil(end / (output_step or 1e-3)) + 1))

@@ -26,7 +26,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument("--release", type=float, default=0.5, help="rotation at release as a share of alpha [-]")
     options.add_argument("--sides", type=int, choices=(1, 2), default=1, help="1: against a side stop; 2: free to both")
     options.add_argument("--duration", type=float, default=3.0, help="time to follow the motion [s]")
-    options.add_argument("--timestep", type=float, default=None, help="MuJoCo's step [s]; chosen from the contacts")
+    options.add_argument("--timestep", type=float, default=None, help="fixed step [s]; else steps fit the motion")
+    options.add_argument("--accuracy", type=float, default=1e-3, help="relative tolerance of fitted steps [-]")
     options.add_argument("--lumped", type=float, default=None, help="measured e_1s, negative [-]; else from geometry")
     options.add_argument("--check", action="store_true", help="solve the contact law with SciPy as well")
     args = options.parse_args(argv)
@@ -42,7 +43,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
 
     reference = mr.solve_analytical(case, e)
-    candidate = mr.simulate(case, contacts, args.timestep)
+    candidate = mr.simulate(case, contacts, args.timestep, accuracy=args.accuracy)
     comparison = mr.compare(reference, candidate)
     responses = [reference, candidate]
     if args.check:
@@ -61,7 +62,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         f"alpha = {wall.alpha:.4f} rad, p = {wall.p:.3f} rad/s"
     )
     print(f"damping ratios by {contacts.law}: base {contacts.base.xi:.2%} (e = {e.base:.3f}){side}")
-    print(f"MuJoCo: {candidate.stats['steps']} steps of {step * 1e3:.3g} ms in {candidate.stats['wall_time']:.3f} s\n")
+    stats = candidate.stats
+    steps = f"{step * 1e3:.3g} ms" if args.timestep else f"{step * 1e3:.3g} to {stats['longest_timestep'] * 1e3:.3g} ms"
+    print(f"MuJoCo: {stats['steps']} steps of {steps} in {stats['wall_time']:.3f} s\n")
     print(comparison.table())
     if args.check:
         print("\nThe same contact law solved by SciPy, against MuJoCo:\n")

@@ -46,7 +46,7 @@ def test_help(name, capsys):
 
 def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
     compare_wall.main(["--out", str(tmp_path)])
-    step = mr.automatic_timestep(one_sided.block, contacts, side_stop=True)
+    step = mr.simulate(one_sided, contacts).stats["timestep"]
     assert (tmp_path / "scene.xml").read_text() == mr.wall_mjcf(one_sided, contacts, step)
     with open(tmp_path / "comparison.csv") as file:
         assert float(next(csv.DictReader(file))["restitution, analytical [-]"]) == pytest.approx(0.442223)

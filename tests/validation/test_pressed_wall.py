@@ -79,7 +79,7 @@ def test_rocking_in_full_contact(wall, k_n):
     xi = contacts.base.retardation * contacts.base.K_rot / (2 * math.sqrt(stiffness * inertia))
     # small enough that b theta moves the contact points by much less than they are compressed
     case = mr.Case(wall, 0.2 * contacts.uplift_rotation(wall), 8 * 2 * math.pi / omega, side_stop=False)
-    run = mr.simulate(case, contacts)
+    run = mr.simulate(case, contacts, accuracy=1e-5)
     found_omega, found_decrement = frequency_and_decrement(run.t, run.theta)
     assert found_omega == pytest.approx(omega * math.sqrt(1 - xi**2), rel=1e-3)
     assert found_decrement == pytest.approx(2 * math.pi * xi / math.sqrt(1 - xi**2), rel=5e-3)

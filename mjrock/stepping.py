@@ -1,0 +1,319 @@
+"""Steps of MuJoCo: of one length, or fitted to the motion so that every touch is centred in time.
+
+A wall rocks smoothly for a second and then hits something for milliseconds. `fitted_steps` takes long steps while
+nothing new touches, lands half a short step behind every touch, so that the touch is the start of the leapfrog window
+in which the new contact first acts, and goes on in short steps until the contacts have died down. Contact rows,
+friction and the velocity, which the leapfrog keeps half a step back, follow every change of the step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from .case import Case
+from .contact import impedance, least_inertia, newmark_inertia
+from .interface import Contacts
+from .mjcf import HELD_MASSES, inverse_weight
+
+Array = NDArray[np.float64]
+OVERTURNED = math.pi / 2
+"""A wall is followed until it lies on its face [rad]."""
+
+CHUNK = 20_000
+"""Fixed steps between two looks at the wall: whether it has overturned, whether MuJoCo has warned."""
+
+SHORT = 24.0
+"""(omega h)^2 of a short step over the accuracy, omega the highest contact frequency: Newmark's period error is
+(omega h)^2 / 24 for beta = 0 and less for beta = 1/12, which short steps use."""
+LONG = 1.4
+"""(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
+CHANGE = 3.0
+"""Change of acceleration in a step, times the step, that is tolerated: over the accuracy and the speed of the wall."""
+FADED = 0.01
+"""A touch is met with a short step where ignoring it would misplace this much energy, over accuracy and energy."""
+SMOOTH_BETA = 1.5
+"""omega h below which the steps take Newmark's beta = 1/12 (stable below 2.45), above it 1/4 (stable at any step)."""
+
+
+class StepError(RuntimeError):
+    """The engine warned, or the state is no longer finite, at the time given [s]."""
+
+    def __init__(self, what: str, t: float) -> None:
+        super().__init__(what)
+        self.t = t
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What the engine did: the pose at each step, and the velocity half a step before and after it.
+
+    Args:
+        t: times [s], shape (n,).
+        h: step lengths [s], shape (n,).
+        pose: x, z, theta [m, m, rad], shape (n, 3).
+        before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (n, 3).
+        beta: Newmark's beta of the contact rows in each step [-], shape (n,).
+        touches: how many touches were met with a short step.
+    """
+
+    t: Array
+    h: Array
+    pose: Array
+    before: Array
+    after: Array
+    beta: Array
+    touches: int = 0
+
+    @property
+    def velocity(self) -> Array:
+        """Velocities at the times of the poses, shape (n, 3)."""
+        return 0.5 * (self.before + self.after)
+
+
+def _check(data: mujoco.MjData, values: Array, t: float) -> None:
+    warned = [mujoco.mjtWarning(i).name for i, w in enumerate(data.warning) if w.number]
+    if warned or not np.isfinite(values).all():
+        raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
+
+
+def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, duration: float, newmark_beta: float) -> Steps:
+    """Steps of the model's own length, recorded natively, until `duration` [s] or until the wall lies on its face.
+
+    Raises:
+        StepError: if the engine warns or the state is not finite.
+    """
+    h = model.opt.timestep
+    total = max(1, round(duration / h)) + 1  # the last velocity needs the half step after it
+    spec = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    state = np.empty(mujoco.mj_stateSize(model, spec))
+    mujoco.mj_getState(model, data, state, spec)
+    chunks = [state[None]]
+    done = 0
+    with tqdm(total=total * h, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
+        while done < total:
+            steps = min(CHUNK, total - done)
+            run, _ = rollout.rollout(model, data, state[None], nstep=steps)
+            chunks.append(run[0])
+            done, state = done + steps, run[0, -1]
+            bar.update(steps * h)
+            _check(data, state, float(state[0]))
+            if abs(state[3]) > OVERTURNED:
+                break
+    states = np.concatenate(chunks)
+    fallen = np.flatnonzero(np.abs(states[:-1, 3]) > OVERTURNED)
+    count = int(fallen[0]) + 1 if fallen.size else done
+    return Steps(
+        t=h * np.arange(count),
+        h=np.full(count, h),
+        pose=states[:count, 1:4],
+        before=states[:count, 4:],
+        after=states[1 : count + 1, 4:],
+        beta=np.full(count, newmark_beta),
+    )
+
+
+class _Rows:
+    """The contact rows of a model, set in place for any step."""
+
+    def __init__(self, model: mujoco.MjModel, case: Case, contacts: Contacts) -> None:
+        faces = [contacts.base] + ([contacts.side] if case.side_stop and contacts.side else [])
+        self.model = model
+        self.k = np.concatenate([face.stiffness for face in faces])
+        self.c = np.concatenate([face.damping for face in faces])
+        self.weight = inverse_weight(case.block.mass)
+        self.held = HELD_MASSES * case.block.mass
+        self.frequency = contacts.highest_frequency(case.block, side_stop=case.side_stop)
+        self.known: dict[float, tuple[Array, Array, Array, float]] = {}
+
+    def beta(self, h: float) -> float:
+        return 1 / 12 if h * self.frequency < SMOOTH_BETA else 0.25
+
+    def follow(self, h: float, *, remember: bool) -> None:
+        """Set step, rows and friction; `remember` the rows of a step that will come again."""
+        rows = self.known.get(h) or self._rows(h)
+        if remember:
+            self.known[h] = rows
+        model = self.model
+        model.opt.timestep = h
+        model.pair_solref[:], model.pair_solimp[:, :2], model.pair_solreffriction[:, 1], model.opt.impratio = rows
+
+    def _rows(self, h: float) -> tuple[Array, Array, Array, float]:
+        inertia = np.maximum(newmark_inertia(self.k, self.c, h, self.beta(h)), least_inertia(self.weight))
+        d = impedance(inertia, self.weight)
+        scale = (1 - d) * self.weight
+        solref = -np.stack([scale * self.k, scale * self.c], axis=1)
+        sticks = self.model.pair_solreffriction[:, 1] < 0
+        return solref, np.stack([d, d], axis=1), np.where(sticks, -d / h, 0.0), float(self.held / inertia[0])
+
+
+def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contacts: Contacts, accuracy: float) -> Steps:
+    """Steps that fit the motion, until the case's duration or until the wall lies on its face.
+
+    The lengths follow from the contacts, the pivot's motion and an error estimate, never from the wall at hand:
+
+    * the short step from the highest frequency of the closed contacts, omega h = sqrt(SHORT accuracy);
+    * the longest from the rocking, p h = sqrt(LONG accuracy);
+    * between the two, a step is doubled after two in a row in which the acceleration changed by little, h |da| under a
+      quarter of CHANGE accuracy |v|, and halved when it changed by more than that; |.| weighs with the masses, and |v|
+      is the speed with which the wall arrived at its last touch;
+    * a step in which a point would touch, to second order in time, ends half a short step behind the touch, unless the
+      touch is too faint to matter (FADED). A face is straight, so that the next point of it to touch is the first or
+      the last of those that are open.
+
+    `data` has to be at the release, its velocity half a short step back, and `model` made for the short step.
+
+    Raises:
+        StepError: if the engine warns or the state is not finite.
+    """
+    wall, duration = case.block, case.duration
+    b, height, mass, inertia = wall.b, wall.h, wall.mass, wall.inertia
+    rows = _Rows(model, case, contacts)
+    short = model.opt.timestep
+    longest = max(short, math.sqrt(LONG * accuracy) / wall.p)
+    tolerated = (CHANGE * accuracy) ** 2
+    least_energy = 2 * contacts.uplift_energy(wall)
+    energy = max(2 * case.release_energy, least_energy)  # twice the kinetic energy that an impact is measured by
+    k_max, c_max = float(rows.k.max()), float(rows.c.max())
+    base_points, side_points = contacts.base.points, contacts.side.points if case.side_stop and contacts.side else 0
+    sin, cos, step = math.sin, math.cos, mujoco.mj_step
+    qpos, qvel, qacc = data.qpos, data.qvel, data.qacc
+
+    def gap(face: int, position: float, tau: float) -> float:
+        """Gap of a point after the time tau, to second order."""
+        half = 0.5 * tau * tau
+        turned = theta + tau * w_now + half * aw_now
+        value: float
+        if face == 0:
+            value = z + tau * vz_now + half * az_now + height - position * sin(turned) - height * cos(turned)
+        else:
+            value = x + tau * vx_now + half * ax_now + b - b * cos(turned) + position * sin(turned)
+        return value
+
+    rows.follow(short, remember=True)
+    record: list[tuple[float, ...]] = []
+    t, h, last_h = 0.0, short, short
+    x, z, theta = qpos.tolist()
+    vx, vz, w = qvel.tolist()
+    ax, az, aw = qacc.tolist()
+    jx = jz = jw = 0.0  # rates of the accelerations
+    fresh, calm, touches = True, 0, 0
+    with tqdm(total=duration, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
+        recorded, turned_to = -1.0, 0.0
+        while recorded < duration and abs(turned_to) <= OVERTURNED:  # a NaN ends the loop too
+            # accelerations and velocities at this very time, from the last step
+            ax_now, az_now, aw_now = ax + jx * last_h, az + jz * last_h, aw + jw * last_h
+            late = 0.5 * last_h
+            vx_now, vz_now, w_now = vx + ax_now * late, vz + az_now * late, w + aw_now * late
+
+            sine, lift = sin(theta), height * (1 - cos(theta))
+            candidates = [(0, p) for p in _open_ends(z + lift, -sine, b, base_points)]
+            if side_points:
+                shift = x + b * lift / height
+                candidates += [(1, p) for p in _open_ends(shift, sine, height, side_points)]
+            now, touch = h, False
+            for face, position in candidates:
+                if gap(face, position, now) <= 0:
+                    tau = _root(gap, face, position, now, 1e-3 * short)
+                    closing = (gap(face, position, tau + 1e-3 * short) - gap(face, position, tau)) / (1e-3 * short)
+                    if (0.25 * k_max * h * h + c_max * h) * closing * closing > FADED * accuracy * energy:
+                        now, touch = tau + 0.5 * short, True
+            if now != last_h:
+                late, lag = 0.5 * (now - last_h), last_h - 0.25 * (last_h + now)
+                vx, vz, w = vx - (ax + jx * lag) * late, vz - (az + jz * lag) * late, w - (aw + jw * lag) * late
+                qvel[:] = vx, vz, w
+                rows.follow(now, remember=not touch)
+            step(model, data)
+
+            ax_new, az_new, aw_new = qacc.tolist()
+            before = (t, now, x, z, theta, vx, vz, w)
+            recorded, turned_to = t, theta
+            vx, vz, w = qvel.tolist()
+            record.append((*before, vx, vz, w))
+            x, z, theta = qpos.tolist()
+            t += now
+            if fresh:
+                jx = jz = jw = 0.0
+                change, fresh = math.inf, False
+            else:
+                dx, dz, dw = ax_new - ax, az_new - az, aw_new - aw
+                change = now * now * (mass * (dx * dx + dz * dz) + inertia * dw * dw) / energy
+                jx, jz, jw = dx / last_h, dz / last_h, dw / last_h
+            ax, az, aw, last_h = ax_new, az_new, aw_new, now
+
+            if touch:
+                touches += 1
+                h, calm, fresh = short, 0, True
+                energy = max(mass * (vx * vx + vz * vz) + inertia * w * w, least_energy)
+            elif change > tolerated:
+                h, calm = max(0.5 * h, short), 0
+            elif 16 * change < tolerated:
+                calm += 1
+                if calm >= 2 and 2 * h <= longest:
+                    h, calm = 2 * h, 0
+            else:
+                calm = 0
+            if len(record) % 5000 == 0:
+                bar.update(t - bar.n)
+                _check(data, qpos, t)
+    _check(data, np.concatenate([qpos, qvel]), t)
+    history = np.array(record)
+    return Steps(
+        t=history[:, 0],
+        h=history[:, 1],
+        pose=history[:, 2:5],
+        before=history[:, 5:8],
+        after=history[:, 8:11],
+        beta=np.where(history[:, 1] * rows.frequency < SMOOTH_BETA, 1 / 12, 0.25),
+        touches=touches,
+    )
+
+
+def short_step(case: Case, contacts: Contacts, accuracy: float) -> float:
+    """The step that resolves the stiffest contact to `accuracy` [s]."""
+    frequency = contacts.highest_frequency(case.block, side_stop=case.side_stop)
+    return min(1.0, math.sqrt(SHORT * accuracy)) / frequency
+
+
+def _open_ends(offset: float, slope: float, half: float, points: int) -> tuple[float, ...]:
+    """Positions of the first and the last open point of a face, whose gap is offset + slope * position."""
+    low, high = offset - slope * half, offset + slope * half
+    if low > 0:
+        if high > 0:
+            return (-half, half)
+        if points == 2:
+            return (-half,)
+        last = math.ceil((-offset / slope + half) / (2 * half) * (points - 1)) - 1
+        return (-half, -half + 2 * half * last / (points - 1))
+    if high > 0:
+        if points == 2:
+            return (half,)
+        first = math.floor((-offset / slope + half) / (2 * half) * (points - 1)) + 1
+        return (-half + 2 * half * first / (points - 1), half)
+    return ()
+
+
+def _root(
+    gap: Callable[[int, float, float], float], face: int, position: float, latest: float, tolerance: float
+) -> float:
+    """The time at which a gap closes, from the bracket [0, latest] [s]; never early, late by the tolerance at most."""
+    low, high = 0.0, latest
+    gap_low, gap_high = gap(face, position, 0.0), gap(face, position, latest)
+    for _ in range(60):
+        share = gap_low / (gap_low - gap_high) if gap_low > gap_high else 0.5
+        middle = low + (high - low) * min(max(share, 0.05), 0.95)
+        value = gap(face, position, middle)
+        if value <= 0:
+            high, gap_high = middle, value
+        else:
+            low, gap_low = middle, value
+        if high - low < tolerance:
+            break
+    return high
