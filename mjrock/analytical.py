@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from .block import require_within
 from .case import Case
 from .response import Impact, Outcome, Response, describe
 from .restitution import Restitution
@@ -51,9 +52,10 @@ def solve_analytical(
         ValueError: for a tolerance or step that is not positive, or a side stop from which the wall does not rebound.
         RuntimeError: if the integration fails.
     """
-    for name, value in (("rtol", rtol), ("atol", atol), ("output_step", output_step), ("rest", rest)):
-        if not value > 0:
-            raise ValueError(f"{name} = {value:g} is outside the valid range {name} > 0")
+    require_within("rtol", rtol, 1e-14, 0.1)
+    require_within("atol", atol, 1e-16, 0.1)
+    require_within("output_step", output_step, 1e-7, 10.0, "s")
+    require_within("rest", rest, 1e-30, 0.1)
     if case.side_stop and not -1 <= e.lumped < 0:
         raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
     started = time.perf_counter()

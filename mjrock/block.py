@@ -15,10 +15,11 @@ GRAVITY = 9.81
 Real = TypeVar("Real", float, NDArray[np.float64])
 
 
-def require_within(name: str, value: float, low: float, high: float, unit: str) -> float:
+def require_within(name: str, value: float, low: float, high: float, unit: str = "") -> float:
     """Return `value` as a float; raise ValueError, with the value and the range, unless it lies within [low, high]."""
     if not low <= value <= high:  # a NaN fails too
-        raise ValueError(f"{name} = {value:g} {unit} is outside the valid range {low:g} to {high:g} {unit}")
+        unit = unit and f" {unit}"
+        raise ValueError(f"{name} = {value:g}{unit} is outside the valid range {low:g} to {high:g}{unit}")
     return float(value)
 
 
@@ -47,7 +48,7 @@ class Block:
         require_within("half height h", self.h, 5e-3, 100.0, "m")
         require_within("length", self.length, 1e-3, 1e3, "m")
         require_within("density", self.density, 100.0, 3e4, "kg/m3")
-        require_within("slenderness h/b", self.h / self.b, 1.0, 200.0, "(height over thickness)")
+        require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
 
     @classmethod
     def from_size(cls, thickness: float, height: float, length: float = 1.0, density: float = 2000.0) -> Block:

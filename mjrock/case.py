@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 
 from .block import Block, require_within
@@ -37,6 +38,12 @@ class Case:
         require_within("release rotation theta0", self.theta0, lowest, math.pi / 2, "rad")
         require_within("duration", self.duration, 1e-6, 1e6, "s")
         require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s")
+        if abs(self.theta0) > 2 * self.block.alpha:
+            warnings.warn(
+                f"theta0 = {self.theta0:g} rad is {abs(self.theta0) / self.block.alpha:.3g} alpha: "
+                "the wall overturns from 1 alpha; rotations are radians",
+                stacklevel=3,
+            )
         if self.motion is not None:
             raise ValueError("ground motion is not simulated in this version; motion must be None")
 
@@ -47,8 +54,8 @@ class Case:
 
     @property
     def direction(self) -> float:
-        """Sign of the rotation that the wall is released to, +1 or -1."""
-        return math.copysign(1.0, self.theta0 if self.theta0 else self.omega0)
+        """Sign of the rotation that the wall is released to, +1 or -1; a side stop leaves only +1."""
+        return 1.0 if self.side_stop else math.copysign(1.0, self.theta0 if self.theta0 else self.omega0)
 
     @property
     def released_outwards(self) -> bool:

@@ -57,6 +57,16 @@ class Comparison:
         return _columns(*(r.peaks[skip:] / alpha for r in (self.reference, self.candidate)))
 
     @property
+    def first_rebound_peak(self) -> tuple[float, float]:
+        """The first rotation maximum after an impact as a share of alpha, reference and candidate [-]."""
+        return _first(self.rebound_peaks)
+
+    @property
+    def first_impact_time(self) -> tuple[float, float]:
+        """Time of the first impact, reference and candidate [s]."""
+        return _first(self.impact_times)
+
+    @property
     def outcomes(self) -> tuple[Outcome, Outcome]:
         """How the reference and the candidate ended."""
         return self.reference.outcome, self.candidate.outcome
@@ -138,6 +148,10 @@ def _columns(left: Array | list[float], right: Array | list[float]) -> Array:
     table = np.full((max(len(left), len(right)), 2), np.nan)
     table[: len(left), 0], table[: len(right), 1] = left, right
     return table
+
+
+def _first(table: Array) -> tuple[float, float]:
+    return (float(table[0, 0]), float(table[0, 1])) if len(table) else (math.nan, math.nan)
 
 
 def _labels(reference: Response, candidate: Response) -> tuple[str, str]:

@@ -18,10 +18,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .block import Real
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP: MuJoCo clamps an impedance outside it without a word, and the stiffness with it."""
+
+
+OVERDAMPED = 0.2
+"""c h W above which a dashpot is taken at the end of the step instead of centred in it [-]. A contact's own inverse
+mass is up to six times W, so that the centred dashpot would still leave a quarter of the velocity here."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +77,25 @@ def least_beta(k: float, c: float, timestep: float, inverse_weight: float) -> fl
     return (least_inertia(inverse_weight) - timestep * c / 2) / (timestep**2 * k)
 
 
+def lag_inertia(c: float | NDArray[np.float64], timestep: float, inverse_weight: float) -> NDArray[np.float64]:
+    """What a row's inertia takes on top for a dashpot that is stiff for the step, m_i = h c instead of h c/2 [kg].
+
+    A dashpot that would stop its contact within the step would, centred in the step, throw it back instead. With this
+    it acts on the velocity at the end of the step, and stops what it should stop.
+    """
+    return np.where(c * timestep * inverse_weight > OVERDAMPED, timestep * c / 2, 0.0)
+
+
+def sound_beta(k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float) -> float:
+    """The Newmark beta to take where `newmark_beta` is asked for.
+
+    It is larger where MuJoCo would clamp the row (`least_beta`), and where the dashpot is stiff for the step
+    (`lag_inertia`).
+    """
+    newmark_beta += float(lag_inertia(c, timestep, inverse_weight)) / (timestep**2 * k)
+    return max(newmark_beta, least_beta(k, c, timestep, inverse_weight))
+
+
 def contact_parameters(
     k: float, c: float, *, timestep: float, inverse_weight: float, newmark_beta: float = 0.25
 ) -> ContactParameters:
@@ -114,8 +141,13 @@ def contact_stiffness(
 
     Raises:
         ValueError: if solref is not in the direct (negative) format, or the impedance is not constant or is one that
-            MuJoCo would clamp.
+            MuJoCo would clamp, or the weight is not positive.
     """
+    if len(solref) < 2 or len(solimp) < 2 or not 0 < inverse_weight < float("inf"):
+        raise ValueError(
+            f"solref = {tuple(solref)}, solimp = {tuple(solimp)} and inverse_weight = {inverse_weight:g} 1/kg: "
+            "two and at least two numbers and a positive weight are needed"
+        )
     d, d_width = solimp[0], solimp[1]
     low, high = IMPEDANCE_RANGE
     if not (solref[0] < 0 and solref[1] <= 0):

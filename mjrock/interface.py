@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,12 @@ from .restitution import Restitution
 
 Law = Callable[[Block, Restitution, float], tuple[float, float]]
 Array = NDArray[np.float64]
+
+
+def _require_points(points: int) -> None:
+    require_within("contact points", points, 2, 1000)
+    if points != int(points):
+        raise ValueError(f"contact points = {points:g} is not a whole number; the valid range is 2 to 1000")
 
 
 def contact_lines(face: float, points: int) -> tuple[Array, Array]:
@@ -73,8 +80,10 @@ class Interface:
 
     def __post_init__(self) -> None:
         require_within("interface stiffness k_n", self.k_n, 1e4, 1e14, "N/m3")
-        require_within("damping ratio xi", self.xi, 0.0, 100.0, "(a fraction, not a percentage)")
-        require_within("contact points", self.points, 2, 1000, "")
+        require_within("damping ratio xi", self.xi, 0.0, 100.0)
+        if self.xi > 1:
+            warnings.warn(f"xi = {self.xi:g} is {self.xi:.0%} of critical; damping ratios are fractions", stacklevel=3)
+        _require_points(self.points)
 
     @cached_property
     def _lines(self) -> tuple[Array, Array]:
@@ -137,7 +146,7 @@ class Contacts:
         Raises:
             ValueError: for a value outside its range, or a base too soft for the wall to stand on.
         """
-        require_within("contact points", points, 2, 1000, "")
+        _require_points(points)
         require_within("base stiffness k_n", k_base, 1e4, 1e14, "N/m3")
         omega = reference_frequency(wall, k_base, points)
         base = Interface(k_base, xi_base, 2 * wall.b, wall.length, omega, points)
@@ -166,6 +175,11 @@ class Contacts:
         Raises:
             ValueError: as `from_damping`, and what the law raises.
         """
+        for name, k in (("base", k_base), ("side", k_side)):
+            if k is not None:
+                require_within(f"{name} stiffness k_n", k, 1e4, 1e14, "N/m3")
+        if k_side is not None and e.side >= 0:
+            raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
         xi_base, xi_side = law(wall, e, k_base)
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(

@@ -2,7 +2,8 @@
 
 The text is complete: stock MuJoCo and its viewer load it, the keyframe `release` tilts the wall, and stepping it is the
 simulation. Contacts are explicit `<pair>` elements between small spheres, centred on the contact points of the wall,
-and planes lowered by their radius, so that gap and lever are those of the point at every rotation.
+and planes set off by their radius, so that gap and lever are those of the point at every rotation. (Upwards it is the
+wall that is set off: MuJoCo takes a static geom within 1e-6 m of the origin to be at the origin.)
 """
 
 from __future__ import annotations
@@ -12,16 +13,20 @@ from xml.etree.ElementTree import Comment, Element, SubElement, indent, tostring
 from ._version import __version__
 from .block import GRAVITY, require_within
 from .case import Case
-from .contact import ContactParameters, contact_parameters, friction_that_holds, least_beta
+from .contact import ContactParameters, contact_parameters, friction_that_holds, sound_beta
 from .interface import Contacts, Interface
 from .pose import release_pose
 
 RADIUS = 1e-6
 """Radius of the contact spheres in half heights [-]: friction acts at their surface, so it is tiny."""
-FRICTION = 30.0
-"""Friction coefficient of the edges of the base [-]. The base is not to slip when a side impact throws it while it is
-hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %, from mu = 10 nothing changes
-(`scripts/friction.py`)."""
+EDGE_FRICTION = 1.0
+"""Friction coefficient of an edge of the base [-]. It holds any wall in free rocking, whose base is pushed with at most
+(3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of what loads it. It is no larger because two edges that both stick while
+the wall turns over work against each other: with mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a third too much."""
+TOE_FRICTION = 30.0
+"""The same of the outer edge of a wall with a side stop [-]. It is not to slip when the side impact throws the base
+while it is hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %, from mu = 10 nothing
+changes (`scripts/friction.py`)."""
 HELD_MASSES = 1e3
 """Inertia of a friction row in masses of the wall [-]: a horizontal acceleration a creeps at a h / HELD_MASSES."""
 
@@ -46,8 +51,8 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
         case: the wall and its release.
         contacts: the interfaces.
         timestep: MuJoCo's step, which the contact rows depend on [s].
-        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.contact`. A row whose inertia would fall
-            below what MuJoCo represents takes the smallest beta that does not.
+        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.contact`. Rows that MuJoCo would clamp,
+            or whose dashpot is stiff for the step, take a larger one (`mjrock.contact.sound_beta`).
 
     Raises:
         ValueError: if the contacts do not fit the case, or a contact cannot be represented at this step.
@@ -79,13 +84,13 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     world = _add(root, "worldbody")
     _add(world, "light", name="sun", directional="true", castshadow="false", dir=(-0.4, 0.5, -0.8))
     _add(world, "camera", name="front", pos=(0.2 * h, -6 * h, 1.3 * h), xyaxes=(1, 0, 0, 0, 0.05, 1), fovy="28")
-    _add(world, "geom", name="base", type="plane", size=(0, 0, 1), pos=(0, 0, -radius), material="paving")
+    _add(world, "geom", name="base", type="plane", size=(0, 0, 1), material="paving")
     if case.side_stop:
         plane = (-b - radius, 0, h)
         _add(world, "geom", name="side", type="plane", size=(h, 0.6 * length, 1), pos=plane, zaxis=(1, 0, 0), group="3")
         extent = (b, 0.6 * length, h)
         _add(world, "geom", name="side_wall", type="box", size=extent, pos=(-2 * b, 0, h), material="plaster")
-    body = _add(world, "body", name="wall", pos=(0, 0, h))
+    body = _add(world, "body", name="wall", pos=(0, 0, h + radius))
     about_x, about_z = (wall.mass * (length**2 + 4 * half**2) / 12 for half in (h, b))
     _add(body, "inertial", pos=(0, 0, 0), mass=wall.mass, diaginertia=(about_x, wall.inertia, about_z))
     _add(body, "joint", name="x", type="slide", axis=(1, 0, 0))
@@ -94,11 +99,13 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     _add(body, "geom", name="wall", type="box", size=(b, length / 2, h), material="brick")
 
     pairs = _add(root, "contact")
-    grip: dict[str, object] = {"condim": "3", "friction": (FRICTION, FRICTION, 0, 0, 0), "solreffriction": hold}
     for i, (x, row) in enumerate(zip(contacts.base.positions, base_rows, strict=True)):
-        edge = i in (0, len(base_rows) - 1)
+        grip: dict[str, object] = {"condim": "1"}
+        if i in (0, len(base_rows) - 1):
+            mu = TOE_FRICTION if case.side_stop and i else EDGE_FRICTION
+            grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": hold}
         sphere = {"size": radius, "pos": (x, 0, -h)}
-        _add_point(body, pairs, f"base_{i}", sphere, "base", row, grip if edge else {"condim": "1"})
+        _add_point(body, pairs, f"base_{i}", sphere, "base", row, grip)
     facts = {"k_n_base": contacts.base.k_n, "xi_base": contacts.base.xi}
     if case.side_stop:
         assert contacts.side is not None
@@ -139,7 +146,7 @@ def _rows(interface: Interface, timestep: float, weight: float, newmark_beta: fl
             c,
             timestep=timestep,
             inverse_weight=weight,
-            newmark_beta=max(newmark_beta, least_beta(k, c, timestep, weight)),
+            newmark_beta=sound_beta(k, c, timestep, weight, newmark_beta),
         )
         for k, c in zip(interface.stiffness.tolist(), interface.damping.tolist(), strict=True)
     ]

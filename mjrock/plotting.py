@@ -15,8 +15,8 @@ from .response import Response
 
 STYLES: dict[str, dict[str, Any]] = {
     "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
-    "MuJoCo": {"label": "MuJoCo", "color": "#d95f02", "linestyle": "--", "linewidth": 1.6},
-    "compliant": {"label": "contact law, SciPy", "color": "#1b6ca8", "linestyle": ":", "linewidth": 1.8},
+    "MuJoCo": {"label": "MuJoCo", "color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
+    "compliant": {"label": "contact law, SciPy", "color": "#12406b", "linestyle": ":", "linewidth": 1.5, "zorder": 3},
 }
 """Lines that a black-and-white print still tells apart."""
 
@@ -48,18 +48,23 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     rotation(above, responses).set_xlabel("")
     energy(below, responses)
     below.set_xlim(0, max(r.t[-1] for r in responses))
-    above.legend(loc="upper right", frameon=False)
+    below.legend(loc="upper right", frameon=False)  # where the energy has gone
     above.set_title(title, fontsize=10)
     return figure
 
 
-def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2) -> Figure:
-    """Rotation histories of several cases, one panel each, in the manner of the paper's Figure 4."""
+def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top: float | None = None) -> Figure:
+    """Rotation histories of several cases, one panel each, in the manner of the paper's Figure 4.
+
+    `top` cuts the panels off at a rotation in multiples of alpha, to show small rebounds large.
+    """
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(3.4 * columns, 2.2 * rows), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     for ax, (title, responses) in zip(axes.flat, panels, strict=False):
         rotation(ax, responses).set_title(title, fontsize=9)
+        if top is not None:
+            ax.set_ylim(-0.1 * top, top)
     for ax in axes.flat[len(panels) :]:
         ax.set_visible(False)
     for ax in axes[:-1].flat:
@@ -75,11 +80,12 @@ def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], ord
     steps = np.asarray(steps, dtype=float)
     for (label, values), marker in zip(errors.items(), "osD^v", strict=False):
         ax.loglog(steps * 1e3, values, marker=marker, markersize=4, linewidth=1.2, label=label)
+    ax.set_xticks(steps * 1e3, minor=False)
+    ax.set_xticks([], minor=True)
     anchor = min(float(np.min(np.asarray(v))) for v in errors.values())
-    slope = 0.5 * anchor * (steps / steps.min()) ** order
+    slope = 0.25 * anchor * (steps / steps.min()) ** order
     ax.loglog(steps * 1e3, slope, color="0.5", linewidth=0.8, linestyle="--", label=f"order {order}")
-    for axis_format in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
-        axis_format("{x:g}")
+    ax.xaxis.set_major_formatter("{x:g}")
     ax.set_xlabel("step $h$ [ms]")
     ax.grid(True, which="major", linewidth=0.4, color="0.9")
     ax.legend(frameon=False, fontsize=8)

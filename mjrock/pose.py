@@ -56,7 +56,7 @@ def release_pose(case: Case, contacts: Contacts) -> tuple[Array, Array]:
     (1 % of the release energy on the paper's wall).
     """
     wall, theta = case.block, case.theta0
-    toe = math.copysign(wall.b, theta if theta else case.omega0)
+    toe = case.direction * wall.b
     sine, cosine = math.sin(theta), math.cos(theta)
     # sum k_i max(0, depth_i - z) = m g, with the deepest points loaded first
     depth = contacts.base.positions * sine + wall.h * (cosine - 1)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .block import Block
 from .case import Case
 from .ledger import Ledger
 
@@ -96,16 +95,23 @@ class Response:
     def restitution(self) -> Array:
         """|e| of each rebound, from successive peaks [-], shape (m - 1,).
 
-        e_n = sqrt(V_(n+1) / V_n), V the potential energy of the rigid wall at a rotation peak. Every solver is measured
-        with this one rule, which is exact for a rigid wall, and the energy that a compliant base still stores under a
-        pivoting wall is not taken for a loss.
+        e_n = sqrt(V_(n+1) / V_n), V the potential energy of the rigid wall at a rotation peak, or its whole energy at
+        release. Every solver is measured with this one rule, which is exact for a rigid wall, and the energy that a
+        compliant base still stores under a pivoting wall is not taken for a loss.
         """
-        return restitution_of(self.case.block, self.peaks)
+        return restitution_of(peak_energies(self.case, self.peaks))
 
 
-def restitution_of(wall: Block, peaks: Array) -> Array:
-    """|e| between successive rotation peaks [-]; NaN after a peak of no energy."""
-    energy = wall.potential_energy(np.asarray(peaks, dtype=float))
+def peak_energies(case: Case, peaks: Array) -> Array:
+    """Energy of the rigid wall at its rotation peaks [J], shape (m,); the release counts with its velocity."""
+    energy: Array = case.block.potential_energy(np.asarray(peaks, dtype=float))
+    if len(energy) and not case.released_outwards:
+        energy[0] = case.release_energy
+    return energy
+
+
+def restitution_of(energy: Array) -> Array:
+    """|e| between successive energies [-]; NaN after a peak of no energy."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.sqrt(energy[1:] / energy[:-1])
 
@@ -140,6 +146,7 @@ def rocking_history(
     if not case.released_outwards:
         times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
 
+    energies = peak_energies(case, sizes)
     impacts = []
     for i, start in enumerate(times):
         last = i == len(times) - 1
@@ -157,8 +164,7 @@ def rocking_history(
         else:
             j = first + int(np.argmin(segment))
             when = t[j]
-        before = float(wall.potential_energy(float(sizes[i])))
-        after = left_over if last else float(wall.potential_energy(float(sizes[i + 1])))
+        before, after = float(energies[i]), left_over if last else float(energies[i + 1])
         arriving, leaving = -s, s if case.side_stop else (-s if last else math.copysign(1.0, theta[stop]))
         impacts.append(
             Impact(

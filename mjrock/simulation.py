@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 
 import mujoco
 import numpy as np
@@ -17,7 +18,7 @@ from .ledger import Ledger
 from .mjcf import inverse_weight, wall_mjcf
 from .pose import mechanical_energy
 from .response import Response, ending, rocking_history
-from .stepping import StepError, Steps, fitted_steps, fixed_steps, short_step
+from .stepping import SMOOTH, StepError, Steps, fitted_steps, fixed_steps, short_step
 
 Array = NDArray[np.float64]
 ENERGY_GAIN = 1e-3
@@ -74,6 +75,45 @@ def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, floa
     return float(gains[worst]), float(marks[worst + 1])
 
 
+class _Run:
+    """One run of the engine, checked: its steps, its energy, its peaks and impacts."""
+
+    def __init__(self, case: Case, contacts: Contacts, h: float, accuracy: float | None, newmark_beta: float) -> None:
+        wall = case.block
+        sound = automatic_timestep(wall, contacts, side_stop=case.side_stop)
+
+        def broken(what: str, t: float) -> SimulationError:
+            if accuracy is not None:
+                advice = f"lower accuracy = {accuracy:g}, or fix the step: the largest sound one is {sound:.3g} s"
+            elif h > sound * (1 + 1e-9):
+                advice = f"the largest sound step is {sound:.3g} s"
+            else:
+                advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
+            return SimulationError(f"{what} at t = {t:.4g} s with a step of {h:.3g} s; {advice}")
+
+        model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), wall)
+        data = release(model)
+        try:
+            if accuracy is None:
+                self.steps = fixed_steps(model, data, case.duration, newmark_beta)
+            else:
+                self.steps = fitted_steps(model, data, case, contacts, accuracy)
+        except StepError as error:
+            raise broken(str(error), error.t) from None
+        t, self.theta, self.omega = self.steps.t, self.steps.pose[:, 2], self.steps.velocity[:, 2]
+        self.energy = mechanical_energy(case, contacts, self.steps.pose, self.steps.velocity)
+        threshold = contacts.uplift_rotation(wall)
+        times, self.peaks, self.impacts = rocking_history(case, t, self.theta, self.omega, threshold)
+
+        # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
+        standing = np.flatnonzero(np.abs(self.theta) <= wall.alpha)
+        count = int(standing[-1]) + 1 if standing.size else 1
+        gain, when = energy_gain(times[times <= t[count - 1]], t[:count], self.energy[:count])
+        scale = max(float(self.energy[0]), contacts.uplift_energy(wall))
+        if not gain <= ENERGY_GAIN * scale:
+            raise broken(f"{gain:.3g} J, {gain / scale:.2%} of the release energy, appeared from nowhere", when)
+
+
 def simulate(
     case: Case,
     contacts: Contacts,
@@ -90,7 +130,8 @@ def simulate(
         case: the wall, its release, its sides.
         contacts: the interfaces.
         timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.stepping`.
-        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1.
+        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1. A run in
+            which energy appears from nowhere is taken back and repeated with a tenth of it, twice at most.
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], see `mjrock.contact`.
         output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
             all; fitted steps are interpolated, None stands for 1 ms.
@@ -100,10 +141,13 @@ def simulate(
         ValueError: if the contacts do not fit the case or cannot be represented at this step, or for a value outside
             its range.
         SimulationError: if the run produces a NaN, an engine warning, or more energy than was there before.
+
+    Warns:
+        UserWarning: if a fixed step is too long to resolve the contacts.
     """
     wall = case.block
     contacts.require_fit(wall, side_stop=case.side_stop)
-    require_within("accuracy", accuracy, 1e-8, 0.1, "-")
+    require_within("accuracy", accuracy, 1e-8, 0.1)
     if output_step is not None:
         require_within("output_step", output_step, 1e-9, case.duration, "s")
     sound = automatic_timestep(wall, contacts, side_stop=case.side_stop)
@@ -113,35 +157,25 @@ def simulate(
         if timestep is None
         else require_within("timestep", timestep, 1e-9, 1.0, "s")
     )
+    if h * contacts.highest_frequency(wall, side_stop=case.side_stop) > SMOOTH:
+        warnings.warn(
+            f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
+            f"the largest sound step is {sound:.3g} s",
+            stacklevel=2,
+        )
     started = time.perf_counter()
-    model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), wall)
-    data = release(model)
-
-    def broken(what: str, t: float) -> SimulationError:
-        if fitted:
-            return SimulationError(
-                f"{what} at t = {t:.4g} s with fitted steps from {h:.3g} s at accuracy = {accuracy:g}; "
-                f"lower the accuracy, or take a fixed step: the largest sound one is {sound:.3g} s"
-            )
-        advice = f"the largest sound step is {sound:.3g} s" if h > sound * (1 + 1e-9) else "check the contacts"
-        return SimulationError(f"{what} at t = {t:.4g} s with a step of {h:.3g} s; {advice}")
-
-    try:
-        if fitted:
-            steps = fitted_steps(model, data, case, contacts, accuracy)
-        else:
-            steps = fixed_steps(model, data, case.duration, newmark_beta)
-    except StepError as error:
-        raise broken(str(error), error.t) from None
+    used = accuracy if fitted else None
+    while True:
+        try:
+            run = _Run(case, contacts, h, used, newmark_beta)
+            break
+        except SimulationError:
+            if used is None or used < 0.02 * accuracy:
+                raise
+            used /= 10
+            h = short_step(case, contacts, used)
+    steps, theta, omega, energy = run.steps, run.theta, run.omega, run.energy
     stepped = time.perf_counter() - started
-
-    theta, omega = steps.pose[:, 2], steps.velocity[:, 2]
-    energy = mechanical_energy(case, contacts, steps.pose, steps.velocity)
-    times, peaks, impacts = rocking_history(case, steps.t, theta, omega, contacts.uplift_rotation(wall))
-    worst, when = energy_gain(times, steps.t, energy)
-    scale = max(float(energy[0]), contacts.uplift_energy(wall))
-    if not worst <= ENERGY_GAIN * scale:
-        raise broken(f"{worst:.3g} J, {worst / scale:.2%} of the release energy, appeared from nowhere", when)
     outcome, message = ending(case, steps.t, theta, energy, contacts.uplift_energy(wall))
 
     t = _output_times(steps, case, output_step, fitted=fitted)
@@ -159,8 +193,8 @@ def simulate(
         theta=theta,
         omega=omega,
         energy=np.interp(t, steps.t, energy),
-        impacts=impacts,
-        peaks=peaks,
+        impacts=run.impacts,
+        peaks=run.peaks,
         outcome=outcome,
         message=message,
         ledger=book,
@@ -172,7 +206,7 @@ def simulate(
             "longest_timestep": float(steps.h.max()),
             "sound_timestep": sound,
             "touches": steps.touches,
-            "accuracy": accuracy if fitted else None,
+            "accuracy": used,
             "newmark_beta": newmark_beta,
             "mujoco": mujoco.__version__,
         },

@@ -37,7 +37,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         e = mr.Restitution.from_geometry(wall.alpha)
     else:
         e = mr.Restitution.from_lumped(args.lumped, wall.alpha)
-    contacts = mr.Contacts.from_law(wall, e, k_base=args.k_base, k_side=args.k_side, points=args.points)
+    k_side = args.k_side if args.sides == 1 else None
+    contacts = mr.Contacts.from_law(wall, e, k_base=args.k_base, k_side=k_side, points=args.points)
     duration = min(args.duration, 1.0) if args.quick else args.duration
     case = mr.Case(wall, theta0=args.release * wall.alpha, duration=duration, side_stop=args.sides == 1)
     out = cli.folder(args.out)
@@ -45,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     reference = mr.solve_analytical(case, e)
     candidate = mr.simulate(case, contacts, args.timestep, accuracy=args.accuracy)
     comparison = mr.compare(reference, candidate)
-    responses = [reference, candidate]
+    responses = [reference, candidate]  # the last is drawn on top
     if args.check:
         responses.append(mr.solve_compliant(case, contacts))
 
@@ -55,8 +56,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     title = f"2h = {2 * wall.h:g} m, 2b = {2 * wall.b:g} m, {'one' if case.side_stop else 'two'}-sided"
     plotting.save(plotting.comparison(responses, title), out / "comparison.png")
 
-    assert contacts.side is not None
-    side = f", side {contacts.side.xi:.2%} (e = {e.side:.3f})" if case.side_stop else ""
+    side = f", side {contacts.side.xi:.2%} (e = {e.side:.3f})" if contacts.side else ""
     print(
         f"wall {2 * wall.b:g} x {2 * wall.h:g} x {wall.length:g} m, "
         f"alpha = {wall.alpha:.4f} rad, p = {wall.p:.3f} rad/s"

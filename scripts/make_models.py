@@ -69,7 +69,9 @@ class Model:
         assert contacts.side is not None
         side = f"| side stop | k_n = {contacts.side.k_n:g} N/m3 | xi_s = {contacts.side.xi:.4f} |\n"
         e = f"e_1s = {self.e.lumped:.4f}" if self.case.side_stop else f"e_2s = {self.e.base:.4f}"
-        inside = 1.4 <= wall.R <= 2.8 and 4 <= wall.slenderness <= 15
+        law = mr.PUBLISHED
+        covered = ((wall.R, law.R_range), (wall.slenderness, law.slenderness_range))
+        inside = all(low <= value <= high for value, (low, high) in covered)
         return f"""# {self.title}
 
 Made by `scripts/make_models.py`; a test makes it again and compares.
@@ -80,7 +82,7 @@ Made by `scripts/make_models.py`; a test makes it again and compares.
 | height 2h | {2 * wall.h:.6g} | m |
 | length | {wall.length:g} | m |
 | density | {wall.density:g} | kg/m3 |
-| slenderness alpha = arctan(b/h) | {wall.alpha:.6g} | rad |
+| angle of the diagonal alpha = arctan(b/h) | {wall.alpha:.6g} | rad |
 | half diagonal R | {wall.R:.6g} | m |
 | frequency parameter p = sqrt(3 g / 4 R) | {wall.p:.6g} | rad/s |
 | release theta_0 / alpha | {self.case.theta0 / wall.alpha:g} | - |

@@ -55,6 +55,7 @@ def test_a_law_of_the_users_own(wall, e):
         ({"xi_base": -0.1}, r"xi = -0.1"),
         ({"xi_base": math.nan}, r"xi = nan"),
         ({"points": 1}, r"points = 1"),
+        ({"points": 2.5}, r"points = 2.5 is not a whole number"),
         ({"k_base": 1e6}, r"cannot hold the wall upright; the valid range is k_n > 1.92e\+06 N/m3"),
     ],
 )
@@ -71,3 +72,13 @@ def test_contacts_have_to_fit_the_case(wall, contacts, one_sided):
     for solve in (mr.simulate, mr.solve_compliant):
         with pytest.raises(ValueError, match="give k_side"):
             solve(one_sided, no_side)
+
+
+def test_percent_instead_of_a_fraction_is_noticed(wall):
+    with pytest.warns(UserWarning, match="xi = 5.3 is 530% of critical"):
+        mr.Contacts.from_damping(wall, k_base=K_N, xi_base=5.3)
+
+
+def test_a_side_that_does_not_rebound_has_no_damping(wall):
+    with pytest.raises(ValueError, match=r"side restitution = 0\.47 is no rebound"):
+        mr.Contacts.from_law(wall, mr.Restitution(0.97, 0.47), k_base=K_N, k_side=K_N)

@@ -21,8 +21,9 @@ def test_axes_carry_units_and_are_returned(responses):
 
 def test_lines_are_told_apart_without_colour(responses):
     ax = plotting.rotation(Figure().subplots(), responses)
-    styles = [line.get_linestyle() for line in ax.get_lines()[:2]]
+    styles = [(line.get_linestyle(), line.get_linewidth()) for line in ax.get_lines()[:2]]
     assert len(set(styles)) == 2
+    assert len({(s["linestyle"], s["linewidth"]) for s in plotting.STYLES.values()}) == len(plotting.STYLES)
     np.testing.assert_allclose(ax.get_lines()[0].get_ydata().max(), 0.5)
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.response import restitution_of, rocking_history
+from mjrock.response import peak_energies, restitution_of, rocking_history
 
 
 def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):
@@ -42,5 +42,6 @@ def test_maxima_on_the_side_of_the_stop_are_not_rocking(one_sided, two_sided):
 def test_restitution_of_peaks(wall):
     energy = wall.potential_energy(0.05)
     peaks = [0.05, wall.rotation_at(0.81 * energy), wall.rotation_at(0.81 * 0.25 * energy), 0.0, 0.0]
-    np.testing.assert_allclose(restitution_of(wall, peaks)[:3], [0.9, 0.5, 0.0], atol=1e-7)
-    assert np.isnan(restitution_of(wall, peaks)[3])
+    found = restitution_of(peak_energies(mr.Case(wall, 0.05, 1.0), peaks))
+    np.testing.assert_allclose(found[:3], [0.9, 0.5, 0.0], atol=1e-7)
+    assert np.isnan(found[3])

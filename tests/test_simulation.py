@@ -7,7 +7,7 @@ import pytest
 
 import mjrock as mr
 from mjrock import simulation, stepping
-from mjrock.mjcf import FRICTION
+from mjrock.mjcf import EDGE_FRICTION, TOE_FRICTION
 from paper import K_N
 
 
@@ -96,7 +96,10 @@ def test_energy_from_nowhere_is_an_error_that_names_a_sound_step(wall):
     contacts = mr.Contacts.from_damping(wall, k_base=3e9, xi_base=0.001)
     case = mr.Case(wall, 0.5 * wall.alpha, 3.0, side_stop=False)
     sound = mr.automatic_timestep(wall, contacts, side_stop=False)
-    with pytest.raises(mr.SimulationError, match=r"with a step of 0.005 s; the largest sound step is ") as caught:
+    with (
+        pytest.warns(UserWarning, match="a step of 0.005 s does not resolve the contacts"),
+        pytest.raises(mr.SimulationError, match=r"with a step of 0.005 s; the largest sound step is ") as caught,
+    ):
         mr.simulate(case, contacts, 5e-3, newmark_beta=0.0)
     assert f"{sound:.3g} s" in str(caught.value)
     mr.simulate(case, contacts, sound, newmark_beta=0.0)  # and it is sound
@@ -166,12 +169,13 @@ def test_the_rows_of_the_wall_are_the_law(one_sided, contacts, wall):
             force = -(k * contact.dist + c * velocity[row] + inertia * acceleration[row])
             # while an edge slides, the elliptic cone adds some of its friction to the normal force
             along = np.hypot(*data.efc_force[row + 1 : row + 3]) if contact.dim == 3 else 0.0
-            slides = along > 0.999 * FRICTION * data.efc_force[row]
+            mu = TOE_FRICTION if name == "base_1" else EDGE_FRICTION
+            slides = along > 0.999 * mu * data.efc_force[row]
             allowed = 1e-2 if slides else 1e-6
-            sliding += slides
+            sliding += slides and name == "base_1"
             assert data.efc_force[row] == pytest.approx(max(0.0, force), abs=allowed * wall.weight)
     assert {"base_0", "base_1", "side_1"} <= seen
-    assert sliding < 20  # of 200 steps
+    assert sliding < 20  # of 200 steps: the outer edge holds, the inner one gives way
 
 
 def _is(model, contact, pair):

@@ -46,9 +46,21 @@ class TestVerification:
             assert found.restitution[0, 1] == pytest.approx(found.restitution[0, 0], rel=tolerance)
             assert found.rms <= 0.003
 
+    @pytest.mark.parametrize("slenderness", [4, 10, 15])
+    @pytest.mark.parametrize("xi_base", [0.0, 0.02])
+    def test_soft_bases(self, slenderness, xi_base):
+        """Where both edges stay closed over a large rotation, friction is not to work against itself."""
+        alpha = math.atan(1 / slenderness)
+        soft = mr.Block(b=2 * math.sin(alpha), h=2 * math.cos(alpha))
+        contacts = mr.Contacts.from_damping(soft, k_base=5e7, xi_base=xi_base, k_side=5e7, xi_side=0.01)
+        for side_stop in (False, True):
+            case = mr.Case(soft, 0.5 * alpha, 2.0, side_stop=side_stop)
+            law, run = mr.solve_compliant(case, contacts), mr.simulate(case, contacts, accuracy=1e-4)
+            assert run.impacts[0].restitution == pytest.approx(law.impacts[0].restitution, abs=1e-3)
+
     def test_a_base_that_slips_fails(self, one_sided, contacts, monkeypatch):
         """The twin that must fail: with mu = 1 the side impact throws the base along."""
-        monkeypatch.setattr("mjrock.mjcf.FRICTION", 1.0)
+        monkeypatch.setattr("mjrock.mjcf.TOE_FRICTION", 1.0)
         found = mr.compare(mr.solve_compliant(one_sided, contacts), mr.simulate(one_sided, contacts, 1e-4))
         assert found.restitution[0, 1] < 0.9 * found.restitution[0, 0]
 
@@ -57,7 +69,7 @@ class TestVerification:
         """At a step of 10 us friction coefficient and row inertia can be varied a hundredfold without effect."""
         exact = mr.solve_compliant(one_sided, contacts).restitution[0]
         for mu, masses in ((10.0, 1e3), (30.0, 1e1), (30.0, 1e3), (30.0, 1e5), (1000.0, 1e3)):
-            monkeypatch.setattr("mjrock.mjcf.FRICTION", mu)
+            monkeypatch.setattr("mjrock.mjcf.TOE_FRICTION", mu)
             monkeypatch.setattr("mjrock.mjcf.HELD_MASSES", masses)
             run = mr.simulate(mr.Case(FIGURE_3, one_sided.theta0, 1.2), contacts, 1e-5)
             assert run.restitution[0] == pytest.approx(exact, rel=0.002)
