@@ -11,7 +11,7 @@ from __future__ import annotations
 from xml.etree.ElementTree import Comment, Element, SubElement, indent, tostring
 
 from ._version import __version__
-from .block import GRAVITY, require_within
+from .block import GRAVITY, Block, require_within
 from .case import Case
 from .contact import ContactParameters, contact_parameters, friction_that_holds, sound_beta
 from .interface import Contacts, Interface
@@ -19,14 +19,17 @@ from .pose import release_pose
 
 RADIUS = 1e-6
 """Radius of the contact spheres in half heights [-]: friction acts at their surface, so it is tiny."""
-EDGE_FRICTION = 1.0
-"""Friction coefficient of an edge of the base [-]. It holds any wall in free rocking, whose base is pushed with at most
-(3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of what loads it. It is no larger because two edges that both stick while
-the wall turns over work against each other: with mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a third too much."""
-TOE_FRICTION = 30.0
-"""The same of the outer edge of a wall with a side stop [-]. It is not to slip when the side impact throws the base
-while it is hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %, from mu = 10 nothing
-changes (`scripts/friction.py`)."""
+FREE_FRICTION = 1.0
+"""Friction coefficient of the edges of a wall without a side stop [-]. It holds any wall in free rocking, whose base is
+pushed with at most (3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of what loads it. It is no larger because two edges
+that both stick while the wall turns over work against each other: with mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a
+third too much."""
+HELD_FRICTION = 30.0
+"""Friction coefficient of the outer edge of a wall with a side stop [-]. It is not to slip when the side impact throws
+the base while it is hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 4 %, from mu = 10
+nothing changes (`scripts/friction.py`). The inner edge takes as much of it as SELF_WORK allows."""
+SELF_WORK = 1e-4
+"""Most work that two sticking edges may do against each other in an impact, over the energy of a release at alpha/2."""
 HELD_MASSES = 1e3
 """Inertia of a friction row in masses of the wall [-]: a horizontal acceleration a creeps at a h / HELD_MASSES."""
 
@@ -37,6 +40,17 @@ def inverse_weight(mass: float) -> float:
     MuJoCo's `body_invweight0` is the mean of the inverse masses along three axes; two slides and a hinge leave two.
     """
     return 2 / (3 * mass)
+
+
+def inner_friction(wall: Block, contacts: Contacts) -> float:
+    """Friction coefficient of the inner edge of a wall with a side stop [-], 1 to HELD_FRICTION.
+
+    While both edges are loaded, up to the uplift rotation theta_u, they slide against each other by b theta_u^2, which
+    takes mu m g b theta_u^2; a release at alpha/2 has about (3/8) m g b alpha. On a stiff base that is nothing, and the
+    inner edge has to hold where a soft side stop lets the wall lean on it; on a soft base it never does.
+    """
+    allowed = SELF_WORK * 0.375 * wall.alpha / contacts.uplift_rotation(wall) ** 2
+    return min(max(allowed, FREE_FRICTION), HELD_FRICTION)
 
 
 def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: float = 0.25) -> str:
@@ -102,7 +116,8 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     for i, (x, row) in enumerate(zip(contacts.base.positions, base_rows, strict=True)):
         grip: dict[str, object] = {"condim": "1"}
         if i in (0, len(base_rows) - 1):
-            mu = TOE_FRICTION if case.side_stop and i else EDGE_FRICTION
+            mu = HELD_FRICTION if i else inner_friction(wall, contacts)
+            mu = mu if case.side_stop else FREE_FRICTION
             grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": hold}
         sphere = {"size": radius, "pos": (x, 0, -h)}
         _add_point(body, pairs, f"base_{i}", sphere, "base", row, grip)

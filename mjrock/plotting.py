@@ -107,3 +107,32 @@ def single(draw: Callable[[Axes], Axes], size: tuple[float, float] = (5.2, 3.6))
 
 def _style(response: Response) -> dict[str, Any]:
     return STYLES.get(response.solver, {"label": response.solver})
+
+
+def work_precision(points: Sequence[tuple[str, str, float, float]]) -> Figure:
+    """Error against wall time, a panel a case, with the Pareto front; points are (case, method, seconds, error)."""
+    cases = list(dict.fromkeys(case for case, _, _, _ in points))
+    methods = list(dict.fromkeys(method for _, method, _, _ in points if "lines" not in method))
+    figure = Figure(figsize=(4.2 * len(cases), 5.0), layout="constrained")
+    axes = figure.subplots(1, len(cases), squeeze=False)[0]
+    markers = dict(zip(methods, "os^vD<>pPX*h", strict=False))
+    for ax, case in zip(axes, cases, strict=True):
+        here = [(s, e, m) for c, m, s, e in points if c == case and m in methods]
+        for i, method in enumerate(methods):
+            own = sorted((s, e) for s, e, m in here if m == method)
+            if own:
+                marker = markers.get(method, ".")
+                ax.loglog(*np.transpose(own), marker=marker, markersize=5, color=f"C{i % 10}", label=method)
+        front, best = [], np.inf
+        for seconds, error, _ in sorted(here):
+            if error < best:
+                best = error
+                front.append((seconds, error))
+        ax.loglog(*np.transpose(front), color="0.8", linewidth=7, zorder=0, label="Pareto front")
+        ax.set_title(case, fontsize=10)
+        ax.set_xlabel("wall time [s]")
+        ax.grid(True, which="major", linewidth=0.4, color="0.9")
+    axes[0].set_ylabel("largest error of $e$ per rebound [-]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    return figure

@@ -33,9 +33,9 @@ CHUNK = 20_000
 SHORT = 24.0
 """(omega h)^2 of a short step over the accuracy, omega the highest contact frequency: Newmark's period error is
 (omega h)^2 / 24 for beta = 0 and less for beta = 1/12, which short steps use."""
-LONG = 1.4
+LONG = 0.5
 """(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
-CHANGE = 3.0
+CHANGE = 1.0
 """Change of acceleration in a step, times the step, that is tolerated: over the accuracy and the speed of the wall."""
 FADED = 0.01
 """A touch is met with a short step where ignoring it would misplace this much energy, over accuracy and energy."""

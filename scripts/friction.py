@@ -28,13 +28,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     two_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0, side_stop=False)
     limits = [mr.solve_compliant(case, contacts) for case in (two_sided, one_sided)]
     variants = [(mu, mjcf.HELD_MASSES) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
-    variants += [(mjcf.TOE_FRICTION, masses) for masses in (1e1, 1e2, 1e4)]
+    variants += [(mjcf.HELD_FRICTION, masses) for masses in (1e1, 1e2, 1e4)]
     rows: list[list[object]] = [
         ["no slip", "", "SciPy", *(f"{r:.4f}" for limit in limits for r in limit.restitution[:2])]
     ]
     for step in steps:
         for mu, masses in tqdm(variants, desc=f"step {step:g} s", disable=None, leave=False):
-            with mock.patch.multiple(mjcf, TOE_FRICTION=mu, HELD_MASSES=masses):
+            with mock.patch.multiple(mjcf, HELD_FRICTION=mu, HELD_MASSES=masses):
                 runs = [mr.simulate(case, contacts, step) for case in (two_sided, one_sided)]
             rows.append([mu, masses, step * 1e3, *(f"{r:.4f}" for run in runs for r in run.restitution[:2])])
     header = ["mu [-]", "row inertia [m]", "step [ms]", "2s e_1", "2s e_2", "1s e_1", "1s e_2"]

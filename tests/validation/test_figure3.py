@@ -60,7 +60,7 @@ class TestVerification:
 
     def test_a_base_that_slips_fails(self, one_sided, contacts, monkeypatch):
         """The twin that must fail: with mu = 1 the side impact throws the base along."""
-        monkeypatch.setattr("mjrock.mjcf.TOE_FRICTION", 1.0)
+        monkeypatch.setattr("mjrock.mjcf.HELD_FRICTION", 1.0)
         found = mr.compare(mr.solve_compliant(one_sided, contacts), mr.simulate(one_sided, contacts, 1e-4))
         assert found.restitution[0, 1] < 0.9 * found.restitution[0, 0]
 
@@ -69,7 +69,7 @@ class TestVerification:
         """At a step of 10 us friction coefficient and row inertia can be varied a hundredfold without effect."""
         exact = mr.solve_compliant(one_sided, contacts).restitution[0]
         for mu, masses in ((10.0, 1e3), (30.0, 1e1), (30.0, 1e3), (30.0, 1e5), (1000.0, 1e3)):
-            monkeypatch.setattr("mjrock.mjcf.TOE_FRICTION", mu)
+            monkeypatch.setattr("mjrock.mjcf.HELD_FRICTION", mu)
             monkeypatch.setattr("mjrock.mjcf.HELD_MASSES", masses)
             run = mr.simulate(mr.Case(FIGURE_3, one_sided.theta0, 1.2), contacts, 1e-5)
             assert run.restitution[0] == pytest.approx(exact, rel=0.002)
