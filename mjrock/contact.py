@@ -52,7 +52,7 @@ class ContactParameters:
         return self.solimp[0]
 
 
-def newmark_inertia(k: Real, c: Real, timestep: float, newmark_beta: float) -> Real:
+def newmark_inertia(k: Real, c: Real, timestep: float | Real, newmark_beta: float | Real) -> Real:
     """m_i = h c/2 + beta h^2 k [kg], what makes the Euler step Newmark's with centred damping."""
     return timestep * c / 2 + newmark_beta * timestep**2 * k
 
@@ -77,13 +77,32 @@ def least_beta(k: float, c: float, timestep: float, inverse_weight: float) -> fl
     return (least_inertia(inverse_weight) - timestep * c / 2) / (timestep**2 * k)
 
 
-def lag_inertia(c: float | NDArray[np.float64], timestep: float, inverse_weight: float) -> NDArray[np.float64]:
+def lag_inertia(
+    c: float | NDArray[np.float64], timestep: float | NDArray[np.float64], inverse_weight: float
+) -> NDArray[np.float64]:
     """What a row's inertia takes on top for a dashpot that is stiff for the step, m_i = h c instead of h c/2 [kg].
 
     A dashpot that would stop its contact within the step would, centred in the step, throw it back instead. With this
     it acts on the velocity at the end of the step, and stops what it should stop.
     """
     return np.where(c * timestep * inverse_weight > OVERDAMPED, timestep * c / 2, 0.0)
+
+
+def row_terms(
+    k: NDArray[np.float64],
+    c: NDArray[np.float64],
+    timestep: float | NDArray[np.float64],
+    inverse_weight: float,
+    newmark_beta: float | NDArray[np.float64],
+    ringing: float | NDArray[np.float64] = 0.0,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Dashpot [N s/m] and inertia [kg] of many rows: f = -(k r + dashpot v + inertia a); arguments broadcast.
+
+    `ringing` is an extra dashpot in units of h k, for steps that do not resolve the contact.
+    """
+    damping = c + ringing * timestep * k
+    inertia = newmark_inertia(k, damping, timestep, newmark_beta) + lag_inertia(c, timestep, inverse_weight)
+    return damping, np.maximum(inertia, least_inertia(inverse_weight))
 
 
 def sound_beta(k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float) -> float:

@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .block import Block
+from .block import GRAVITY, Block
 from .case import Case
+from .contact import row_terms
 from .interface import Contacts, Interface
+from .mjcf import inverse_weight
 from .pose import base_gaps, side_gaps
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ class Ledger:
         elastic: in the springs of the contacts.
         base_dashpots: work that the dashpots of the base have taken since release.
         side_dashpots: the same of the side stop.
-        friction: work that friction at the base has taken.
+        friction: work that friction at the base has taken, along it and by lifting the edge that slides.
     """
 
     t: Array
@@ -66,7 +68,7 @@ class Ledger:
     def of(cls, case: Case, contacts: Contacts, steps: Steps) -> Ledger:
         """The ledger of a run."""
         wall = case.block
-        step = steps.h[:, None]
+        step, beta, weight = steps.h[:, None], steps.beta[:, None], inverse_weight(wall.mass)
         start = steps.pose - 0.5 * step * steps.before
         seams = steps.t - 0.5 * steps.h
         width = np.append(np.diff(seams), 0.0)[:, None]
@@ -79,16 +81,19 @@ class Ledger:
             rate = middle[:, axis, None] + middle[:, 2, None] * lever
             curve = middle[:, 3 + axis, None] + middle[:, 5, None] * lever
             gap = gaps(wall, contacts, steps.pose)
-            row = -(k * (gap + (interface.retardation * rate + steps.beta[:, None] * step**2 * curve)))
+            dashpot, inertia = row_terms(k, interface.damping, step, weight, beta, steps.ringing[:, None])
+            # what the dashpot, centred or at the end of the step, exerts at the velocity that the leapfrog keeps
+            drag = dashpot * (rate - 0.5 * step * curve) + (inertia - beta * step**2 * k) * curve
+            row = -(k * gap + drag + beta * step**2 * k * curve)
             pressed = (gap < 0) & (row > 0)
             stored = 0.5 * k * np.minimum(gaps(wall, contacts, start), 0) ** 2
             given = stored - np.append(stored[1:], stored[-1:], axis=0)
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
-            taken = np.where(pressed, interface.damping * rate**2 * width, given)
+            taken = np.where(pressed, drag * rate * width, given)
             return stored.sum(1), taken.sum(1), np.where(pressed, row, 0).sum(1)
 
         lever = wall.h * sine - contacts.base.positions * cosine
-        elastic, base_work, _ = face(contacts.base, base_gaps, 1, lever)
+        elastic, base_work, base_force = face(contacts.base, base_gaps, 1, lever)
         side_work, side_force = np.zeros_like(elastic), np.zeros_like(elastic)
         if case.side_stop and contacts.side is not None:
             lever = wall.b * sine + contacts.side.positions * cosine
@@ -96,8 +101,12 @@ class Ledger:
             elastic = elastic + stored
         # friction acts at the lower edge, halfway between the two faces that overlap there
         edge = -wall.b * np.abs(sine[:, 0]) - wall.h * cosine[:, 0]
+        out = wall.b * np.sign(sine[:, 0]) * cosine[:, 0] - wall.h * sine[:, 0]
         slip = middle[:, 0] + middle[:, 2] * 0.5 * (edge - steps.pose[:, 1] - wall.h)
-        friction_work = -(wall.mass * middle[:, 3] - side_force) * slip * width[:, 0]
+        lift = middle[:, 1] - middle[:, 2] * out
+        along = wall.mass * middle[:, 3] - side_force
+        up = wall.mass * (middle[:, 4] + GRAVITY) - base_force  # what a sliding cone presses on top of the law
+        friction_work = -(along * slip + up * lift) * width[:, 0]
 
         before = steps.before
         moving = wall.mass * (before[:, 0] ** 2 + before[:, 1] ** 2) + wall.inertia * before[:, 2] ** 2

@@ -14,6 +14,8 @@ from .case import Case
 from .ledger import Ledger
 
 Array = NDArray[np.float64]
+State = tuple[Array, Array]
+"""Pose (x, z, theta) and velocity of the wall at one time, see `mjrock.pose`."""
 
 
 class Outcome(enum.Enum):
@@ -70,7 +72,9 @@ class Response:
         outcome: how the run ended.
         message: the same in words, for the user.
         ledger: every part of the energy, or None where none was asked for.
-        stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s].
+        stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s]; from MuJoCo also the
+            deepest penetrations `deepest_base` and `deepest_side` and the `base_displacement` at the end [m].
+        end: pose and velocity at the end, to go on from with `simulate(..., start=...)`; None from other solvers.
     """
 
     case: Case
@@ -85,6 +89,7 @@ class Response:
     message: str
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
+    end: State | None = None
 
     @property
     def energy_residual(self) -> Array | None:

@@ -16,8 +16,8 @@ from .case import Case
 from .interface import Contacts
 from .ledger import Ledger
 from .mjcf import inverse_weight, wall_mjcf
-from .pose import mechanical_energy
-from .response import Response, ending, rocking_history
+from .pose import base_gaps, mechanical_energy, side_gaps
+from .response import Response, State, ending, rocking_history
 from .stepping import SMOOTH, StepError, Steps, fitted_steps, fixed_steps, short_step
 
 Array = NDArray[np.float64]
@@ -52,10 +52,12 @@ def compile_wall(text: str, wall: Block) -> mujoco.MjModel:
     return model
 
 
-def release(model: mujoco.MjModel) -> mujoco.MjData:
-    """Data at the keyframe `release`, with the velocity half a step back, where the leapfrog keeps it."""
+def release(model: mujoco.MjModel, start: State | None = None) -> mujoco.MjData:
+    """Data at `start` or the keyframe `release`, with the velocity half a step back, where the leapfrog keeps it."""
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("release").id)
+    if start is not None:
+        data.qpos[:], data.qvel[:] = start
     velocity = data.qvel.copy()
     for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
         mujoco.mj_forward(model, data)
@@ -78,7 +80,15 @@ def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, floa
 class _Run:
     """One run of the engine, checked: its steps, its energy, its peaks and impacts."""
 
-    def __init__(self, case: Case, contacts: Contacts, h: float, accuracy: float | None, newmark_beta: float) -> None:
+    def __init__(
+        self,
+        case: Case,
+        contacts: Contacts,
+        h: float,
+        accuracy: float | None,
+        newmark_beta: float,
+        start: State | None,
+    ) -> None:
         wall = case.block
         sound = automatic_timestep(wall, contacts, side_stop=case.side_stop)
 
@@ -92,7 +102,7 @@ class _Run:
             return SimulationError(f"{what} at t = {t:.4g} s with a step of {h:.3g} s; {advice}")
 
         model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), wall)
-        data = release(model)
+        data = release(model, start)
         try:
             if accuracy is None:
                 self.steps = fixed_steps(model, data, case.duration, newmark_beta)
@@ -123,6 +133,7 @@ def simulate(
     newmark_beta: float = 0.25,
     output_step: float | None = None,
     ledger: bool = False,
+    start: State | None = None,
 ) -> Response:
     """Free rocking of a wall on compliant contacts in MuJoCo.
 
@@ -136,6 +147,8 @@ def simulate(
         output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
             all; fitted steps are interpolated, None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.ledger`.
+        start: pose and velocity to start from instead of the release, the `end` of an earlier response; the motion then
+            counts as released from there, and its first peak is the first that it reaches.
 
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, or for a value outside
@@ -167,7 +180,7 @@ def simulate(
     used = accuracy if fitted else None
     while True:
         try:
-            run = _Run(case, contacts, h, used, newmark_beta)
+            run = _Run(case, contacts, h, used, newmark_beta, start)
             break
         except SimulationError:
             if used is None or used < 0.02 * accuracy:
@@ -198,6 +211,7 @@ def simulate(
         outcome=outcome,
         message=message,
         ledger=book,
+        end=(steps.pose[-1], steps.velocity[-1]),
         stats={
             "wall_time": time.perf_counter() - started,
             "stepping_time": stepped,
@@ -206,11 +220,19 @@ def simulate(
             "longest_timestep": float(steps.h.max()),
             "sound_timestep": sound,
             "touches": steps.touches,
+            "deepest_base": _deepest(base_gaps(wall, contacts, steps.pose)),
+            "deepest_side": _deepest(side_gaps(wall, contacts, steps.pose)) if case.side_stop else 0.0,
+            "base_displacement": float(steps.pose[-1, 0] - wall.h * math.sin(steps.pose[-1, 2])),
             "accuracy": used,
             "newmark_beta": newmark_beta,
             "mujoco": mujoco.__version__,
         },
     )
+
+
+def _deepest(gaps: Array) -> float:
+    """Largest penetration [m]."""
+    return max(0.0, -float(gaps.min()))
 
 
 def _output_times(steps: Steps, case: Case, output_step: float | None, *, fitted: bool) -> Array:

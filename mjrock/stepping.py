@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from .case import Case
-from .contact import impedance, lag_inertia, least_inertia, newmark_inertia
+from .contact import impedance, row_terms
 from .interface import Contacts
 from .mjcf import HELD_MASSES, inverse_weight
 
@@ -33,6 +33,9 @@ CHUNK = 20_000
 SHORT = 24.0
 """(omega h)^2 of a short step over the accuracy, omega the highest contact frequency: Newmark's period error is
 (omega h)^2 / 24 for beta = 0 and less for beta = 1/12, which short steps use."""
+DASHPOT = 12.0
+"""(c h / m)^2 of a short step over the accuracy, m = 1 / (6 W) the least mass that a contact may feel: the error of a
+dashpot centred in the step is (c h / m)^2 / 12."""
 LONG = 0.5
 """(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
 CHANGE = 1.0
@@ -65,6 +68,7 @@ class Steps:
         pose: x, z, theta [m, m, rad], shape (n, 3).
         before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (n, 3).
         beta: Newmark's beta of the contact rows in each step [-], shape (n,).
+        ringing: their extra dashpot in units of h k [-], shape (n,).
         touches: how many touches were met with a short step.
     """
 
@@ -74,6 +78,7 @@ class Steps:
     before: Array
     after: Array
     beta: Array
+    ringing: Array
     touches: int = 0
 
     @property
@@ -121,7 +126,14 @@ def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, duration: float, new
         before=states[:count, 4:],
         after=states[1 : count + 1, 4:],
         beta=np.full(count, newmark_beta),
+        ringing=np.zeros(count),
     )
+
+
+def _long_or_short(h: float | Array, frequency: float) -> tuple[Array, Array]:
+    """Newmark's beta and the extra dashpot of a fitted step [-]."""
+    smooth = h * frequency < SMOOTH
+    return np.where(smooth, 1 / 12, (1 + RINGING**2) / 4), np.where(smooth, 0.0, RINGING)
 
 
 class _Rows:
@@ -147,12 +159,8 @@ class _Rows:
         model.pair_solref[:], model.pair_solimp[:, :2], model.pair_solreffriction[:, 1], model.opt.impratio = rows
 
     def _rows(self, h: float) -> tuple[Array, Array, Array, float]:
-        if h * self.frequency < SMOOTH:
-            damping, beta = self.c, 1 / 12
-        else:
-            damping, beta = self.c + RINGING * h * self.k, (1 + RINGING**2) / 4
-        inertia = newmark_inertia(self.k, damping, h, beta) + lag_inertia(self.c, h, self.weight)
-        inertia = np.maximum(inertia, least_inertia(self.weight))
+        beta, ringing = _long_or_short(h, self.frequency)
+        damping, inertia = row_terms(self.k, self.c, h, self.weight, beta, ringing)
         d = impedance(inertia, self.weight)
         scale = (1 - d) * self.weight
         solref = -np.stack([scale * self.k, scale * damping], axis=1)
@@ -278,21 +286,31 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
                 _check(data, qpos, t)
     _check(data, np.concatenate([qpos, qvel]), t)
     history = np.array(record)
+    beta, ringing = _long_or_short(history[:, 1], rows.frequency)
     return Steps(
         t=history[:, 0],
         h=history[:, 1],
         pose=history[:, 2:5],
         before=history[:, 5:8],
         after=history[:, 8:11],
-        beta=np.where(history[:, 1] * rows.frequency < SMOOTH, 1 / 12, 0.25),
+        beta=beta,
+        ringing=ringing,
         touches=touches,
     )
 
 
 def short_step(case: Case, contacts: Contacts, accuracy: float) -> float:
-    """The step that resolves the stiffest contact to `accuracy` [s]."""
+    """The step that resolves the stiffest spring and the strongest dashpot to `accuracy` [s].
+
+    A dashpot that would ask for less than an eighth of the spring's step is left to act at the end of the step: it
+    stops what it meets, and how it does so no longer matters.
+    """
     frequency = contacts.highest_frequency(case.block, side_stop=case.side_stop)
-    return min(1.0, math.sqrt(SHORT * accuracy)) / frequency
+    spring = min(1.0, math.sqrt(SHORT * accuracy)) / frequency
+    faces = [contacts.base] + ([contacts.side] if case.side_stop and contacts.side else [])
+    strongest = max(float(face.damping.max()) for face in faces) * inverse_weight(case.block.mass)
+    dashpot = math.sqrt(DASHPOT * accuracy) / (6 * strongest) if strongest else math.inf
+    return min(spring, max(dashpot, spring / 8))
 
 
 def _open_ends(offset: float, slope: float, half: float, points: int) -> tuple[float, ...]:

@@ -19,6 +19,10 @@ WRITES = {
     "table2": {"table2.png", "table2.csv"},
     "layouts": {"layouts.txt"},
     "friction": {"friction.txt"},
+    "hard_cases": {"hard_cases.md"},
+    "trouble": {"trouble.txt"},
+    "law_range": {"law_range.txt"},
+    "work_precision": {"work_precision.csv", "work_precision.png", "work_precision.txt"},
     "convergence": {"convergence.png", "convergence.txt"},
     "make_models": {"figure3_one_sided"},
 }

@@ -1,0 +1,120 @@
+import math
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock import simulation, stepping
+from paper import FIGURE_3, K_N
+
+
+@pytest.fixture(scope="module")
+def converged(one_sided, contacts):
+    return mr.simulate(one_sided, contacts, accuracy=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("side_stop", [False, True])
+def test_the_error_follows_the_knob_over_four_decades(contacts, side_stop):
+    """Averaged over releases, because a single run may be lucky."""
+    knobs = np.array([1e-2, 1e-3, 1e-4, 1e-5])
+    errors = np.zeros(len(knobs))
+    for share in (0.42, 0.5, 0.58):
+        case = mr.Case(FIGURE_3, share * FIGURE_3.alpha, 2.5, side_stop=side_stop)
+        exact = mr.simulate(case, contacts, accuracy=1e-7).restitution[:2]
+        errors += [np.abs(mr.simulate(case, contacts, accuracy=a).restitution[:2] / exact - 1).max() / 3 for a in knobs]
+    assert (errors < 2 * knobs).all(), errors
+    assert np.polyfit(np.log(knobs), np.log(errors), 1)[0] > 0.6
+
+
+def test_the_default_is_within_its_tolerance(one_sided, contacts, converged):
+    run = mr.simulate(one_sided, contacts)
+    np.testing.assert_allclose(run.restitution[:2], converged.restitution[:2], rtol=1e-3)
+    assert mr.compare(converged, run).rms < 1e-3
+    assert run.stats["steps"] < 2000
+
+
+def test_touch_phase_scatter_is_gone(contacts):
+    """The same impact met at many phases of the step: fixed steps scatter, fitted ones do not."""
+    shares = np.linspace(0.5, 0.502, 12)
+    scatter = {}
+    for name, options in (("fixed", {"timestep": 5e-4}), ("fitted", {})):
+        found = [
+            mr.simulate(mr.Case(FIGURE_3, s * FIGURE_3.alpha, 1.3), contacts, **options).restitution[0] for s in shares
+        ]
+        scatter[name] = np.std(found)
+    assert scatter["fitted"] < 1e-3
+    assert scatter["fixed"] > 10 * scatter["fitted"]
+
+
+def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
+    """Half a short step before the first pose in a new contact, the gap closes."""
+    h = stepping.short_step(one_sided, contacts, 1e-3)
+    model = simulation.compile_wall(mr.wall_mjcf(one_sided, contacts, h), FIGURE_3)
+    steps = stepping.fitted_steps(model, simulation.release(model), one_sided, contacts, 1e-3)
+    from mjrock.pose import side_gaps
+
+    top = side_gaps(FIGURE_3, contacts, steps.pose)[:, -1]
+    first = np.flatnonzero((top[:-1] > 0) & (top[1:] <= 0))[0] + 1
+    speed = (top[first] - top[first - 1]) / steps.h[first - 1]
+    assert steps.h[first] == h
+    assert top[first] / speed == pytest.approx(0.5 * h, rel=0.02)
+
+
+def test_steps_follow_the_contacts_not_the_wall(two_sided, contacts):
+    soft, stiff = (mr.Contacts.from_damping(FIGURE_3, k_base=k, xi_base=0.002) for k in (K_N, 4 * K_N))
+    h = stepping.short_step(two_sided, soft, 1e-3)
+    assert stepping.short_step(two_sided, soft, 4e-3) == pytest.approx(2 * h)
+    assert stepping.short_step(two_sided, stiff, 1e-3) == pytest.approx(h / 2)
+    strong = mr.Contacts.from_damping(FIGURE_3, k_base=K_N, xi_base=0.9)
+    assert stepping.short_step(two_sided, strong, 1e-3) < h
+
+
+@pytest.mark.parametrize("points", [2, 3, 7, 32])
+def test_the_next_point_to_touch_is_an_end_of_the_open_ones(points):
+    positions = np.linspace(-0.3, 0.3, points)
+    rng = np.random.default_rng(3)
+    for offset, slope in rng.normal(size=(200, 2)) * (0.01, 0.05):
+        gaps = offset + slope * positions
+        open_points = positions[gaps >= 0]
+        ends = stepping._open_ends(offset, slope, 0.3, points)
+        if len(open_points):
+            np.testing.assert_allclose([min(ends), max(ends)], [open_points[0], open_points[-1]], atol=1e-12)
+        else:
+            assert ends == ()
+
+
+def test_samples_are_uniform_and_end_on_time(one_sided, contacts):
+    run = mr.simulate(one_sided, contacts, output_step=2e-3)
+    np.testing.assert_allclose(np.diff(run.t), 2e-3)
+    assert run.t[-1] == one_sided.duration
+    assert np.abs(np.gradient(run.theta, run.t) - run.omega)[50:300].max() < 1e-4
+
+
+@pytest.mark.parametrize("accuracy", [0.0, -1e-3, 1.0, math.nan])
+def test_bad_accuracy(one_sided, contacts, accuracy):
+    with pytest.raises(ValueError, match="accuracy"):
+        mr.simulate(one_sided, contacts, accuracy=accuracy)
+
+
+@pytest.mark.parametrize("output_step", [0.0, -1.0, math.nan, 100.0])
+def test_bad_output_step(one_sided, contacts, output_step):
+    with pytest.raises(ValueError, match="output_step"):
+        mr.simulate(one_sided, contacts, output_step=output_step)
+
+
+def test_a_run_that_makes_energy_is_repeated_finer(one_sided, contacts, monkeypatch):
+    tried = []
+    honest = simulation.energy_gain
+
+    def suspicious(times, t, energy):
+        tried.append(len(t))
+        return (1e9, 0.5) if len(tried) < 3 else honest(times, t, energy)
+
+    monkeypatch.setattr(simulation, "energy_gain", suspicious)
+    run = mr.simulate(one_sided, contacts)
+    assert run.stats["accuracy"] == pytest.approx(1e-5)
+    assert tried == sorted(tried)
+    monkeypatch.setattr(simulation, "energy_gain", lambda *_: (1e9, 0.5))
+    with pytest.raises(mr.SimulationError, match=r"appeared from nowhere .* lower accuracy = 1e-05, or fix the step"):
+        mr.simulate(one_sided, contacts)
