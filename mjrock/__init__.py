@@ -14,7 +14,9 @@ from .compliant import solve_compliant
 from .contact import ContactParameters, contact_parameters, contact_stiffness
 from .damping import PUBLISHED, DampingLaw, PowerLaw
 from .interface import Contacts, Interface, reference_frequency
+from .ledger import Ledger
 from .mjcf import wall_mjcf
+from .motion import GroundMotion
 from .response import Impact, Outcome, Response
 from .restitution import Restitution
 from .simulation import SimulationError, automatic_timestep, simulate
@@ -28,8 +30,10 @@ __all__ = [
     "ContactParameters",
     "Contacts",
     "DampingLaw",
+    "GroundMotion",
     "Impact",
     "Interface",
+    "Ledger",
     "Outcome",
     "PowerLaw",
     "Response",

@@ -49,13 +49,16 @@ def solve_analytical(
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
 
     Raises:
-        ValueError: for a tolerance or step that is not positive, or a side stop from which the wall does not rebound.
+        ValueError: for a case with ground motion, a tolerance or step out of range, or a side stop from which the wall
+            does not rebound.
         RuntimeError: if the integration fails.
     """
     require_within("rtol", rtol, 1e-14, 0.1)
     require_within("atol", atol, 1e-16, 0.1)
     require_within("output_step", output_step, 1e-7, 10.0, "s")
     require_within("rest", rest, 1e-30, 0.1)
+    if case.motion is not None:
+        raise ValueError("solve_analytical answers free rocking only; motion must be None")
     if case.side_stop and not -1 <= e.lumped < 0:
         raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
     started = time.perf_counter()

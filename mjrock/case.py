@@ -7,6 +7,7 @@ import warnings
 from dataclasses import dataclass
 
 from .block import Block, require_within
+from .motion import GroundMotion
 
 
 @dataclass(frozen=True)
@@ -19,11 +20,11 @@ class Case:
         duration: how long to follow the motion [s].
         side_stop: whether a stop behind the inner face keeps the rotation from becoming negative (one-sided rocking).
         omega0: angular velocity at release [rad/s], the wall turning about its toe.
-        motion: ground motion. Only None, a base at rest, can be asked as yet.
+        motion: acceleration of the base, or None for a base at rest. Responses are motions as seen from the base.
 
     Raises:
         ValueError: for a rotation beyond 90 degrees or into the side stop, a duration that is not positive, or a
-            motion.
+            motion that is none.
     """
 
     block: Block
@@ -31,7 +32,7 @@ class Case:
     duration: float
     side_stop: bool = True
     omega0: float = 0.0
-    motion: None = None
+    motion: GroundMotion | None = None
 
     def __post_init__(self) -> None:
         lowest = 0.0 if self.side_stop else -math.pi / 2
@@ -44,8 +45,8 @@ class Case:
                 "the wall overturns from 1 alpha; rotations are radians",
                 stacklevel=3,
             )
-        if self.motion is not None:
-            raise ValueError("ground motion is not simulated in this version; motion must be None")
+        if not (self.motion is None or isinstance(self.motion, GroundMotion)):
+            raise ValueError(f"motion = {self.motion!r} is not a GroundMotion")
 
     @property
     def release_energy(self) -> float:

@@ -36,6 +36,7 @@ class _Wall:
         wall = case.block
         self.b, self.h, self.mass, self.inertia = wall.b, wall.h, wall.mass, wall.inertia
         self.base, self.side = contacts.base, contacts.side if case.side_stop else None
+        self.motion = case.motion
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:
         """Signed forces of the base points before clipping [N], and their levers about the centroid [m]."""
@@ -75,6 +76,8 @@ class _Wall:
             push = -(self.side.stiffness * gap + self.side.damping * (vx + omega * height))
             push = np.where(gap < 0, np.maximum(push, 0), 0)
             Fx, moment = float(push.sum()), moment + float(push @ height)
+        if self.motion is not None:
+            Fx -= self.mass * float(self.motion(t))
         return np.array([y[3], y[4], y[5], Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
 
     def held(self, t: float, y: Array) -> Array:
@@ -98,7 +101,7 @@ class _Wall:
 def solve_compliant(
     case: Case, contacts: Contacts, *, rtol: float = 1e-8, atol: float = 1e-10, output_step: float = 5e-4
 ) -> Response:
-    """Free rocking of a wall on compliant contacts: what `simulate` has to reproduce.
+    """Rocking of a wall on compliant contacts: what `simulate` has to reproduce.
 
     Args:
         case: the wall, its release, its sides.
@@ -148,7 +151,7 @@ def solve_compliant(
                 events=(switch, overturning),
                 rtol=rtol,
                 atol=atol,
-                max_step=10 * period,
+                max_step=min(10 * period, case.motion.dt if case.motion else math.inf),
             )
             if arc.status < 0:
                 raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")

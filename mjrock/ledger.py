@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +21,7 @@ from .contact import row_terms
 from .interface import Contacts, Interface
 from .mjcf import inverse_weight
 from .pose import base_gaps, side_gaps
-
-if TYPE_CHECKING:
-    from .stepping import Steps
+from .stepping import Steps, push
 
 Array = NDArray[np.float64]
 _Gaps = Callable[[Block, Contacts, Array], Array]
@@ -42,6 +39,7 @@ class Ledger:
         base_dashpots: work that the dashpots of the base have taken since release.
         side_dashpots: the same of the side stop.
         friction: work that friction at the base has taken, along it and by lifting the edge that slides.
+        ground: work that the motion of the base has put in, as seen from the base.
     """
 
     t: Array
@@ -51,12 +49,13 @@ class Ledger:
     base_dashpots: Array
     side_dashpots: Array
     friction: Array
+    ground: Array
 
     @property
     def residual(self) -> Array:
         """What is there and what was taken, less what was there at release: zero for an exact integration."""
         held = self.kinetic + self.potential + self.elastic
-        gone = self.base_dashpots + self.side_dashpots + self.friction
+        gone = self.base_dashpots + self.side_dashpots + self.friction - self.ground
         residual: Array = held - held[0] + gone
         return residual
 
@@ -104,7 +103,8 @@ class Ledger:
         out = wall.b * np.sign(sine[:, 0]) * cosine[:, 0] - wall.h * sine[:, 0]
         slip = middle[:, 0] + middle[:, 2] * 0.5 * (edge - steps.pose[:, 1] - wall.h)
         lift = middle[:, 1] - middle[:, 2] * out
-        along = wall.mass * middle[:, 3] - side_force
+        pushed = push(case, steps.t)
+        along = wall.mass * middle[:, 3] - side_force - pushed
         up = wall.mass * (middle[:, 4] + GRAVITY) - base_force  # what a sliding cone presses on top of the law
         friction_work = -(along * slip + up * lift) * width[:, 0]
 
@@ -118,6 +118,7 @@ class Ledger:
             base_dashpots=_since_release(base_work),
             side_dashpots=_since_release(side_work),
             friction=_since_release(friction_work),
+            ground=_since_release(pushed * middle[:, 0] * width[:, 0]),
         )
 
 

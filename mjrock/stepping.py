@@ -93,14 +93,19 @@ def _check(data: mujoco.MjData, values: Array, t: float) -> None:
         raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
 
 
-def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, duration: float, newmark_beta: float) -> Steps:
-    """Steps of the model's own length, recorded natively, until `duration` [s] or until the wall lies on its face.
+def push(case: Case, t: float | Array) -> Array:
+    """Force that the moving base exerts on the wall as seen from it, -m a_g [N]."""
+    return np.zeros_like(t, dtype=float) if case.motion is None else -case.block.mass * case.motion(t)
+
+
+def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, newmark_beta: float) -> Steps:
+    """Steps of the model's own length, recorded natively, until the case ends or the wall lies on its face.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
     h = model.opt.timestep
-    total = max(1, round(duration / h)) + 1  # the last velocity needs the half step after it
+    total = max(1, round(case.duration / h)) + 1  # the last velocity needs the half step after it
     spec = mujoco.mjtState.mjSTATE_FULLPHYSICS
     state = np.empty(mujoco.mj_stateSize(model, spec))
     mujoco.mj_getState(model, data, state, spec)
@@ -109,7 +114,13 @@ def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, duration: float, new
     with tqdm(total=total * h, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
         while done < total:
             steps = min(CHUNK, total - done)
-            run, _ = rollout.rollout(model, data, state[None], nstep=steps)
+            if case.motion is None:
+                run, _ = rollout.rollout(model, data, state[None], nstep=steps)
+            else:
+                forces = np.zeros((1, steps, model.nv))
+                forces[0, :, 0] = push(case, h * np.arange(done, done + steps))
+                applied = mujoco.mjtState.mjSTATE_QFRC_APPLIED
+                run, _ = rollout.rollout(model, data, state[None], forces, control_spec=applied)
             chunks.append(run[0])
             done, state = done + steps, run[0, -1]
             bar.update(steps * h)
@@ -191,7 +202,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     b, height, mass, inertia = wall.b, wall.h, wall.mass, wall.inertia
     rows = _Rows(model, case, contacts)
     short = model.opt.timestep
-    longest = max(short, math.sqrt(LONG * accuracy) / wall.p)
+    longest = math.sqrt(LONG * accuracy) / wall.p
+    longest = max(short, min(longest, case.motion.dt) if case.motion else longest)
     tolerated = (CHANGE * accuracy) ** 2
     least_energy = 2 * contacts.uplift_energy(wall)
     energy = max(2 * case.release_energy, least_energy)  # twice the kinetic energy that an impact is measured by
@@ -235,6 +247,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
                 candidates += [(1, p) for p in _open_ends(shift, sine, height, side_points)]
             if candidates != last_open and last_h > short and not fresh:
                 # a long step has opened or closed a contact unforeseen: what it felt does not say what comes
+                if case.motion is not None:
+                    data.qfrc_applied[0] = push(case, t)
                 mujoco.mj_forward(model, data)
                 ax_now, az_now, aw_now = qacc.tolist()
                 h, calm, fresh = short, 0, True
@@ -251,6 +265,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
                 vx, vz, w = vx - (ax + jx * lag) * late, vz - (az + jz * lag) * late, w - (aw + jw * lag) * late
                 qvel[:] = vx, vz, w
                 rows.follow(now, remember=not touch)
+            if case.motion is not None:
+                data.qfrc_applied[0] = push(case, t)
             step(model, data)
 
             ax_new, az_new, aw_new = qacc.tolist()

@@ -83,9 +83,7 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
             held = model.pair_solreffriction[:, 1] < 0
             model.pair_solreffriction[held, 1] = -d / (2 * h)
             model.opt.impratio = 1e7
-        return _response(
-            case, contacts, stepping.fixed_steps(model, simulation.release(model), case.duration, 0), started
-        )
+        return _response(case, contacts, stepping.fixed_steps(model, simulation.release(model), case, 0), started)
 
     return solve
 

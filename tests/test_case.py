@@ -14,7 +14,7 @@ import mjrock as mr
         ({"duration": 0.0}, r"duration = 0 s"),
         ({"duration": math.inf}, r"duration = inf s"),
         ({"omega0": 1e6}, r"omega0"),
-        ({"motion": "NF13"}, r"motion must be None"),
+        ({"motion": "NF13"}, r"motion = 'NF13' is not a GroundMotion"),
     ],
 )
 def test_bad_values_are_named(wall, values, complaint):

@@ -116,8 +116,8 @@ def test_a_nan_or_a_warning_of_the_engine_is_an_error(two_sided, contacts, monke
     monkeypatch.chdir(tmp_path)  # MuJoCo leaves MUJOCO_LOG.TXT where it warns
     released = simulation.release
 
-    def thrown(model, start):
-        data = released(model, start)
+    def thrown(model, start, pushed):
+        data = released(model, start, pushed)
         data.qvel[1] = 1e12
         return data
 
