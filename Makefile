@@ -28,6 +28,10 @@ figures: $(READY) # the pictures and tables of the README
 	$(BIN)/python scripts/convergence.py --out docs/figures
 	$(BIN)/python scripts/layouts.py --out docs/figures
 	$(BIN)/python scripts/friction.py --out docs/figures
+	$(BIN)/python scripts/law_range.py --out docs/figures
+	$(BIN)/python scripts/hard_cases.py --out docs/figures
+	$(BIN)/python scripts/trouble.py --out docs/figures
+	$(BIN)/python scripts/work_precision.py --out docs/figures
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

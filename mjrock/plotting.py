@@ -122,7 +122,9 @@ def work_precision(points: Sequence[tuple[str, str, float, float]]) -> Figure:
             own = sorted((s, e) for s, e, m in here if m == method)
             if own:
                 marker = markers.get(method, ".")
-                ax.loglog(*np.transpose(own), marker=marker, markersize=5, color=f"C{i % 10}", label=method)
+                ax.loglog(
+                    *np.transpose(own), marker=marker, markersize=5, color=f"C{i}" if i < 10 else "0.15", label=method
+                )
         front, best = [], np.inf
         for seconds, error, _ in sorted(here):
             if error < best:

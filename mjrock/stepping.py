@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from .case import Case
-from .contact import impedance, row_terms
+from .contact import OVERDAMPED, impedance, row_terms
 from .interface import Contacts
 from .mjcf import HELD_MASSES, inverse_weight
 
@@ -208,6 +208,7 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     least_energy = 2 * contacts.uplift_energy(wall)
     energy = max(2 * case.release_energy, least_energy)  # twice the kinetic energy that an impact is measured by
     k_max, c_max = float(rows.k.max()), float(rows.c.max())
+    stops = c_max * short * rows.weight > 0.1 * OVERDAMPED  # a dashpot that even the short step does not resolve
     base_points, side_points = contacts.base.points, contacts.side.points if case.side_stop and contacts.side else 0
     sin, cos, step = math.sin, math.cos, mujoco.mj_step
     qpos, qvel, qacc = data.qpos, data.qvel, data.qacc
@@ -230,7 +231,7 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     vx, vz, w = qvel.tolist()
     ax, az, aw = qacc.tolist()
     jx = jz = jw = 0.0  # rates of the accelerations
-    fresh, calm, touches = True, 0, 0
+    fresh, calm, touches, stopping = True, 0, 0, 0
     last_open: list[tuple[int, float]] = []
     with tqdm(total=duration, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
         recorded, turned_to = -1.0, 0.0
@@ -254,6 +255,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
                 h, calm, fresh = short, 0, True
             last_open = candidates
             now, touch = h, False
+            if stopping:
+                candidates, stopping = [], stopping - 1  # how a wall is being stopped says nothing of the next step
             for face, position in candidates:
                 if gap(face, position, now) <= 0:
                     tau = _root(gap, face, position, now, 1e-3 * short)
@@ -288,6 +291,7 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
             if touch:
                 touches += 1
                 h, calm, fresh = short, 0, True
+                stopping = 4 if stops else 0
                 energy = max(mass * (vx * vx + vz * vz) + inertia * w * w, least_energy)
             elif change > tolerated:
                 h, calm = max(0.5 * h, short), 0

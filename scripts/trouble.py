@@ -20,8 +20,9 @@ import cli
 import mjrock as mr
 from mjrock.response import Outcome
 
-UNPAID = {False: 0.02, True: 0.05}
-"""Most energy that the ledger may have too much at any time, over the energy of release, inside and outside Table 1."""
+UNPAID = {False: 0.02, True: 0.10}
+"""Most energy that the ledger may have too much at any time, over the energy of release, inside and outside Table 1:
+there, dashpots may be too strong for any step and act at its end, which is first order in the step."""
 
 
 @dataclass(frozen=True)
