@@ -109,32 +109,39 @@ def _style(response: Response) -> dict[str, Any]:
     return STYLES.get(response.solver, {"label": response.solver})
 
 
-def work_precision(points: Sequence[tuple[str, str, float, float]]) -> Figure:
-    """Error against wall time, a panel a case, with the Pareto front; points are (case, method, seconds, error)."""
-    cases = list(dict.fromkeys(case for case, _, _, _ in points))
-    methods = list(dict.fromkeys(method for _, method, _, _ in points if "lines" not in method))
-    figure = Figure(figsize=(4.2 * len(cases), 5.0), layout="constrained")
-    axes = figure.subplots(1, len(cases), squeeze=False)[0]
-    markers = dict(zip(methods, "os^vD<>pPX*h", strict=False))
-    for ax, case in zip(axes, cases, strict=True):
-        here = [(s, e, m) for c, m, s, e in points if c == case and m in methods]
-        for i, method in enumerate(methods):
-            own = sorted((s, e) for s, e, m in here if m == method)
-            if own:
-                marker = markers.get(method, ".")
-                ax.loglog(
-                    *np.transpose(own), marker=marker, markersize=5, color=f"C{i}" if i < 10 else "0.15", label=method
-                )
-        front, best = [], np.inf
-        for seconds, error, _ in sorted(here):
-            if error < best:
-                best = error
-                front.append((seconds, error))
-        ax.loglog(*np.transpose(front), color="0.8", linewidth=7, zorder=0, label="Pareto front")
-        ax.set_title(case, fontsize=10)
-        ax.set_xlabel("wall time [s]")
-        ax.grid(True, which="major", linewidth=0.4, color="0.9")
-    axes[0].set_ylabel("largest error of $e$ per rebound [-]")
-    handles, labels = axes[0].get_legend_handles_labels()
+def work_precision(points: Sequence[tuple[str, str, float, int, float]]) -> Figure:
+    """Error against wall time and against steps, a column a case, with the Pareto front.
+
+    Points are (case, method, seconds, steps, error); for a solver of SciPy's, steps are evaluations.
+    """
+    cases = list(dict.fromkeys(point[0] for point in points))
+    methods = list(dict.fromkeys(point[1] for point in points if "lines" not in point[1]))
+    figure = Figure(figsize=(4.2 * len(cases), 8.2), layout="constrained")
+    axes = figure.subplots(2, len(cases), squeeze=False, sharey="col")
+    for column, case in zip(axes.T, cases, strict=True):
+        here = [point for point in points if point[0] == case and point[1] in methods]
+        _errors(column[0], [(seconds, error, method) for _, method, seconds, _, error in here], methods)
+        _errors(column[1], [(steps, error, method) for _, method, _, steps, error in here], methods)
+        column[0].set_xlabel("wall time [s]")
+        column[1].set_xlabel("steps [-]")
+        column[0].set_title(case, fontsize=10)
+    for ax in axes[:, 0]:
+        ax.set_ylabel("largest error of $e$ per rebound [-]")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
+
+
+def _errors(ax: Axes, points: Sequence[tuple[float, float, str]], methods: Sequence[str]) -> None:
+    """Errors against a cost, a line a method, and the front that no method beats."""
+    for i, (method, marker) in enumerate(zip(methods, "os^vD<>pPX*hd", strict=False)):
+        own = sorted((cost, error) for cost, error, name in points if name == method)
+        if own:
+            color = f"C{i}" if i < 10 else ("0.15", "0.55", "gold")[i - 10]
+            ax.loglog(*np.transpose(own), marker=marker, markersize=5, linewidth=1.2, color=color, label=method)
+    front: list[tuple[float, float]] = []
+    for cost, error, name in sorted(points):
+        if name != "rocking theory" and (not front or error < front[-1][1]):
+            front.append((cost, error))
+    ax.loglog(*np.transpose(front), color="0.85", linewidth=7, zorder=0, label="Pareto front of the contact law")
+    ax.grid(True, which="major", linewidth=0.4, color="0.9")

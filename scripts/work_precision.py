@@ -238,6 +238,23 @@ def methods(quick: bool) -> dict[str, dict[str, Solve]]:
     return made
 
 
+def theory(label: str, side_stop: bool, repeats: int) -> list[Point]:
+    """`solve_analytical` at several tolerances, against the restitution that it is given and its tightest answer."""
+    e = mr.Restitution.from_geometry(FIGURE_3.alpha)
+    case = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 2.0 if side_stop else 6.0, side_stop=side_stop)
+    exact = mr.solve_analytical(case, e, rtol=1e-13, atol=1e-15)
+    wanted, rebounds = (abs(e.lumped), 2) if side_stop else (e.base, 4)
+    found = []
+    for rtol in (1e-4, 1e-7, 1e-10):
+        runs = [mr.solve_analytical(case, e, rtol=rtol, atol=1e-2 * rtol) for _ in range(repeats)]
+        error = float(np.abs(runs[0].restitution[:rebounds] / wanted - 1).max())
+        seconds = statistics.median(run.stats["wall_time"] for run in runs)
+        rms = mr.compare(exact, runs[0]).rms
+        evaluations = runs[0].stats["evaluations"]
+        found.append(Point(label, "rocking theory", f"rtol {rtol:g}", evaluations, seconds, error, rms, math.nan))
+    return found
+
+
 def references(side_stop: bool, quick: bool, points: int = 2) -> list[tuple[Response, mr.Contacts]]:
     """The contact law solved tightly for several releases of the Figure 3 wall."""
     e = mr.Restitution.from_geometry(FIGURE_3.alpha)
@@ -375,6 +392,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         todo = [(m, s, solve) for m, settings in methods(args.quick).items() for s, solve in settings.items()]
         for method, setting, solve in tqdm(todo, desc=label, disable=None, leave=False):
             points.append(measure(label, method, setting, solve, made, repeats))
+        points += theory(label, side_stop, repeats)
     for lines in () if args.quick else (4, 8, 16, 32):
         for label, side_stop in (("two-sided", False), ("one-sided", True)):
             made = references(side_stop, True, lines)
@@ -402,7 +420,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     csv.writer(text, lineterminator="\n").writerows([header, *rows])
     cli.write(out / "work_precision.csv", text.getvalue())
     plotting.save(
-        plotting.work_precision([(p.case, p.method, p.seconds, p.e_error) for p in points if p.e_error < 1]),
+        plotting.work_precision([(p.case, p.method, p.seconds, p.steps, p.e_error) for p in points if p.e_error < 1]),
         out / "work_precision.png",
     )
     lines_out = [
