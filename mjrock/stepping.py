@@ -9,7 +9,6 @@ friction and the velocity, which the leapfrog keeps half a step back, follow eve
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import mujoco
@@ -36,7 +35,7 @@ SHORT = 24.0
 DASHPOT = 12.0
 """(c h / m)^2 of a short step over the accuracy, m = 1 / (6 W) the least mass that a contact may feel: the error of a
 dashpot centred in the step is (c h / m)^2 / 12."""
-LONG = 0.5
+LONG = 1.0
 """(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
 CHANGE = 1.0
 """Change of acceleration in a step, times the step, that is tolerated: over the accuracy and the speed of the wall."""
@@ -213,17 +212,6 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     sin, cos, step = math.sin, math.cos, mujoco.mj_step
     qpos, qvel, qacc = data.qpos, data.qvel, data.qacc
 
-    def gap(face: int, position: float, tau: float) -> float:
-        """Gap of a point after the time tau, to second order."""
-        half = 0.5 * tau * tau
-        turned = theta + tau * w_now + half * aw_now
-        value: float
-        if face == 0:
-            value = z + tau * vz_now + half * az_now + height - position * sin(turned) - height * cos(turned)
-        else:
-            value = x + tau * vx_now + half * ax_now + b - b * cos(turned) + position * sin(turned)
-        return value
-
     rows.follow(short, remember=True)
     record: list[tuple[float, ...]] = []
     t, h, last_h = 0.0, short, short
@@ -232,7 +220,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     ax, az, aw = qacc.tolist()
     jx = jz = jw = 0.0  # rates of the accelerations
     fresh, calm, touches, stopping = True, 0, 0, 0
-    last_open: list[tuple[int, float]] = []
+    last_ends: tuple[tuple[float, ...], ...] = ()
+    moving = case.motion is not None
     with tqdm(total=duration, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
         recorded, turned_to = -1.0, 0.0
         while recorded < duration and abs(turned_to) <= OVERTURNED:  # a NaN ends the loop too
@@ -241,42 +230,59 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
             late = 0.5 * last_h
             vx_now, vz_now, w_now = vx + ax_now * late, vz + az_now * late, w + aw_now * late
 
-            sine, lift = sin(theta), height * (1 - cos(theta))
-            candidates = [(0, p) for p in _open_ends(z + lift, -sine, b, base_points)]
-            if side_points:
-                shift = x + b * lift / height
-                candidates += [(1, p) for p in _open_ends(shift, sine, height, side_points)]
-            if candidates != last_open and last_h > short and not fresh:
+            sine, cosine = sin(theta), cos(theta)
+            ends = (
+                _open_ends(z + height - height * cosine, -sine, b, base_points),
+                _open_ends(x + b - b * cosine, sine, height, side_points) if side_points else (),
+            )
+            if ends != last_ends and last_h > short and not fresh:
                 # a long step has opened or closed a contact unforeseen: what it felt does not say what comes
-                if case.motion is not None:
+                if moving:
                     data.qfrc_applied[0] = push(case, t)
                 mujoco.mj_forward(model, data)
                 ax_now, az_now, aw_now = qacc.tolist()
                 h, calm, fresh = short, 0, True
-            last_open = candidates
+            last_ends = ends
             now, touch = h, False
             if stopping:
-                candidates, stopping = [], stopping - 1  # how a wall is being stopped says nothing of the next step
-            for face, position in candidates:
-                if gap(face, position, now) <= 0:
-                    tau = _root(gap, face, position, now, 1e-3 * short)
-                    closing = (gap(face, position, tau + 1e-3 * short) - gap(face, position, tau)) / (1e-3 * short)
+                stopping -= 1  # how a wall is being stopped says nothing of the next step
+            else:
+                w2 = w_now * w_now
+                approaches = []  # gap, its rate and its rate's rate where one closes within the step
+                for p in ends[0]:
+                    arm = p * cosine - height * sine
+                    g0, g1 = z + height - p * sine - height * cosine, vz_now - w_now * arm
+                    g2 = az_now - aw_now * arm + w2 * (p * sine + height * cosine)
+                    if g0 + now * (g1 + 0.5 * now * g2) <= 0:
+                        approaches.append((g0, g1, g2))
+                for p in ends[1]:
+                    arm = b * sine + p * cosine
+                    g0, g1 = x + b - b * cosine + p * sine, vx_now + w_now * arm
+                    g2 = ax_now + aw_now * arm + w2 * (b * cosine - p * sine)
+                    if g0 + now * (g1 + 0.5 * now * g2) <= 0:
+                        approaches.append((g0, g1, g2))
+                met = []  # when a gap closes, and how fast
+                for g0, g1, g2 in approaches:
+                    closing = math.sqrt(max(0.0, g1 * g1 - 2 * g0 * g2))
                     if (0.25 * k_max * h * h + c_max * h) * closing * closing > FADED * accuracy * energy:
-                        now, touch = tau + 0.5 * short, True
+                        met.append((2 * g0 / (closing - g1), closing))
+                if met:  # of the touches that fall into one window, the hardest starts it
+                    latest = min(met)[0] + 0.5 * short
+                    now, touch = max((c, tau) for tau, c in met if tau <= latest)[1] + 0.5 * short, True
             if now != last_h:
                 late, lag = 0.5 * (now - last_h), last_h - 0.25 * (last_h + now)
                 vx, vz, w = vx - (ax + jx * lag) * late, vz - (az + jz * lag) * late, w - (aw + jw * lag) * late
                 qvel[:] = vx, vz, w
                 rows.follow(now, remember=not touch)
-            if case.motion is not None:
+            if moving:
                 data.qfrc_applied[0] = push(case, t)
             step(model, data)
 
             ax_new, az_new, aw_new = qacc.tolist()
-            before = (t, now, x, z, theta, vx, vz, w)
+            vx_new, vz_new, w_new = qvel.tolist()
+            record.append((t, now, x, z, theta, vx, vz, w, vx_new, vz_new, w_new))
             recorded, turned_to = t, theta
-            vx, vz, w = qvel.tolist()
-            record.append((*before, vx, vz, w))
+            vx, vz, w = vx_new, vz_new, w_new
             x, z, theta = qpos.tolist()
             t += now
             if fresh:
@@ -349,22 +355,3 @@ def _open_ends(offset: float, slope: float, half: float, points: int) -> tuple[f
         first = math.floor((-offset / slope + half) / (2 * half) * (points - 1)) + 1
         return (-half + 2 * half * first / (points - 1), half)
     return ()
-
-
-def _root(
-    gap: Callable[[int, float, float], float], face: int, position: float, latest: float, tolerance: float
-) -> float:
-    """The time at which a gap closes, from the bracket [0, latest] [s]; never early, late by the tolerance at most."""
-    low, high = 0.0, latest
-    gap_low, gap_high = gap(face, position, 0.0), gap(face, position, latest)
-    for _ in range(60):
-        share = gap_low / (gap_low - gap_high) if gap_low > gap_high else 0.5
-        middle = low + (high - low) * min(max(share, 0.05), 0.95)
-        value = gap(face, position, middle)
-        if value <= 0:
-            high, gap_high = middle, value
-        else:
-            low, gap_low = middle, value
-        if high - low < tolerance:
-            break
-    return high
