@@ -112,7 +112,7 @@ class Response:
 def peak_energies(case: Case, peaks: Array) -> Array:
     """Energy of the rigid wall at its rotation peaks [J], shape (m,); the release counts with its velocity."""
     energy: Array = case.block.potential_energy(np.asarray(peaks, dtype=float))
-    if len(energy) and not case.released_outwards:
+    if len(energy) and not case.released_outwards and peaks[0] == case.release_peak:
         energy[0] = case.release_energy
     return energy
 
@@ -124,7 +124,7 @@ def restitution_of(energy: Array) -> Array:
 
 
 def rocking_history(
-    case: Case, t: Array, theta: Array, omega: Array, threshold: float
+    case: Case, t: Array, theta: Array, omega: Array, threshold: float, *, released: bool = True
 ) -> tuple[Array, Array, tuple[Impact, ...]]:
     """Times and sizes of the rotation peaks, and the impacts between them, of a sampled free rocking motion.
 
@@ -133,6 +133,7 @@ def rocking_history(
         t, theta, omega: the motion [s, rad, rad/s], shape (n,), finely sampled.
         threshold: rotation below which a maximum is the spring of the base and not rocking [rad]. With a side stop a
             maximum on its side of theta = 0 is the spring of the stop, whatever its size.
+        released: whether the motion starts with the release, and does not go on from an earlier one.
 
     Returns:
         Peak times [s], peaks |theta| [rad], and one impact between each pair of peaks, at the time when the wall
@@ -150,7 +151,7 @@ def rocking_history(
     else:
         left_over = math.nan
     times, sizes = times[rocking], sizes[rocking]
-    if not case.released_outwards:
+    if released and not case.released_outwards:
         times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
 
     energies = peak_energies(case, sizes)

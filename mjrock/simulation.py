@@ -104,6 +104,7 @@ class _Run:
 
         model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), wall)
         data = release(model, start, float(push(case, 0.0)))
+        started = time.perf_counter()
         try:
             if accuracy is None:
                 self.steps = fixed_steps(model, data, case, newmark_beta)
@@ -111,10 +112,13 @@ class _Run:
                 self.steps = fitted_steps(model, data, case, contacts, accuracy)
         except StepError as error:
             raise broken(str(error), error.t) from None
+        self.stepping_time = time.perf_counter() - started
         t, self.theta, self.omega = self.steps.t, self.steps.pose[:, 2], self.steps.velocity[:, 2]
         self.energy = mechanical_energy(case, contacts, self.steps.pose, self.steps.velocity)
         threshold = contacts.uplift_rotation(wall)
-        times, self.peaks, self.impacts = rocking_history(case, t, self.theta, self.omega, threshold)
+        times, self.peaks, self.impacts = rocking_history(
+            case, t, self.theta, self.omega, threshold, released=start is None
+        )
 
         # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
         standing = np.flatnonzero(np.abs(self.theta) <= wall.alpha)
@@ -148,8 +152,8 @@ def simulate(
         output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
             all; fitted steps are interpolated, None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.ledger`.
-        start: pose and velocity to start from instead of the release, the `end` of an earlier response; the motion then
-            counts as released from there, and its first peak is the first that it reaches.
+        start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
+            then no peak, and the first is the first that is reached.
 
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, or for a value outside
@@ -190,13 +194,14 @@ def simulate(
             used /= 10
             h = short_step(case, contacts, used)
     steps, theta, omega, energy = run.steps, run.theta, run.omega, run.energy
-    stepped = time.perf_counter() - started
     outcome, message = ending(case, steps.t, theta, energy, contacts.uplift_energy(wall))
 
     t = _output_times(steps, case, output_step, fitted=fitted)
+    end = steps.pose[-1], steps.velocity[-1]
     if fitted:
-        spline = CubicHermiteSpline(steps.t, theta, omega)
-        theta, omega = spline(t), spline(t, 1)
+        spline = CubicHermiteSpline(steps.t, steps.pose, steps.velocity)
+        theta, omega = spline(t)[:, 2], spline(t, 1)[:, 2]
+        end = spline(t[-1]), spline(t[-1], 1)
     else:
         stride = max(1, round(output_step / h)) if output_step else 1
         theta, omega = theta[::stride], omega[::stride]
@@ -213,10 +218,10 @@ def simulate(
         outcome=outcome,
         message=message,
         ledger=book,
-        end=(steps.pose[-1], steps.velocity[-1]),
+        end=end,
         stats={
             "wall_time": time.perf_counter() - started,
-            "stepping_time": stepped,
+            "stepping_time": run.stepping_time,
             "steps": len(steps.t),
             "timestep": h,
             "longest_timestep": float(steps.h.max()),

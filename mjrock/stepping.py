@@ -35,9 +35,9 @@ SHORT = 24.0
 DASHPOT = 12.0
 """(c h / m)^2 of a short step over the accuracy, m = 1 / (6 W) the least mass that a contact may feel: the error of a
 dashpot centred in the step is (c h / m)^2 / 12."""
-LONG = 1.0
+LONG = 0.6
 """(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
-CHANGE = 1.0
+CHANGE = 1.5
 """Change of acceleration in a step, times the step, that is tolerated: over the accuracy and the speed of the wall."""
 FADED = 0.01
 """A touch is met with a short step where ignoring it would misplace this much energy, over accuracy and energy."""
@@ -303,8 +303,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
                 h, calm = max(0.5 * h, short), 0
             elif 16 * change < tolerated:
                 calm += 1
-                if calm >= 2 and 2 * h <= longest:
-                    h, calm = 2 * h, 0
+                if calm >= 2:
+                    h, calm = min(2 * h, longest), 0
             else:
                 calm = 0
             if len(record) % 5000 == 0:
