@@ -52,6 +52,12 @@ class ContactParameters:
         return self.solimp[0]
 
 
+def most_inertia(inverse_weight: float) -> float:
+    """The largest row inertia whose impedance MuJoCo does not clamp [kg]."""
+    d = IMPEDANCE_RANGE[1] * (1 - 1e-9)
+    return d / ((1 - d) * inverse_weight)
+
+
 def newmark_inertia(k: Real, c: Real, timestep: float | Real, newmark_beta: float | Real) -> Real:
     """m_i = h c/2 + beta h^2 k [kg], what makes the Euler step Newmark's with centred damping."""
     return timestep * c / 2 + newmark_beta * timestep**2 * k
@@ -98,10 +104,11 @@ def row_terms(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Dashpot [N s/m] and inertia [kg] of many rows: f = -(k r + dashpot v + inertia a); arguments broadcast.
 
-    `ringing` is an extra dashpot in units of h k, for steps that do not resolve the contact.
+    `ringing` is an extra dashpot in units of h k, for steps that do not resolve the contact. A dashpot that would take
+    more than half the inertia that MuJoCo represents, thousands of times the wall's, is no stronger than that.
     """
-    damping = c + ringing * timestep * k
-    inertia = newmark_inertia(k, damping, timestep, newmark_beta) + lag_inertia(c, timestep, inverse_weight)
+    damping = np.minimum(c + ringing * timestep * k, 0.5 * most_inertia(inverse_weight) / timestep)
+    inertia = newmark_inertia(k, damping, timestep, newmark_beta) + lag_inertia(damping, timestep, inverse_weight)
     return damping, np.maximum(inertia, least_inertia(inverse_weight))
 
 

@@ -67,7 +67,7 @@ class Ledger:
     def of(cls, case: Case, contacts: Contacts, steps: Steps) -> Ledger:
         """The ledger of a run."""
         wall = case.block
-        step, beta, weight = steps.h[:, None], steps.beta[:, None], inverse_weight(wall.mass)
+        step, weight = steps.h[:, None], inverse_weight(wall.mass)
         start = steps.pose - 0.5 * step * steps.before
         seams = steps.t - 0.5 * steps.h
         width = np.append(np.diff(seams), 0.0)[:, None]
@@ -80,7 +80,8 @@ class Ledger:
             rate = middle[:, axis, None] + middle[:, 2, None] * lever
             curve = middle[:, 3 + axis, None] + middle[:, 5, None] * lever
             gap = gaps(wall, contacts, steps.pose)
-            dashpot, inertia = row_terms(k, interface.damping, step, weight, beta, steps.ringing[:, None])
+            beta, ringing = steps.beta[1 - axis, :, None], steps.ringing[1 - axis, :, None]
+            dashpot, inertia = row_terms(k, interface.damping, step, weight, beta, ringing)
             # what the dashpot, centred or at the end of the step, exerts at the velocity that the leapfrog keeps
             drag = dashpot * (rate - 0.5 * step * curve) + (inertia - beta * step**2 * k) * curve
             row = -(k * gap + drag + beta * step**2 * k * curve)

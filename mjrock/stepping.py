@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from .case import Case
-from .contact import OVERDAMPED, impedance, row_terms
+from .contact import OVERDAMPED, impedance, most_inertia, row_terms
 from .interface import Contacts
 from .mjcf import HELD_MASSES, inverse_weight
 
@@ -44,9 +44,10 @@ FADED = 0.01
 SMOOTH = 1.5
 """omega h below which a step resolves the contacts and takes Newmark's beta = 1/12 (stable below 2.45). Above it the
 closed contacts are as good as at rest: beta = 1/4 is stable there, but lets what is left ring on from step to step."""
-RINGING = 0.1
-"""Damping of that ringing, an extra dashpot h k RINGING with beta = (1 + RINGING^2)/4: it loses a third of its energy
-in a step, and the rocking next to nothing."""
+RINGING = (0.1, 1.0)
+"""Damping of that ringing at base and side, an extra dashpot h k r with beta = (1 + r^2)/4. At the base it loses a
+third of its energy in a step, and the rocking next to nothing. A side stop only ever carries what has just hit it: what
+is too faint to be met with a short step is to die in it, and not to be thrown back with more."""
 
 
 class StepError(RuntimeError):
@@ -66,8 +67,8 @@ class Steps:
         h: step lengths [s], shape (n,).
         pose: x, z, theta [m, m, rad], shape (n, 3).
         before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (n, 3).
-        beta: Newmark's beta of the contact rows in each step [-], shape (n,).
-        ringing: their extra dashpot in units of h k [-], shape (n,).
+        beta: Newmark's beta of the rows of base and side in each step [-], shape (2, n).
+        ringing: their extra dashpots in units of h k [-], shape (2, n).
         touches: how many touches were met with a short step.
     """
 
@@ -135,15 +136,16 @@ def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, newmark_
         pose=states[:count, 1:4],
         before=states[:count, 4:],
         after=states[1 : count + 1, 4:],
-        beta=np.full(count, newmark_beta),
-        ringing=np.zeros(count),
+        beta=np.full((2, count), newmark_beta),
+        ringing=np.zeros((2, count)),
     )
 
 
 def _long_or_short(h: float | Array, frequency: float) -> tuple[Array, Array]:
-    """Newmark's beta and the extra dashpot of a fitted step [-]."""
-    smooth = h * frequency < SMOOTH
-    return np.where(smooth, 1 / 12, (1 + RINGING**2) / 4), np.where(smooth, 0.0, RINGING)
+    """Newmark's beta and the extra dashpot of fitted steps [-], at base and side, shapes (2, n)."""
+    r = np.array(RINGING)[:, None]
+    smooth = np.atleast_1d(h) * frequency < SMOOTH
+    return np.where(smooth, 1 / 12, (1 + r**2) / 4), np.where(smooth, 0.0, r)
 
 
 class _Rows:
@@ -154,6 +156,7 @@ class _Rows:
         self.model = model
         self.k = np.concatenate([face.stiffness for face in faces])
         self.c = np.concatenate([face.damping for face in faces])
+        self.face = np.repeat([0, 1][: len(faces)], [face.points for face in faces])
         self.weight = inverse_weight(case.block.mass)
         self.held = HELD_MASSES * case.block.mass
         self.frequency = contacts.highest_frequency(case.block, side_stop=case.side_stop)
@@ -169,7 +172,7 @@ class _Rows:
         model.pair_solref[:], model.pair_solimp[:, :2], model.pair_solreffriction[:, 1], model.opt.impratio = rows
 
     def _rows(self, h: float) -> tuple[Array, Array, Array, float]:
-        beta, ringing = _long_or_short(h, self.frequency)
+        beta, ringing = (values[self.face, 0] for values in _long_or_short(h, self.frequency))
         damping, inertia = row_terms(self.k, self.c, h, self.weight, beta, ringing)
         d = impedance(inertia, self.weight)
         scale = (1 - d) * self.weight
@@ -184,7 +187,8 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     The lengths follow from the contacts, the pivot's motion and an error estimate, never from the wall at hand:
 
     * the short step from the highest frequency of the closed contacts, omega h = sqrt(SHORT accuracy);
-    * the longest from the rocking, p h = sqrt(LONG accuracy);
+    * the longest from the rocking, p h = sqrt(LONG accuracy), as far as MuJoCo represents the rows and, on a shaken
+      base, up to the time step of the record;
     * between the two, a step is doubled after two in a row in which the acceleration changed by little, h |da| under a
       quarter of CHANGE accuracy |v|, and halved when it changed by more than that; |.| weighs with the masses, and |v|
       is the speed with which the wall arrived at its last touch;
@@ -201,12 +205,12 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
     b, height, mass, inertia = wall.b, wall.h, wall.mass, wall.inertia
     rows = _Rows(model, case, contacts)
     short = model.opt.timestep
-    longest = math.sqrt(LONG * accuracy) / wall.p
+    k_max, c_max = float(rows.k.max()), float(rows.c.max())
+    longest = min(math.sqrt(LONG * accuracy) / wall.p, math.sqrt(0.4 * most_inertia(rows.weight) / k_max))
     longest = max(short, min(longest, case.motion.dt) if case.motion else longest)
     tolerated = (CHANGE * accuracy) ** 2
     least_energy = 2 * contacts.uplift_energy(wall)
     energy = max(2 * case.release_energy, least_energy)  # twice the kinetic energy that an impact is measured by
-    k_max, c_max = float(rows.k.max()), float(rows.c.max())
     stops = c_max * short * rows.weight > 0.1 * OVERDAMPED  # a dashpot that even the short step does not resolve
     base_points, side_points = contacts.base.points, contacts.side.points if case.side_stop and contacts.side else 0
     sin, cos, step = math.sin, math.cos, mujoco.mj_step
@@ -332,7 +336,7 @@ def short_step(case: Case, contacts: Contacts, accuracy: float) -> float:
     stops what it meets, and how it does so no longer matters.
     """
     frequency = contacts.highest_frequency(case.block, side_stop=case.side_stop)
-    spring = min(1.0, math.sqrt(SHORT * accuracy)) / frequency
+    spring = min(0.35, math.sqrt(SHORT * accuracy)) / frequency
     faces = [contacts.base] + ([contacts.side] if case.side_stop and contacts.side else [])
     strongest = max(float(face.damping.max()) for face in faces) * inverse_weight(case.block.mass)
     dashpot = math.sqrt(DASHPOT * accuracy) / (6 * strongest) if strongest else math.inf
