@@ -199,9 +199,10 @@ def simulate(
     t = _output_times(steps, case, output_step, fitted=fitted)
     end = steps.pose[-1], steps.velocity[-1]
     if fitted:
-        spline = CubicHermiteSpline(steps.t, steps.pose, steps.velocity)
-        theta, omega = spline(t)[:, 2], spline(t, 1)[:, 2]
-        end = spline(t[-1]), spline(t[-1], 1)
+        spline = CubicHermiteSpline(steps.t, theta, omega)
+        theta, omega = spline(t), spline(t, 1)
+        last = CubicHermiteSpline(steps.t[-2:], steps.pose[-2:], steps.velocity[-2:])
+        end = last(t[-1]), last(t[-1], 1)
     else:
         stride = max(1, round(output_step / h)) if output_step else 1
         theta, omega = theta[::stride], omega[::stride]
