@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 from numpy.typing import ArrayLike
 
 from .response import Response
@@ -48,7 +49,7 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     rotation(above, responses).set_xlabel("")
     energy(below, responses)
     below.set_xlim(0, max(r.t[-1] for r in responses))
-    below.legend(loc="upper right", frameon=False)  # where the energy has gone
+    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     above.set_title(title, fontsize=10)
     return figure
 
@@ -80,12 +81,12 @@ def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], ord
     steps = np.asarray(steps, dtype=float)
     for (label, values), marker in zip(errors.items(), "osD^v", strict=False):
         ax.loglog(steps * 1e3, values, marker=marker, markersize=4, linewidth=1.2, label=label)
-    ax.set_xticks(steps * 1e3, minor=False)
-    ax.set_xticks([], minor=True)
     anchor = min(float(np.min(np.asarray(v))) for v in errors.values())
     slope = 0.25 * anchor * (steps / steps.min()) ** order
     ax.loglog(steps * 1e3, slope, color="0.5", linewidth=0.8, linestyle="--", label=f"order {order}")
+    ax.set_xticks(steps * 1e3)
     ax.xaxis.set_major_formatter("{x:g}")
+    ax.xaxis.set_minor_locator(NullLocator())
     ax.set_xlabel("step $h$ [ms]")
     ax.grid(True, which="major", linewidth=0.4, color="0.9")
     ax.legend(frameon=False, fontsize=8)
