@@ -26,7 +26,7 @@ that both stick while the wall turns over work against each other: with mu = 30 
 third too much."""
 HELD_FRICTION = 30.0
 """Friction coefficient of the outer edge of a wall with a side stop [-]. It is not to slip when the side impact throws
-the base while it is hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 4 %, from mu = 10
+the base while it is hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %, from mu = 10
 nothing changes (`scripts/friction.py`). The inner edge takes as much of it as SELF_WORK allows."""
 SELF_WORK = 1e-4
 """Most work that two sticking edges may do against each other in an impact, over the energy of a release at alpha/2."""
