@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from .block import require_within
-from .case import Case
+from .case import ON_ITS_FACE, Case
 from .response import Impact, Outcome, Response, describe
 from .restitution import Restitution
 
 Array = NDArray[np.float64]
-OVERTURNED = math.pi / 2
-"""A wall is followed until it lies on its face [rad]."""
 
 
 def _terminal(event: Callable[[float, Array], float], direction: float) -> Callable[[float, Array], float]:
@@ -71,7 +69,7 @@ def solve_analytical(
 
     peak = _terminal(lambda t, y: s * y[1], -1)
     impact = _terminal(lambda t, y: s * y[0], -1)
-    overturning = _terminal(lambda t, y: s * y[0] - OVERTURNED, 1)
+    overturning = _terminal(lambda t, y: s * y[0] - ON_ITS_FACE, 1)
 
     t, y = 0.0, np.array([case.theta0, case.omega0])
     s = case.direction

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from .block import Block, require_within
 from .motion import GroundMotion
 
+ON_ITS_FACE = math.pi / 2
+"""Rotation up to which a wall is followed [rad]: it has overturned and lies on its face."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -35,8 +38,8 @@ class Case:
     motion: GroundMotion | None = None
 
     def __post_init__(self) -> None:
-        lowest = 0.0 if self.side_stop else -math.pi / 2
-        require_within("release rotation theta0", self.theta0, lowest, math.pi / 2, "rad")
+        lowest = 0.0 if self.side_stop else -ON_ITS_FACE
+        require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad")
         require_within("duration", self.duration, 1e-6, 1e6, "s")
         require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s")
         if abs(self.theta0) > 2 * self.block.alpha:

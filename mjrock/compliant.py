@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
 from .block import GRAVITY, require_within
-from .case import Case
+from .case import ON_ITS_FACE, Case
 from .interface import Contacts
 from .pose import mechanical_energy, release_pose
 from .response import Response, ending, rocking_history
@@ -110,7 +110,7 @@ def solve_compliant(
         output_step: spacing of the returned samples [s].
 
     Raises:
-        ValueError: if the contacts do not fit the case, or for a tolerance or step that is not positive.
+        ValueError: if the contacts do not fit the case, or for a tolerance or step out of range.
         RuntimeError: if the integration fails.
     """
     require_within("rtol", rtol, 1e-14, 0.1)
@@ -125,7 +125,7 @@ def solve_compliant(
         return system.edge_load(t, y) - (0.0 if held else CAUGHT * wall.weight)
 
     def overturning(t: float, y: Array) -> float:
-        return abs(float(y[2])) - math.pi / 2
+        return abs(float(y[2])) - ON_ITS_FACE
 
     switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.side_stop)

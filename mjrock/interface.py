@@ -186,6 +186,10 @@ class Contacts:
             wall, k_base=k_base, xi_base=xi_base, k_side=k_side, xi_side=xi_side, points=points, law=name
         )
 
+    def faces(self, *, side_stop: bool) -> list[Interface]:
+        """The interfaces that a case with or without a side stop meets, the base first."""
+        return [self.base] + ([self.side] if side_stop and self.side else [])
+
     def require_fit(self, wall: Block, *, side_stop: bool) -> None:
         """Raise ValueError unless these interfaces have the size of `wall`, and a side where the case has a stop."""
         faces = [("base", self.base, 2 * wall.b)]

@@ -182,7 +182,7 @@ def _add_point(
 
 
 def _add_scenery(root: Element, case: Case) -> None:
-    """What only the eye needs, and that nothing meets nothing but through an explicit pair."""
+    """What only the eye needs, and the default by which geoms meet through explicit pairs alone."""
     h = case.block.h
     _add(root, "statistic", center=(0, 0, h), extent=2 * h)
     visual = _add(root, "visual")

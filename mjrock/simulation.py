@@ -18,7 +18,7 @@ from .ledger import Ledger
 from .mjcf import inverse_weight, wall_mjcf
 from .pose import base_gaps, mechanical_energy, side_gaps
 from .response import Response, State, ending, rocking_history
-from .stepping import SMOOTH, StepError, Steps, fitted_steps, fixed_steps, push, short_step
+from .stepping import SMOOTH, StepError, fitted_steps, fixed_steps, push, short_step
 
 Array = NDArray[np.float64]
 ENERGY_GAIN = 1e-3
@@ -53,7 +53,10 @@ def compile_wall(text: str, wall: Block) -> mujoco.MjModel:
 
 
 def release(model: mujoco.MjModel, start: State | None = None, pushed: float = 0.0) -> mujoco.MjData:
-    """Data at `start` or the keyframe `release`, with the velocity half a step back, where the leapfrog keeps it."""
+    """Data at `start` or the keyframe `release`, with the velocity half a step back, where the leapfrog keeps it.
+
+    `pushed` is the force of a base that moves already [N], see `mjrock.stepping.push`.
+    """
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("release").id)
     if start is not None:
@@ -196,16 +199,17 @@ def simulate(
     steps, theta, omega, energy = run.steps, run.theta, run.omega, run.energy
     outcome, message = ending(case, steps.t, theta, energy, contacts.uplift_energy(wall))
 
-    t = _output_times(steps, case, output_step, fitted=fitted)
     end = steps.pose[-1], steps.velocity[-1]
     if fitted:
+        finish = min(float(steps.t[-1]), case.duration)
+        t = np.linspace(0.0, finish, max(2, math.ceil(finish / (output_step or 1e-3)) + 1))
         spline = CubicHermiteSpline(steps.t, theta, omega)
         theta, omega = spline(t), spline(t, 1)
         last = CubicHermiteSpline(steps.t[-2:], steps.pose[-2:], steps.velocity[-2:])
-        end = last(t[-1]), last(t[-1], 1)
+        end = last(finish), last(finish, 1)
     else:
         stride = max(1, round(output_step / h)) if output_step else 1
-        theta, omega = theta[::stride], omega[::stride]
+        t, theta, omega = steps.t[::stride], theta[::stride], omega[::stride]
     book = Ledger.of(case, contacts, steps).at(t) if ledger else None
     return Response(
         case=case,
@@ -241,10 +245,3 @@ def simulate(
 def _deepest(gaps: Array) -> float:
     """Largest penetration [m]."""
     return max(0.0, -float(gaps.min()))
-
-
-def _output_times(steps: Steps, case: Case, output_step: float | None, *, fitted: bool) -> Array:
-    if not fitted:
-        return steps.t[:: max(1, round(output_step / steps.h[0])) if output_step else 1]
-    end = min(float(steps.t[-1]), case.duration)
-    return np.linspace(0.0, end, max(2, math.ceil(end / (output_step or 1e-3)) + 1))

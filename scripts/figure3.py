@@ -5,8 +5,6 @@ Writes figure3_one_sided.png, figure3_two_sided.png, figure3.csv and prints the 
 
 from __future__ import annotations
 
-import csv
-import io
 import sys
 from collections.abc import Sequence
 
@@ -63,9 +61,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         "RMS/alpha to theory",
         "RMS/alpha to contact law",
     ]
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([header, *rows])
-    cli.write(out / "figure3.csv", text.getvalue())
+    cli.write(out / "figure3.csv", cli.csv_text(header, rows))
     print(cli.table(header, rows))
 
 

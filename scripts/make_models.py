@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import sys
 import warnings
 from collections.abc import Sequence
@@ -49,19 +47,15 @@ class Model:
         law = mr.solve_compliant(self.case, self.contacts, output_step=OUTPUT_STEP)
         t = np.linspace(0, self.case.duration, round(self.case.duration / OUTPUT_STEP) + 1)
         columns = [t] + [np.interp(t, r.t, y) for r in (theory, law) for y in (r.theta, r.energy)]
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(
-            [
-                "time [s]",
-                "rotation, rocking theory [rad]",
-                "energy, rocking theory [J]",
-                "rotation, contact law [rad]",
-                "energy, contact law [J]",
-            ]
-        )
-        writer.writerows([f"{value:.7g}" for value in row] for row in zip(*columns, strict=True))
-        return text.getvalue()
+        header = [
+            "time [s]",
+            "rotation, rocking theory [rad]",
+            "energy, rocking theory [J]",
+            "rotation, contact law [rad]",
+            "energy, contact law [J]",
+        ]
+        rows = ([f"{value:.7g}" for value in row] for row in zip(*columns, strict=True))
+        return cli.csv_text(header, rows)
 
     def card(self) -> str:
         """What the model is: equations, symbols, units."""

@@ -6,8 +6,6 @@ compared with MuJoCo is the event-driven solution with the measured e_1s. Releas
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import sys
 import warnings
@@ -61,9 +59,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         "e_1s measured", "e_1s MuJoCo", "rebounds MuJoCo", "peak/alpha theory", "peak/alpha MuJoCo",
         "uplift/alpha", "RMS/alpha",
     ]  # fmt: skip
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([header, *rows])
-    cli.write(out / "table2.csv", text.getvalue())
+    cli.write(out / "table2.csv", cli.csv_text(header, rows))
     plotting.save(plotting.grid(panels, top=0.12), out / "table2.png")
     print(cli.table(header, rows))
     print("\n" + "\n".join(notes))

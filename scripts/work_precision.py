@@ -8,8 +8,6 @@ work_precision.png and prints the table, the ratios at equal error, and the shar
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import os
 import platform
@@ -77,7 +75,7 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
         else:
             W = mjcf.inverse_weight(case.block.mass)
             d = impedance(least_inertia(W), W)
-            faces = [contacts.base] + ([contacts.side] if case.side_stop and contacts.side else [])
+            faces = contacts.faces(side_stop=case.side_stop)
             k, c = (np.concatenate([getattr(face, name) for face in faces]) for name in ("stiffness", "damping"))
             model.pair_solref[:] = -(1 - d) * W * np.stack([k, c], axis=1)
             model.pair_solimp[:, :2] = d
@@ -293,8 +291,8 @@ def table_1_walls(count: int) -> list[tuple[mr.Case, mr.Contacts]]:
     return drawn
 
 
-def walls_study(count: int) -> tuple[str, int]:
-    """The default knob on walls of Table 1 against the fixed step of equal error: text, and how many stay inside."""
+def walls_study(count: int) -> str:
+    """The default knob on walls of Table 1 against the fixed step of equal error, and which exceed its tolerance."""
     ratios, outside = [], []
     for case, contacts in tqdm(table_1_walls(count), desc="walls of Table 1", disable=None, leave=False):
         exact = mr.simulate(case, contacts, accuracy=1e-6)
@@ -330,7 +328,7 @@ def walls_study(count: int) -> tuple[str, int]:
         f"theta/alpha within 1e-3 on {inside}; median time {statistics.median(ratios):.3f} of the fixed step of equal "
         "error"
     )
-    return "\n".join([text, *(f"  outside: {line}" for line in outside)]), inside
+    return "\n".join([text, *(f"  outside: {line}" for line in outside)])
 
 
 def profile() -> str:
@@ -415,9 +413,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         ]
         for p in points
     ]
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([header, *rows])
-    cli.write(out / "work_precision.csv", text.getvalue())
+    cli.write(out / "work_precision.csv", cli.csv_text(header, rows))
     plotting.save(
         plotting.work_precision([(p.case, p.method, p.seconds, p.steps, p.e_error) for p in points if p.e_error < 1]),
         out / "work_precision.png",
@@ -445,7 +441,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 f"{label}: the default (error of e {default.e_error:.1e}, RMS {default.rms:.1e}) takes {ratio} "
                 "at equal error"
             )
-    lines_out.append(walls_study(2 if args.quick else 30)[0])
+    lines_out.append(walls_study(2 if args.quick else 30))
     if not args.quick:
         lines_out.append(profile())
     cli.write(out / "work_precision.txt", "\n".join(lines_out) + "\n")
