@@ -143,6 +143,8 @@ def rocking_history(
     wall = case.block
     times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
     rocking = sizes > threshold
+    if released and not case.released_outwards:
+        rocking &= times > t[1]  # the release itself, where its velocity is not zero to the last digit
     residual = times > (times[rocking][-1] if rocking.any() else t[0])
     if residual.any():
         left_over = float(wall.potential_energy(float(sizes[residual].max())))

@@ -45,3 +45,13 @@ def test_restitution_of_peaks(wall):
     found = restitution_of(peak_energies(mr.Case(wall, 0.05, 1.0), peaks))
     np.testing.assert_allclose(found[:3], [0.9, 0.5, 0.0], atol=1e-7)
     assert np.isnan(found[3])
+
+
+def test_a_release_that_is_not_quite_still_is_one_peak(two_sided, e):
+    exact = mr.solve_analytical(two_sided, e)
+    for first in (1e-20, -1e-20, 1e-6):
+        omega = exact.omega.copy()
+        omega[0] = first
+        _, peaks, impacts = rocking_history(two_sided, exact.t, exact.theta, omega, 1e-4)
+        np.testing.assert_allclose(peaks, exact.peaks[: len(peaks)], rtol=1e-4)
+        assert impacts[0].restitution == pytest.approx(e.base, rel=1e-3)
