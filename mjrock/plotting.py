@@ -138,7 +138,7 @@ def _errors(ax: Axes, points: Sequence[tuple[float, float, str]], methods: Seque
     for i, (method, marker) in enumerate(zip(methods, "os^vD<>pPX*hd", strict=False)):
         own = sorted((cost, error) for cost, error, name in points if name == method)
         if own:
-            color = f"C{i}" if i < 10 else ("0.15", "0.55", "gold")[i - 10]
+            color = f"C{i}" if i < 10 else ("0.15", "navy", "gold")[i - 10]
             ax.loglog(*np.transpose(own), marker=marker, markersize=5, linewidth=1.2, color=color, label=method)
     front: list[tuple[float, float]] = []
     for cost, error, name in sorted(points):
