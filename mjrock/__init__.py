@@ -19,7 +19,7 @@ from .mjcf import wall_mjcf
 from .motion import GroundMotion
 from .response import Impact, Outcome, Response
 from .restitution import Restitution
-from .simulation import SimulationError, automatic_timestep, simulate
+from .simulation import SimulationError, automatic_timestep, simulate, simulate_batch
 
 __all__ = [
     "GRAVITY",
@@ -46,6 +46,7 @@ __all__ = [
     "contact_stiffness",
     "reference_frequency",
     "simulate",
+    "simulate_batch",
     "solve_analytical",
     "solve_compliant",
     "wall_mjcf",

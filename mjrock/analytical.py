@@ -4,24 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
+from .arcs import Event, ForcedArcs, FreeArcs
 from .block import require_within
-from .case import ON_ITS_FACE, Case
+from .case import Case
 from .response import Impact, Outcome, Response, describe
 from .restitution import Restitution
-
-Array = NDArray[np.float64]
-
-
-def _terminal(event: Callable[[float, Array], float], direction: float) -> Callable[[float, Array], float]:
-    event.terminal = True  # type: ignore[attr-defined]
-    event.direction = direction  # type: ignore[attr-defined]
-    return event
 
 
 def solve_analytical(
@@ -33,120 +23,88 @@ def solve_analytical(
     output_step: float = 1e-3,
     rest: float = 1e-9,
 ) -> Response:
-    """Free rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak.
+    """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
 
-    Each rocking arc is split at its peak, where the velocity changes sign, so that the two events that end its halves
-    (omega = 0, theta = 0) are each crossed once, from a state that is clearly on one side of them. Impacts that
-    accumulate end the motion: a rebound with less than `rest` of the energy of release leaves the wall at rest.
+    Impacts that accumulate end the rocking: a rebound with less than `rest` of the energy of release leaves the wall at
+    rest. Under ground motion that share is of the energy that overturns the wall, and a wall at rest is lifted again
+    when |a_g| > g tan(alpha) towards a free side.
 
     Args:
-        case: the wall, its release, its sides. With a side stop `e.lumped` rules and theta >= 0, without one `e.base`.
+        case: the wall, its release, its sides, its ground motion. With a side stop `e.lumped` rules and theta >= 0,
+            without one `e.base`.
         e: the coefficients of restitution.
-        rtol, atol: tolerances of the integration (scipy, DOP853), on rotation [rad] and velocity [rad/s].
+        rtol, atol: tolerances of the integration of free arcs (scipy, DOP853), on rotation [rad] and velocity [rad/s];
+            `rtol` sets the longest step of forced ones, see `mjrock.arcs`.
         output_step: spacing of the returned samples [s].
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
 
     Raises:
-        ValueError: for a case with ground motion, a tolerance or step out of range, or a side stop from which the wall
-            does not rebound.
+        ValueError: for a tolerance or step out of range, or a side stop from which the wall does not rebound.
         RuntimeError: if the integration fails.
     """
     require_within("rtol", rtol, 1e-14, 0.1)
     require_within("atol", atol, 1e-16, 0.1)
-    require_within("output_step", output_step, 1e-7, 10.0, "s")
+    require_within("output_step", output_step, 1e-7, 1e6, "s")
     require_within("rest", rest, 1e-30, 0.1)
-    if case.motion is not None:
-        raise ValueError("solve_analytical answers free rocking only; motion must be None")
     if case.side_stop and not -1 <= e.lumped < 0:
         raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
     started = time.perf_counter()
     wall = case.block
-    alpha, p2, restitution = wall.alpha, wall.p**2, abs(e.lumped) if case.side_stop else e.base
+    if case.motion is None:
+        arcs: FreeArcs | ForcedArcs = FreeArcs(case, rtol, atol)
+        least = rest * case.release_energy
+    else:
+        arcs = ForcedArcs(case, case.motion, rtol)
+        least = rest * float(wall.potential_energy(wall.alpha))
 
-    def rocking(t: float, y: Array) -> tuple[float, float]:
-        # s theta is the rotation about the toe that carries the wall (Eq. 1 without ground motion)
-        return y[1], -s * p2 * math.sin(alpha - s * y[0])
-
-    peak = _terminal(lambda t, y: s * y[1], -1)
-    impact = _terminal(lambda t, y: s * y[0], -1)
-    overturning = _terminal(lambda t, y: s * y[0] - ON_ITS_FACE, 1)
-
-    t, y = 0.0, np.array([case.theta0, case.omega0])
-    s = case.direction
+    state = (0.0, case.theta0, case.omega0)
+    s, event = case.direction, Event.TIME
     impacts: list[Impact] = []
-    peaks: list[float] = []
-    arcs: list[tuple[float, float, Callable[[Array], Array]]] = []
-    evaluations = 0
-    outcome = Outcome.TIME_ENDED
-    rising = case.released_outwards
-    if not rising:
-        peaks.append(case.release_peak)
-    if case.theta0 == 0 and case.omega0 == 0:
-        outcome = Outcome.AT_REST
-    while outcome is Outcome.TIME_ENDED and t < case.duration:
-        if rising or y[0] * s > 0:
-            first = peak if rising else impact
-            arc = solve_ivp(
-                rocking,
-                (t, case.duration),
-                y,
-                method="DOP853",
-                events=(first, overturning),
-                dense_output=True,
-                rtol=rtol,
-                atol=atol,
-            )
-            evaluations += arc.nfev
-            if arc.status < 0:
-                raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
-            arcs.append((t, float(arc.t[-1]), arc.sol))
-            t, y = float(arc.t[-1]), arc.y[:, -1]
-            if arc.t_events[1].size:
-                outcome = Outcome.OVERTURNED
+    peaks = [] if case.released_outwards else [case.release_peak]
+    at_rest = case.theta0 == 0 and case.omega0 == 0
+    while state[0] < case.duration:
+        if at_rest:
+            lifted, side = arcs.uplift(state[0])
+            if lifted >= case.duration:
                 break
-            if not arc.t_events[0].size:
-                break  # the time is over
-        if rising:
-            peaks.append(abs(float(y[0])))
-            rising = False
-            continue
-        before, after = float(y[1]), float(restitution * y[1])
-        if case.side_stop:
-            after = -after
-        energies = [0.5 * wall.toe_inertia * w**2 for w in (before, after)]
-        impacts.append(Impact(t, before, after, *energies))
-        if energies[1] <= rest * case.release_energy:
-            outcome = Outcome.AT_REST
+            state, s, at_rest = (lifted, 0.0, 0.0), side, False
+        outwards = s * state[2] > 0
+        state, event = arcs.advance(state, s)
+        if event is Event.FALL:
             break
-        s = math.copysign(1.0, after)
-        y = np.array([0.0, after])
-        rising = True
-    if outcome is Outcome.TIME_ENDED and abs(y[0]) > alpha:
-        outcome = Outcome.OVERTURNED
+        if event is Event.TURN and outwards:
+            peaks.append(abs(state[1]))
+        elif event is Event.IMPACT:
+            before = state[2]
+            after = e.lumped * before if case.side_stop else e.base * before
+            energies = [0.5 * wall.toe_inertia * omega**2 for omega in (before, after)]
+            impacts.append(Impact(state[0], before, after, *energies))
+            at_rest = energies[1] <= least
+            s = math.copysign(1.0, after)
+            state = (state[0], 0.0, 0.0 if at_rest else after)
 
-    t_end = t if outcome is Outcome.OVERTURNED else case.duration
+    if event is Event.FALL or abs(state[1]) > wall.alpha:
+        outcome = Outcome.OVERTURNED
+    else:
+        outcome = Outcome.AT_REST if at_rest else Outcome.TIME_ENDED
+    t_end = state[0] if outcome is Outcome.OVERTURNED else case.duration
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
-    theta, omega = np.zeros_like(samples), np.zeros_like(samples)
-    for start, end, solution in arcs:
-        within = (samples >= start) & (samples <= end)
-        if within.any():
-            theta[within], omega[within] = solution(samples[within])
-    energy = wall.potential_energy(theta) + 0.5 * wall.toe_inertia * omega**2
+    theta, omega = arcs.sample(samples)
     return Response(
         case=case,
         solver="analytical",
         t=samples,
         theta=theta,
         omega=omega,
-        energy=energy,
+        energy=wall.potential_energy(theta) + 0.5 * wall.toe_inertia * omega**2,
         impacts=tuple(impacts),
         peaks=np.array(peaks),
         outcome=outcome,
         message=describe(outcome, case, t_end, float(theta[-1])),
         stats={
             "wall_time": time.perf_counter() - started,
-            "evaluations": evaluations,
-            "arcs": len(arcs),
+            "evaluations": arcs.evaluations,
+            "arcs": len(arcs.known),
             "rtol": rtol,
             "atol": atol,
         },

@@ -170,9 +170,10 @@ def solve_compliant(
     sampled = np.concatenate(times)
     theta, omega = history[:, 2], history[:, 5]
     energy = mechanical_energy(case, contacts, history[:, :3], history[:, 3:])
-    _, peaks, impacts = rocking_history(case, sampled, theta, omega, contacts.uplift_rotation(wall))
+    uplift = contacts.uplift_rotation(wall), contacts.uplift_energy(wall)
+    _, peaks, impacts = rocking_history(case, sampled, theta, omega, energy, uplift)
     stride = max(1, round(output_step / fine))
-    outcome, message = ending(case, sampled, theta, energy, contacts.uplift_energy(wall))
+    outcome, message = ending(case, sampled, theta, energy, uplift[1])
     return Response(
         case=case,
         solver="compliant",

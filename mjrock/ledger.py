@@ -104,7 +104,7 @@ class Ledger:
         out = wall.b * np.sign(sine[:, 0]) * cosine[:, 0] - wall.h * sine[:, 0]
         slip = middle[:, 0] + middle[:, 2] * 0.5 * (edge - steps.pose[:, 1] - wall.h)
         lift = middle[:, 1] - middle[:, 2] * out
-        pushed = push(case, steps.t)
+        pushed = push(case, steps.t, steps.h)
         along = wall.mass * middle[:, 3] - side_force - pushed
         up = wall.mass * (middle[:, 4] + GRAVITY) - base_force  # what a sliding cone presses on top of the law
         friction_work = -(along * slip + up * lift) * width[:, 0]

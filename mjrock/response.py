@@ -104,8 +104,11 @@ class Response:
 
         e_n = sqrt(V_(n+1) / V_n), V the potential energy of the rigid wall at a rotation peak, or its whole energy at
         release. Every solver is measured with this one rule, which is exact for a rigid wall, and the energy that a
-        compliant base still stores under a pivoting wall is not taken for a loss.
+        compliant base still stores under a pivoting wall is not taken for a loss. On a shaken base the ground works
+        between two peaks, and |e| is that of the impacts, one each.
         """
+        if self.case.motion is not None:
+            return np.array([impact.restitution for impact in self.impacts])
         return restitution_of(peak_energies(self.case, self.peaks))
 
 
@@ -124,38 +127,60 @@ def restitution_of(energy: Array) -> Array:
 
 
 def rocking_history(
-    case: Case, t: Array, theta: Array, omega: Array, threshold: float, *, released: bool = True
+    case: Case,
+    t: Array,
+    theta: Array,
+    omega: Array,
+    energy: Array,
+    uplift: tuple[float, float],
+    *,
+    released: bool = True,
 ) -> tuple[Array, Array, tuple[Impact, ...]]:
-    """Times and sizes of the rotation peaks, and the impacts between them, of a sampled free rocking motion.
+    """Times and sizes of the rotation peaks, and the impacts between them, of a sampled rocking motion.
 
     Args:
         case: the case, whose release is the first peak unless it is released on its way out.
-        t, theta, omega: the motion [s, rad, rad/s], shape (n,), finely sampled.
-        threshold: rotation below which a maximum is the spring of the base and not rocking [rad]. With a side stop a
-            maximum on its side of theta = 0 is the spring of the stop, whatever its size.
+        t, theta, omega, energy: the motion [s, rad, rad/s, J], shape (n,), finely sampled.
+        uplift: rotation below which a maximum is the spring of the base and not rocking [rad], and the energy above
+            rest that goes with it [J]. With a side stop a maximum on its side of theta = 0 is the spring of the stop,
+            whatever its size.
         released: whether the motion starts with the release, and does not go on from an earlier one.
 
     Returns:
-        Peak times [s], peaks |theta| [rad], and one impact between each pair of peaks, at the time when the wall
-        passes theta = 0, or comes closest to it. An impact after which the wall no longer rocks is the last one: what
-        it leaves is the energy of the largest rotation that follows, or of the motion with which the run ends.
+        Peak times [s], peaks |theta| [rad], and the impacts: of free rocking as the peaks on their two sides tell, on a
+        shaken base as the wall itself does where it passes the uplift rotation.
+    """
+    times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
+    rocking = sizes > uplift[0]
+    prepended = released and not case.released_outwards and (case.motion is None or case.theta0 != 0)
+    if prepended:
+        rocking &= times > t[1]  # the release itself, where its velocity is not zero to the last digit
+    residual = sizes[(times > times[rocking][-1]) if rocking.any() else times > t[0]]
+    times, sizes = times[rocking], sizes[rocking]
+    if prepended:
+        times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
+    if case.motion is None:
+        impacts = _between_peaks(case, t, theta, omega, times, sizes, residual, uplift[0])
+    else:
+        impacts = _between_passes(case, t, theta, omega, energy, uplift)
+    return times, sizes, impacts
+
+
+def _between_peaks(
+    case: Case, t: Array, theta: Array, omega: Array, times: Array, sizes: Array, residual: Array, threshold: float
+) -> tuple[Impact, ...]:
+    """One impact between each pair of peaks, at the time when the wall passes theta = 0, or comes closest to it.
+
+    An impact after which the wall no longer rocks is the last one: what it leaves is the energy of the largest rotation
+    that follows, of those in `residual`, or of the motion with which the run ends.
     """
     wall = case.block
-    times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
-    rocking = sizes > threshold
-    if released and not case.released_outwards:
-        rocking &= times > t[1]  # the release itself, where its velocity is not zero to the last digit
-    residual = times > (times[rocking][-1] if rocking.any() else t[0])
-    if residual.any():
-        left_over = float(wall.potential_energy(float(sizes[residual].max())))
+    if residual.size:
+        left_over = float(wall.potential_energy(float(residual.max())))
     elif abs(theta[-1]) > threshold:  # the run ends on the way out
         left_over = float(wall.potential_energy(float(theta[-1]))) + 0.5 * wall.toe_inertia * float(omega[-1]) ** 2
     else:
         left_over = math.nan
-    times, sizes = times[rocking], sizes[rocking]
-    if released and not case.released_outwards:
-        times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
-
     energies = peak_energies(case, sizes)
     impacts = []
     for i, start in enumerate(times):
@@ -185,7 +210,40 @@ def rocking_history(
                 energy_after=after,
             )
         )
-    return times, sizes, tuple(impacts)
+    return tuple(impacts)
+
+
+def _between_passes(
+    case: Case, t: Array, theta: Array, omega: Array, energy: Array, uplift: tuple[float, float]
+) -> tuple[Impact, ...]:
+    """One impact for each time that the wall comes back below the uplift rotation.
+
+    Before it the energy is that of the rigid wall on its way in past that rotation, after it on its way out again, to
+    either side. A wall whose energy in between falls below that of uplift has come to rest, and this is what it leaves.
+    """
+    wall, (threshold, least) = case.block, uplift
+    outside = np.where(np.abs(theta) > threshold, np.sign(theta), 0.0)
+    if case.side_stop:
+        outside = np.maximum(outside, 0.0)
+    changes = np.flatnonzero(np.diff(outside))
+    entries = changes[outside[changes] != 0]
+    exits = changes[outside[changes + 1] != 0]
+    rigid = wall.potential_energy(threshold)
+    impacts = []
+    for i in entries:
+        s = outside[i]
+        leaves = exits[exits >= i]
+        j = int(leaves[0]) if leaves.size else len(t) - 1
+        low = float(energy[i : j + 1].min())
+        crossed = i + int(np.argmax(s * theta[i : j + 2] <= 0)) if (s * theta[i : j + 2] <= 0).any() else j
+        before = rigid + 0.5 * wall.toe_inertia * float(omega[i]) ** 2
+        if low < least or not leaves.size:
+            after, side = max(0.0, low), s
+        else:
+            after, side = rigid + 0.5 * wall.toe_inertia * float(omega[j + 1]) ** 2, outside[j + 1]
+        speeds = (math.sqrt(2 * value / wall.toe_inertia) for value in (before, after))
+        impacts.append(Impact(float(t[crossed]), -s * next(speeds), side * next(speeds), before, after))
+    return tuple(impacts)
 
 
 def _maxima(t: Array, theta: Array, omega: Array, *, one_sided: bool) -> tuple[Array, Array]:

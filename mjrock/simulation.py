@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from collections.abc import Sequence
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -16,9 +18,9 @@ from .case import Case
 from .interface import Contacts
 from .ledger import Ledger
 from .mjcf import inverse_weight, wall_mjcf
-from .pose import base_gaps, mechanical_energy, side_gaps
+from .pose import base_gaps, mechanical_energy, release_pose, side_gaps
 from .response import Response, State, ending, rocking_history
-from .stepping import SMOOTH, StepError, fitted_steps, fixed_steps, push, short_step
+from .stepping import SMOOTH, StepError, Steps, fitted_steps, fixed_steps, short_step
 
 Array = NDArray[np.float64]
 ENERGY_GAIN = 1e-3
@@ -52,16 +54,15 @@ def compile_wall(text: str, wall: Block) -> mujoco.MjModel:
     return model
 
 
-def release(model: mujoco.MjModel, start: State | None = None, pushed: float = 0.0) -> mujoco.MjData:
+def release(model: mujoco.MjModel, start: State | None = None) -> mujoco.MjData:
     """Data at `start` or the keyframe `release`, with the velocity half a step back, where the leapfrog keeps it.
 
-    `pushed` is the force of a base that moves already [N], see `mjrock.stepping.push`.
+    Before the release the ground is quiet.
     """
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("release").id)
     if start is not None:
         data.qpos[:], data.qvel[:] = start
-    data.qfrc_applied[0] = pushed
     velocity = data.qvel.copy()
     for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
         mujoco.mj_forward(model, data)
@@ -82,54 +83,87 @@ def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, floa
 
 
 class _Run:
-    """One run of the engine, checked: its steps, its energy, its peaks and impacts."""
+    """One run of the engine, checked: its steps, its energy, its peaks and impacts.
 
-    def __init__(
-        self,
-        case: Case,
-        contacts: Contacts,
-        h: float,
-        accuracy: float | None,
-        newmark_beta: float,
-        start: State | None,
-    ) -> None:
+    Raises:
+        StepError: if energy appears from nowhere on a base at rest.
+    """
+
+    def __init__(self, case: Case, contacts: Contacts, steps: Steps, *, released: bool) -> None:
         wall = case.block
-        sound = automatic_timestep(wall, contacts, side_stop=case.side_stop)
-
-        def broken(what: str, t: float) -> SimulationError:
-            if accuracy is not None:
-                advice = f"lower accuracy = {accuracy:g}, or fix the step: the largest sound one is {sound:.3g} s"
-            elif h > sound * (1 + 1e-9):
-                advice = f"the largest sound step is {sound:.3g} s"
-            else:
-                advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
-            return SimulationError(f"{what} at t = {t:.4g} s with a step of {h:.3g} s; {advice}")
-
-        model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), wall)
-        data = release(model, start, float(push(case, 0.0)))
-        started = time.perf_counter()
-        try:
-            if accuracy is None:
-                self.steps = fixed_steps(model, data, case, newmark_beta)
-            else:
-                self.steps = fitted_steps(model, data, case, contacts, accuracy)
-        except StepError as error:
-            raise broken(str(error), error.t) from None
-        self.stepping_time = time.perf_counter() - started
-        t, self.theta, self.omega = self.steps.t, self.steps.pose[:, 2], self.steps.velocity[:, 2]
-        self.energy = mechanical_energy(case, contacts, self.steps.pose, self.steps.velocity)
-        threshold = contacts.uplift_rotation(wall)
+        self.case, self.contacts, self.steps = case, contacts, steps
+        t, self.theta, self.omega = steps.t, steps.pose[:, 2], steps.velocity[:, 2]
+        self.energy = mechanical_energy(case, contacts, steps.pose, steps.velocity)
+        self.uplift = contacts.uplift_rotation(wall), contacts.uplift_energy(wall)
         times, self.peaks, self.impacts = rocking_history(
-            case, t, self.theta, self.omega, threshold, released=start is None
+            case, t, self.theta, self.omega, self.energy, self.uplift, released=released
         )
 
         # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
         standing = np.flatnonzero(np.abs(self.theta) <= wall.alpha)
         count = int(standing[-1]) + 1 if standing.size else 1
         gain, when = energy_gain(times[times <= t[count - 1]], t[:count], self.energy[:count])
-        scale = max(float(self.energy[0]), contacts.uplift_energy(wall))
+        scale = max(float(self.energy[0]), self.uplift[1])
         if case.motion is None and not gain <= ENERGY_GAIN * scale:
-            raise broken(f"{gain:.3g} J, {gain / scale:.2%} of the release energy, appeared from nowhere", when)
+            raise StepError(f"{gain:.3g} J, {gain / scale:.2%} of the release energy, appeared from nowhere", when)
+
+    def thinned(self, stride: int) -> tuple[tuple[Array, Array, Array], State]:
+        """Time, rotation and velocity of every `stride`-th step, and the last pose and velocity."""
+        steps = self.steps
+        kept = steps.t[::stride], self.theta[::stride], self.omega[::stride]
+        return kept, (steps.pose[-1], steps.velocity[-1])
+
+    def interpolated(self, spacing: float) -> tuple[tuple[Array, Array, Array], State]:
+        """Time, rotation and velocity, `spacing` apart, and pose and velocity at the end."""
+        steps = self.steps
+        finish = min(float(steps.t[-1]), self.case.duration)
+        t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
+        spline = CubicHermiteSpline(steps.t, self.theta, self.omega)
+        last = CubicHermiteSpline(steps.t[-2:], steps.pose[-2:], steps.velocity[-2:])
+        return (t, spline(t), spline(t, 1)), (last(finish), last(finish, 1))
+
+    def response(self, kept: tuple[tuple[Array, Array, Array], State], ledger: bool, stats: dict[str, Any]) -> Response:
+        """What was found, at the times kept; `stats` says how."""
+        case, contacts, steps, wall = self.case, self.contacts, self.steps, self.case.block
+        (t, theta, omega), end = kept
+        outcome, message = ending(case, steps.t, self.theta, self.energy, self.uplift[1])
+        return Response(
+            case=case,
+            solver="MuJoCo",
+            t=t,
+            theta=theta,
+            omega=omega,
+            energy=np.interp(t, steps.t, self.energy),
+            impacts=self.impacts,
+            peaks=self.peaks,
+            outcome=outcome,
+            message=message,
+            ledger=Ledger.of(case, contacts, steps).at(t) if ledger else None,
+            end=end,
+            stats={
+                "steps": len(steps.t),
+                "longest_timestep": float(steps.h.max()),
+                "sound_timestep": automatic_timestep(wall, contacts, side_stop=case.side_stop),
+                "touches": steps.touches,
+                "deepest_base": _deepest(base_gaps(wall, contacts, steps.pose)),
+                "deepest_side": _deepest(side_gaps(wall, contacts, steps.pose)) if case.side_stop else 0.0,
+                "base_displacement": float(steps.pose[-1, 0] - wall.h * math.sin(steps.pose[-1, 2])),
+                "mujoco": mujoco.__version__,
+            }
+            | stats,
+        )
+
+
+def _broken(error: StepError, case: Case, contacts: Contacts, h: float, accuracy: float | None) -> SimulationError:
+    """The error for the user: what happened and what to change."""
+    sound = automatic_timestep(case.block, contacts, side_stop=case.side_stop)
+    if accuracy is not None:
+        advice = f"lower accuracy = {accuracy:g}, or fix the step: the largest sound one is {sound:.3g} s"
+    elif h > sound * (1 + 1e-9):
+        advice = f"the largest sound step is {sound:.3g} s"
+    else:
+        advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
+    return SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; {advice}")
 
 
 def simulate(
@@ -167,79 +201,114 @@ def simulate(
     Warns:
         UserWarning: if a fixed step is too long to resolve the contacts.
     """
-    wall = case.block
-    contacts.require_fit(wall, side_stop=case.side_stop)
+    contacts.require_fit(case.block, side_stop=case.side_stop)
     require_within("accuracy", accuracy, 1e-8, 0.1)
     if output_step is not None:
         require_within("output_step", output_step, 1e-9, case.duration, "s")
-    sound = automatic_timestep(wall, contacts, side_stop=case.side_stop)
-    fitted = timestep is None
-    h = (
-        short_step(case, contacts, accuracy)
-        if timestep is None
-        else require_within("timestep", timestep, 1e-9, 1.0, "s")
-    )
-    if h * contacts.highest_frequency(wall, side_stop=case.side_stop) > SMOOTH:
+    if timestep is not None:
+        (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, output_step, ledger, start)
+        if isinstance(answer, SimulationError):
+            raise answer
+        return answer
+    started = time.perf_counter()
+    used = accuracy
+    while True:
+        h = short_step(case, contacts, used)
+        model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), case.block)
+        _warn_if_coarse(case, contacts, h)
+        data = release(model, start)
+        begun = time.perf_counter()
+        try:
+            steps = fitted_steps(model, data, case, contacts, used)
+            stepping_time = time.perf_counter() - begun
+            run = _Run(case, contacts, steps, released=start is None)
+            break
+        except StepError as error:
+            if used < 0.02 * accuracy:
+                raise _broken(error, case, contacts, h, used) from None
+            used /= 10
+    kept = run.interpolated(output_step or 1e-3)
+    took = {"wall_time": time.perf_counter() - started, "stepping_time": stepping_time}
+    return run.response(kept, ledger, took | {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta})
+
+
+def simulate_batch(
+    cases: Sequence[Case],
+    contacts: Contacts,
+    timestep: float,
+    *,
+    newmark_beta: float = 0.25,
+    output_step: float | None = None,
+    ledger: bool = False,
+) -> list[Response | SimulationError]:
+    """Many cases of one wall on the same contacts at one fixed step, stepped by MuJoCo's threads.
+
+    Each answer is what `simulate(case, contacts, timestep, ...)` returns or raises, to the last bit; a run that breaks
+    down leaves the others alone.
+
+    Args:
+        cases: the cases; they differ in release, duration and ground motion only.
+        contacts: the interfaces.
+        timestep: the step [s].
+        newmark_beta, output_step, ledger: as in `simulate`.
+
+    Raises:
+        ValueError: if the walls or sides of the cases differ, or as `simulate` does.
+    """
+    if not cases:
+        return []
+    first = cases[0]
+    for i, case in enumerate(cases):
+        if (case.block, case.side_stop) != (first.block, first.side_stop):
+            raise ValueError(f"cases[{i}] has another wall or other sides than cases[0]; a batch has one geometry")
+    return _simulate_fixed(cases, contacts, timestep, newmark_beta, output_step, ledger, None)
+
+
+def _simulate_fixed(
+    cases: Sequence[Case],
+    contacts: Contacts,
+    timestep: float,
+    newmark_beta: float,
+    output_step: float | None,
+    ledger: bool,
+    start: State | None,
+) -> list[Response | SimulationError]:
+    """Runs of one geometry at one fixed step, or how each broke down."""
+    first = cases[0]
+    contacts.require_fit(first.block, side_stop=first.side_stop)
+    require_within("timestep", timestep, 1e-9, 1.0, "s")
+    _warn_if_coarse(first, contacts, timestep)
+    started = time.perf_counter()
+    model = compile_wall(wall_mjcf(first, contacts, timestep, newmark_beta=newmark_beta), first.block)
+    data = [release(model, start or release_pose(case, contacts)) for case in cases]
+    begun = time.perf_counter()
+    made = fixed_steps(model, data, cases, newmark_beta)
+    stepping_time = (time.perf_counter() - begun) / len(cases)
+    stride = max(1, round(output_step / timestep)) if output_step else 1
+    answers: list[Response | SimulationError] = []
+    for case, steps in zip(cases, made, strict=True):
+        try:
+            if isinstance(steps, StepError):
+                raise steps
+            run = _Run(case, contacts, steps, released=start is None)
+        except StepError as error:
+            answers.append(_broken(error, case, contacts, timestep, None))
+            continue
+        wall_time = (time.perf_counter() - started) / len(cases)
+        took = {"wall_time": wall_time, "stepping_time": stepping_time}
+        settings = {"timestep": timestep, "accuracy": None, "newmark_beta": newmark_beta}
+        answers.append(run.response(run.thinned(stride), ledger, took | settings))
+    return answers
+
+
+def _warn_if_coarse(case: Case, contacts: Contacts, h: float) -> None:
+    if h * contacts.highest_frequency(case.block, side_stop=case.side_stop) > SMOOTH:
+        sound = automatic_timestep(case.block, contacts, side_stop=case.side_stop)
         warnings.warn(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
             f"the largest sound step is {sound:.3g} s",
-            stacklevel=2,
+            stacklevel=4,
         )
-    started = time.perf_counter()
-    used = accuracy if fitted else None
-    while True:
-        try:
-            run = _Run(case, contacts, h, used, newmark_beta, start)
-            break
-        except SimulationError:
-            if used is None or used < 0.02 * accuracy:
-                raise
-            used /= 10
-            h = short_step(case, contacts, used)
-    steps, theta, omega, energy = run.steps, run.theta, run.omega, run.energy
-    outcome, message = ending(case, steps.t, theta, energy, contacts.uplift_energy(wall))
-
-    end = steps.pose[-1], steps.velocity[-1]
-    if fitted:
-        finish = min(float(steps.t[-1]), case.duration)
-        t = np.linspace(0.0, finish, max(2, math.ceil(finish / (output_step or 1e-3)) + 1))
-        spline = CubicHermiteSpline(steps.t, theta, omega)
-        theta, omega = spline(t), spline(t, 1)
-        last = CubicHermiteSpline(steps.t[-2:], steps.pose[-2:], steps.velocity[-2:])
-        end = last(finish), last(finish, 1)
-    else:
-        stride = max(1, round(output_step / h)) if output_step else 1
-        t, theta, omega = steps.t[::stride], theta[::stride], omega[::stride]
-    book = Ledger.of(case, contacts, steps).at(t) if ledger else None
-    return Response(
-        case=case,
-        solver="MuJoCo",
-        t=t,
-        theta=theta,
-        omega=omega,
-        energy=np.interp(t, steps.t, energy),
-        impacts=run.impacts,
-        peaks=run.peaks,
-        outcome=outcome,
-        message=message,
-        ledger=book,
-        end=end,
-        stats={
-            "wall_time": time.perf_counter() - started,
-            "stepping_time": run.stepping_time,
-            "steps": len(steps.t),
-            "timestep": h,
-            "longest_timestep": float(steps.h.max()),
-            "sound_timestep": sound,
-            "touches": steps.touches,
-            "deepest_base": _deepest(base_gaps(wall, contacts, steps.pose)),
-            "deepest_side": _deepest(side_gaps(wall, contacts, steps.pose)) if case.side_stop else 0.0,
-            "base_displacement": float(steps.pose[-1, 0] - wall.h * math.sin(steps.pose[-1, 2])),
-            "accuracy": used,
-            "newmark_beta": newmark_beta,
-            "mujoco": mujoco.__version__,
-        },
-    )
 
 
 def _deepest(gaps: Array) -> float:

@@ -9,7 +9,10 @@ friction and the velocity, which the leapfrog keeps half a step back, follow eve
 from __future__ import annotations
 
 import math
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import overload
 
 import mujoco
 import numpy as np
@@ -23,7 +26,7 @@ from .interface import Contacts
 from .mjcf import HELD_MASSES, inverse_weight
 
 Array = NDArray[np.float64]
-CHUNK = 20_000
+CHUNK = 4_000
 """Fixed steps between two looks at the wall: whether it has overturned, whether MuJoCo has warned."""
 
 SHORT = 24.0
@@ -90,45 +93,78 @@ def _check(data: mujoco.MjData, values: Array, t: float) -> None:
         raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
 
 
-def push(case: Case, t: float | Array) -> Array:
-    """Force that the moving base exerts on the wall as seen from it, -m a_g [N]."""
-    return np.zeros_like(t, dtype=float) if case.motion is None else -case.block.mass * case.motion(t)
+@overload
+def push(case: Case, t: float, h: float) -> float: ...
+@overload
+def push(case: Case, t: Array, h: float | Array) -> float | Array: ...
+def push(case: Case, t: float | Array, h: float | Array) -> float | Array:
+    """Force that the moving base exerts on the wall as seen from it [N]: -m a_g, its mean over t - h/2 to t + h/2.
+
+    The leapfrog's window is that long, so that the wall receives the impulse of the ground exactly, whatever the step
+    and wherever the record jumps.
+    """
+    if case.motion is None:
+        return 0.0
+    velocity = case.motion.velocity
+    return -case.block.mass * (velocity(t + 0.5 * h) - velocity(t - 0.5 * h)) / h
 
 
-def fixed_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, newmark_beta: float) -> Steps:
-    """Steps of the model's own length, recorded natively, until the case ends or the wall lies on its face.
+def fixed_steps(
+    model: mujoco.MjModel, data: Sequence[mujoco.MjData], cases: Sequence[Case], newmark_beta: float
+) -> list[Steps | StepError]:
+    """Steps of the model's own length, recorded natively, until each case ends or its wall lies on its face.
 
-    Raises:
-        StepError: if the engine warns or the state is not finite.
+    Runs of several cases are the same, to the last bit, as runs of one: each is a state that one of the engine's
+    threads takes up, steps on, and puts back.
+
+    Args:
+        model: the model of every case.
+        data: each case at its release; several are stepped by as many threads as there are processors.
+        cases: the cases, which may differ in release, duration and ground motion.
+        newmark_beta: what the rows of the model were made with [-].
+
+    Returns:
+        For each case its steps, or the error that ended them: a warning of the engine, or a state that is not finite.
     """
     h = model.opt.timestep
-    total = max(1, round(case.duration / h)) + 1  # the last velocity needs the half step after it
-    spec = mujoco.mjtState.mjSTATE_FULLPHYSICS
-    state = np.empty(mujoco.mj_stateSize(model, spec))
-    mujoco.mj_getState(model, data, state, spec)
-    chunks = [state[None]]
-    done = 0
-    with tqdm(total=total * h, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
-        while done < total:
-            steps = min(CHUNK, total - done)
-            if case.motion is None:
-                run, _ = rollout.rollout(model, data, state[None], nstep=steps)
-            else:
-                forces = np.zeros((1, steps, model.nv))
-                forces[0, :, 0] = push(case, h * np.arange(done, done + steps))
-                applied = mujoco.mjtState.mjSTATE_QFRC_APPLIED
-                run, _ = rollout.rollout(model, data, state[None], forces, control_spec=applied)
-            chunks.append(run[0])
-            done, state = done + steps, run[0, -1]
+    totals = [max(1, round(case.duration / h)) + 1 for case in cases]  # the last velocity needs the half step after it
+    spec, applied = mujoco.mjtState.mjSTATE_FULLPHYSICS, mujoco.mjtState.mjSTATE_QFRC_APPLIED
+    state = np.empty((len(cases), mujoco.mj_stateSize(model, spec)))
+    for row, own in zip(state, data, strict=True):
+        mujoco.mj_getState(model, own, row, spec)
+    history = [[row[None].copy()] for row in state]
+    errors: dict[int, StepError] = {}
+    going, done = list(range(len(cases))), 0
+    with tqdm(total=max(totals) * h, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
+        while going:
+            steps = min(CHUNK, max(totals[i] for i in going) - done)
+            forces = np.zeros((len(going), steps, model.nv))
+            for force, i in zip(forces, going, strict=True):
+                force[:, 0] = push(cases[i], h * np.arange(done, done + steps), h)
+            threads = data[: min(len(going), os.cpu_count() or 1)]
+            run, _ = rollout.rollout(model, threads, state[going], forces, control_spec=applied)
+            state[going] = run[:, -1]
+            done += steps
             bar.update(steps * h)
-            _check(data, state, float(state[0]))
-            if abs(state[3]) > ON_ITS_FACE:
-                break
-    states = np.concatenate(chunks)
+            for i, states in zip(going, run, strict=True):
+                history[i].append(states.copy())
+                stopped = np.flatnonzero(states[:, 0] < h * (np.arange(done - steps, done) + 0.5))  # by a warning
+                if stopped.size or not np.isfinite(states[-1]).all():
+                    t = float(states[-1, 0])
+                    errors[i] = StepError("MuJoCo warned of a state that is not finite, or soon would not be", t)
+            going = [i for i in going if i not in errors and done < totals[i] and abs(state[i, 3]) <= ON_ITS_FACE]
+    return [
+        errors.get(i) or _fixed(np.concatenate(own)[: total + 1], h, newmark_beta)
+        for i, (own, total) in enumerate(zip(history, totals, strict=True))
+    ]
+
+
+def _fixed(states: Array, h: float, newmark_beta: float) -> Steps:
+    """Recorded states (time, pose, velocity) as steps, up to where the wall lies on its face."""
     fallen = np.flatnonzero(np.abs(states[:-1, 3]) > ON_ITS_FACE)
-    count = int(fallen[0]) + 1 if fallen.size else done
+    count = int(fallen[0]) + 1 if fallen.size else len(states) - 1
     return Steps(
-        t=h * np.arange(count),
+        t=h * np.arange(count, dtype=float),
         h=np.full(count, h),
         pose=states[:count, 1:4],
         before=states[:count, 4:],
@@ -239,7 +275,7 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
             if ends != last_ends and last_h > short and not fresh:
                 # a long step has opened or closed a contact unforeseen: what it felt does not say what comes
                 if moving:
-                    data.qfrc_applied[0] = push(case, t)
+                    data.qfrc_applied[0] = push(case, t, short)
                 mujoco.mj_forward(model, data)
                 ax_now, az_now, aw_now = qacc.tolist()
                 h, calm, fresh = short, 0, True
@@ -276,7 +312,7 @@ def fitted_steps(model: mujoco.MjModel, data: mujoco.MjData, case: Case, contact
                 qvel[:] = vx, vz, w
                 rows.follow(now, remember=not touch)
             if moving:
-                data.qfrc_applied[0] = push(case, t)
+                data.qfrc_applied[0] = push(case, t, now)
             step(model, data)
 
             ax_new, az_new, aw_new = qacc.tolist()

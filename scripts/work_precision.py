@@ -86,7 +86,9 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
         synchronised = integrator == "RK4"  # the others keep velocities half a step back, as our own steps do
         if synchronised:
             mujoco.mj_resetDataKeyframe(model, data, model.key("release").id)
-        steps = stepping.fixed_steps(model, data, case, 0)
+        (steps,) = stepping.fixed_steps(model, [data], [case], 0)
+        if isinstance(steps, stepping.StepError):
+            raise steps
         seconds = time.perf_counter() - started
         omega = (steps.before if synchronised else steps.velocity)[:, 2]
         return _as_response(case, contacts, steps.t, steps.pose[:, 2], omega, len(steps.t)), seconds
@@ -162,7 +164,7 @@ def scipy_law(rtol: float) -> Solve:
 
 
 def _as_response(case: mr.Case, contacts: mr.Contacts, t, theta, omega, steps: int) -> Response:  # type: ignore[no-untyped-def]
-    _, peaks, impacts = rocking_history(case, t, theta, omega, contacts.uplift_rotation(case.block))
+    _, peaks, impacts = rocking_history(case, t, theta, omega, 0 * t, (contacts.uplift_rotation(case.block), 0.0))
     return Response(
         case,
         "stock",

@@ -1,13 +1,31 @@
 import math
+import pickle
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
+from scipy.signal import periodogram
 
 import mjrock as mr
 from paper import FIGURE_3
 
 RECORDS = Path(__file__).parents[2] / "shared" / "records"
+SAMPLES = [0.0, 0.02, -0.05, 0.04, -0.01, 0.0]
+NUMBERS = "0.0 2E-2 -.05 4.0e-02\n  -0.01\n0\n"
+AT2 = "PEER NGA STRONG MOTION DATABASE RECORD\nSomewhere, 1/1/99\nACCELERATION TIME SERIES IN UNITS OF G\n"
+
+
+def record(name: str) -> Path:
+    if not RECORDS.is_dir():
+        pytest.skip(f"the recorded ground motions are not at {RECORDS}")
+    return RECORDS / f"{name}.sac"
+
+
+@pytest.fixture
+def uneven() -> mr.GroundMotion:
+    """Nothing about it is special: random accelerations, and a jump at either end."""
+    return mr.GroundMotion(np.random.default_rng(1).normal(size=200), 0.02)
 
 
 def test_linear_between_samples_and_quiet_outside():
@@ -24,6 +42,25 @@ def test_scaled_and_reversed():
     assert motion.reversed().reversed() == motion
     assert hash(motion.reversed().reversed()) == hash(motion)
     assert motion != motion.scaled(2)
+    assert motion.polarities == (motion, motion.reversed())
+
+
+def test_what_is_equal_hashes_alike():
+    one, other = mr.GroundMotion([0.0, 1.0], 0.1), mr.GroundMotion([-0.0, 1.0], 0.1)
+    assert one == other
+    assert hash(one) == hash(other)
+
+
+def test_a_pickle_carries_the_record_and_nothing_else(uneven):
+    fresh = pickle.dumps(uneven)
+    uneven(0.1), uneven.velocity(0.1), uneven.peak_velocity
+    assert pickle.dumps(uneven) == fresh
+    copy = pickle.loads(fresh)
+    assert copy == uneven
+    assert hash(copy) == hash(uneven)
+    assert copy.name == uneven.name
+    assert copy.velocity(1.0) == uneven.velocity(1.0)
+    assert not copy.accel.flags.writeable
 
 
 @pytest.mark.parametrize(
@@ -83,13 +120,190 @@ def test_the_ledger_closes_on_a_shaken_wall(contacts, accuracy):
     assert np.abs(book.residual).max() < 3 * accuracy * np.abs(book.ground).max()
 
 
+@pytest.mark.parametrize(
+    "head",
+    [
+        "NPTS=     6, DT=   .0100 SEC",
+        "npts= 6, dt= 1.0e-2 sec,",
+        "    6    0.0100    NPTS, DT",
+        "6, .0100, npts, dt",
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_at2(tmp_path, head, encoding):
+    path = tmp_path / "RSN9_A.90.AT2"
+    path.write_text(AT2.replace("Somewhere", "Düzce") + f"{head}\n{NUMBERS}", encoding=encoding)
+    motion = mr.GroundMotion.from_at2(path)
+    np.testing.assert_allclose(motion.accel, 9.81 * np.array(SAMPLES), rtol=1e-14)
+    assert motion.dt == 0.01
+    assert motion.name == "RSN9_A.90"
+
+
+@pytest.mark.parametrize(
+    ("content", "complaint"),
+    [
+        (AT2 + "NPTS= 7, DT= .01 SEC\n" + NUMBERS, "6 samples; the header states 7"),
+        (AT2 + "NPTS= 5, DT= .01 SEC\n" + NUMBERS, "6 samples; the header states 5"),
+        (AT2 + "NPTS= 6, DT= SEC\n" + NUMBERS, "line 4 states no NPTS and DT: 'NPTS= 6, DT= SEC'"),
+        (AT2 + "NPTS= 6\n" + NUMBERS, "line 4 states no NPTS and DT"),
+        (AT2 + "NPTS= 6, DT= 20 SEC\n" + NUMBERS, "dt = 20 s is outside the valid range 1e-05 to 1 s"),
+        (AT2 + "NPTS= 6, DT= .01 SEC\n" + NUMBERS.replace("-0.01", "*****"), r"line 6: .*'\*\*\*\*\*'"),
+        (AT2 + "NPTS= 6, DT= .01 SEC\n" + NUMBERS.replace("-0.01", "nan"), r"accel\[4\] = nan m/s2"),
+        (AT2 + "NPTS= 6, DT= .01 SEC\n" + NUMBERS.replace("-.05", "-inf"), r"accel\[2\] = -inf m/s2"),
+        (AT2.replace("OF G", "OF CM/S") + "NPTS= 6, DT= .01 SEC\n" + NUMBERS, "not an AT2 file"),
+        (AT2.replace("OF G", "OF GAL") + "NPTS= 6, DT= .01 SEC\n" + NUMBERS, "not an AT2 file"),
+        (NUMBERS, "not an AT2 file"),
+        ("\n", "an empty file"),
+        ("\x00\x01\x02", "a binary file"),
+    ],
+)
+def test_what_is_no_at2(tmp_path, content, complaint):
+    path = tmp_path / "bad.AT2"
+    path.write_text(content)
+    with pytest.raises(ValueError, match=rf"bad\.AT2: .*{complaint}"):
+        mr.GroundMotion.from_at2(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "unit", "options", "scale"),
+    [
+        ("\ufeff0.00,0\n0.01,1\n0.02,-2\n", "m/s2", {}, 1.0),
+        ("time [s], accel\n# filtered\n0,0\n\n.01,1\n% note\n.02,-2", "cm/s2", {}, 0.01),
+        ("Zeit;a\r\n0,00;0,0\r\n0,01;1,0\r\n0,02;-2,0\r\n", "g", {}, 9.81),
+        ("// ms and mm\n  0\t0\n 10   1.\n 20  -2.\n", "mm/s2", {"time_unit": "ms"}, 0.001),
+        ("5.00 0\n5.01 1\n5.02 -2\n", "ft/s2", {}, 0.3048),
+    ],
+)
+def test_columns(tmp_path, content, unit, options, scale):
+    path = tmp_path / "two columns.csv"
+    path.write_text(content, encoding="utf-8")
+    if unit == "mm/s2":
+        with pytest.warns(UserWarning, match="two columns peaks at 0.002 m/s2 = 0.000204 g only"):
+            motion = mr.GroundMotion.from_csv(path, unit, **options)
+    else:
+        motion = mr.GroundMotion.from_csv(path, unit, **options)
+    np.testing.assert_allclose(motion.accel, scale * np.array([0.0, 1.0, -2.0]), rtol=1e-14)
+    assert motion.dt == pytest.approx(0.01, rel=1e-12)
+    assert motion.name == "two columns"
+
+
+def columns(t, a) -> str:
+    return "".join(f"{x!r},{y!r}\n" for x, y in zip(map(float, t), map(float, a), strict=True))
+
+
+T = 0.01 * np.arange(50)
+CYCLE = np.sin(2 * np.pi * T / T[-1])
+
+
+@pytest.mark.parametrize(
+    ("content", "unit", "complaint"),
+    [
+        (columns(T, T), "m/s", "unit = 'm/s' is not one of m/s2, cm/s2, mm/s2, g, ft/s2"),
+        (
+            "t,a\n" + columns(np.delete(T, 20), T[1:]),
+            "g",
+            "line 22: uneven time steps, 0.02 s from 0.19 s on where 0.01",
+        ),
+        (columns(T + 0.0005 * np.eye(50)[7], T), "g", "line [89]: uneven time steps, 0.0(10|09)5 s from 0.0[67]"),
+        (columns(np.where(T < 0.25, T, 1.1 * T - 0.025), T), "g", "uneven time steps"),
+        (columns(T[::-1], T), "g", "line 2: time does not increase, 0.49 s to 0.48 s"),
+        (columns([0, 0.01, 0.01], [0, 1, 2]), "g", "line 3: time does not increase, 0.01 s to 0.01 s"),
+        (columns([0, math.nan, 0.02], [0, 1, 2]), "g", "line 2: time nan s is not finite"),
+        (columns([0, 0.01, 0.02], [0, 1, math.inf]), "g", r"accel\[2\] = inf m/s2"),
+        (columns([0, 10, 20], [0, 1, 2]), "g", "dt = 10 s is outside"),  # milliseconds
+        ("0,0\n0.01,one\n0.02,2\n", "g", "line 2: .*'one'"),
+        ("0,zero\n0.01,1\n0.02,2\n", "g", "line 1: .*'zero'"),
+        ("0,0,0\n0.01,1,0\n", "g", "line 1 has 3 columns"),
+        ("0\n1\n2\n", "g", "line 1 has 1 columns"),
+        ("time,accel\n", "g", "0 rows of time and acceleration"),
+        ("", "g", "an empty file"),
+        ("0,1\x00", "g", "a binary file"),
+    ],
+)
+def test_columns_that_are_none(tmp_path, content, unit, complaint):
+    path = tmp_path / "bad.csv"
+    path.write_text(content)
+    with pytest.raises(ValueError, match=rf"bad\.csv: .*{complaint}"):
+        mr.GroundMotion.from_csv(path, unit)
+
+
+def test_an_unknown_unit_of_time(tmp_path):
+    (tmp_path / "a.csv").write_text(columns(T, T))
+    with pytest.raises(ValueError, match="time_unit = 'h' is not one of s, ms"):
+        mr.GroundMotion.from_csv(tmp_path / "a.csv", "g", time_unit="h")
+
+
+def test_printed_times_may_be_rounded(tmp_path):
+    """A record at 128 Hz whose times have four decimals: off the even grid by up to 0.6 % of a step."""
+    t = np.arange(1000) / 128
+    (tmp_path / "a.csv").write_text(columns(np.round(t, 4), np.sin(2 * np.pi * t / t[-1])))
+    assert mr.GroundMotion.from_csv(tmp_path / "a.csv", "m/s2").dt == pytest.approx(1 / 128, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("head", "complaint"),
+    [
+        ("  6  5.0E-03  0  0  0.", None),
+        ("  7  5.0E-03  0  0  0.", "6 samples; the header states 7"),
+        ("  5  5.0E-03  0  0  0.", "6 samples; the header states 5"),
+        ("  6", "not the plain text of a SAC record"),
+        ("0.1  0.2  0.3", "not the plain text of a SAC record"),
+        ("  6  0.0", "dt = 0 s"),
+    ],
+)
+def test_sac(tmp_path, head, complaint):
+    path = tmp_path / "STA.sac"
+    path.write_text(f"STA fn  Somewhere\n{head}\n" + " ".join(str(1000 * x) for x in SAMPLES))
+    if complaint:
+        with pytest.raises(ValueError, match=rf"STA\.sac: .*{complaint}"):
+            mr.GroundMotion.from_sac(path)
+    else:
+        motion = mr.GroundMotion.from_sac(path)
+        np.testing.assert_allclose(motion.accel, 10 * np.array(SAMPLES), rtol=1e-14)
+        assert (motion.dt, motion.name) == (0.005, "STA")
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    for read in (mr.GroundMotion.from_at2, mr.GroundMotion.from_sac, lambda p: mr.GroundMotion.from_csv(p, "g")):
+        with pytest.raises(FileNotFoundError):
+            read(tmp_path / "nowhere.txt")
+
+
+@pytest.mark.parametrize(
+    ("accel", "unit", "complaint"),
+    [
+        (CYCLE, "mm/s2", "peaks at .* = 0.000102 g only"),
+        (100 * CYCLE, "g", r"peaks at 98\d.* = 99.9 g"),
+        (0.2 + CYCLE, "m/s2", r"residual velocity is 0.098 m/s, its peak velocity 0.\d+ m/s"),
+    ],
+)
+def test_a_record_that_smells(tmp_path, accel, unit, complaint):
+    (tmp_path / "a.csv").write_text(columns(T, accel))
+    with pytest.warns(UserWarning, match=complaint):
+        mr.GroundMotion.from_csv(tmp_path / "a.csv", unit)
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "dt", "peak", "peak_velocity"),
+    [
+        ("LA13", 3000, 0.02, 6.6493, 0.956),
+        ("LA14", 3000, 0.02, 6.4449, 0.810),
+        ("NF01", 2500, 0.02, 8.8285, 1.100),
+        ("NF13", 2990, 0.005, 8.7272, 1.745),
+    ],
+)
+def test_the_records_at_hand(name, count, dt, peak, peak_velocity):
+    """Peaks as awk finds them in the text; peak velocities from its sum of trapezoids, at the samples only."""
+    motion = mr.GroundMotion.from_sac(record(name))
+    assert (len(motion.accel), motion.dt, motion.name) == (count, dt, name)
+    assert motion.peak == pytest.approx(peak, rel=1e-12)
+    assert motion.peak_velocity == pytest.approx(peak_velocity, rel=0.01)
+    assert abs(motion.residual_velocity) < 0.01 * motion.peak_velocity
+    assert 3 < motion.arias_intensity < 15
+
+
 def test_a_recorded_motion(contacts):
-    if not RECORDS.is_dir():
-        pytest.skip(f"the recorded ground motions are not at {RECORDS.name}")
-    lines = (RECORDS / "LA14.sac").read_text().splitlines()
-    count, dt = int(lines[1].split()[0]), float(lines[1].split()[1])
-    accel = np.array(" ".join(lines[2:]).split(), dtype=float)[:count] / 100
-    motion = mr.GroundMotion(accel, dt, "LA14").scaled(0.25)
+    motion = mr.GroundMotion.from_sac(record("LA14")).scaled(0.25)
     case = mr.Case(FIGURE_3, 0.0, 8.0, motion=motion)
     coarse, fine = (mr.simulate(case, contacts, accuracy=a, ledger=True) for a in (1e-3, 1e-4))
     assert fine.theta.max() > 0.01 * FIGURE_3.alpha
@@ -97,7 +311,167 @@ def test_a_recorded_motion(contacts):
     assert np.abs(fine.energy_residual).max() < 1e-3 * np.abs(fine.ledger.ground).max()
 
 
-def test_theory_refuses_what_it_does_not_solve(e):
-    case = mr.Case(FIGURE_3, 0.0, 1.0, motion=mr.GroundMotion.sine(1.0, 0.5))
-    with pytest.raises(ValueError, match="free rocking only"):
-        mr.solve_analytical(case, e)
+@pytest.mark.parametrize("duration", [0.05, 0.7, 1.0, 3.3])
+def test_a_rectangle_is_exact(duration):
+    motion = mr.GroundMotion.rectangular(-2.0, duration)
+    assert motion.duration == pytest.approx(duration, rel=1e-15)
+    inside = np.linspace(0, motion.duration, 11)
+    np.testing.assert_array_equal(motion(inside), -2.0)
+    np.testing.assert_array_equal(motion(np.array([-1e-9, duration + 1e-9])), 0.0)
+    np.testing.assert_allclose(motion.velocity(inside), -2.0 * inside, rtol=1e-14)
+    assert motion.arias_intensity == pytest.approx(math.pi / (2 * mr.GRAVITY) * 4 * duration)
+
+
+def test_half_a_sine():
+    motion = mr.GroundMotion.half_sine(3.0, 0.6)
+    t = np.linspace(0, 0.6, 97)
+    np.testing.assert_allclose(motion(t), 3 * np.sin(np.pi * t / 0.6), atol=3e-5)
+    assert motion.peak == 3.0
+    assert motion.duration == pytest.approx(0.6)
+    assert motion.residual_velocity == pytest.approx(2 / np.pi * 3 * 0.6, rel=1e-4)
+
+
+@pytest.mark.parametrize(("antisymmetric", "half"), [(False, 1.35), (True, 1.75)])
+@pytest.mark.parametrize("period", [0.4, 2.0])
+def test_ricker(antisymmetric, half, period):
+    A, T = 2.5, period
+    motion = mr.GroundMotion.ricker(A, T, antisymmetric)
+    t = np.linspace(-half * T, half * T, 501)
+    expected = (
+        A / 1.3801 * (4 * np.pi**2 * t**2 / (3 * T**2) - 3) * 2 * np.pi * t / (math.sqrt(3) * T)
+        * np.exp(-2 * np.pi**2 * t**2 / (3 * T**2))
+        if antisymmetric
+        else A * (1 - 2 * np.pi**2 * t**2 / T**2) * np.exp(-(np.pi**2) * t**2 / T**2)
+    )  # fmt: skip
+    assert motion.duration == pytest.approx(2 * half * T)
+    np.testing.assert_allclose(motion(t + motion.duration / 2), expected, atol=2e-4 * A)
+    assert motion.peak == A
+    large = np.flatnonzero(np.abs(motion.accel) > 0.999 * A)
+    assert motion.accel[large[0]] > 0
+    assert np.abs(motion.accel[[0, -1]]).max() < 1e-6 * A
+    assert abs(motion.residual_velocity) < 1e-6 * motion.peak_velocity
+    frequency, power = periodogram(motion.accel, 1 / motion.dt, nfft=1 << 18)
+    assert frequency[power.argmax()] == pytest.approx(1 / T, rel=0.005)
+
+
+@pytest.mark.parametrize(
+    ("pulse", "arguments", "complaint"),
+    [
+        ("rectangular", (1.0, 0.0), "duration = 0 s"),
+        ("half_sine", (1.0, 200.0), "duration = 200 s"),
+        ("half_sine", (1.0, 1.0, 1), "samples = 1"),
+        ("ricker", (1.0, 0.001), "period = 0.001 s"),
+        ("ricker", (math.nan, 1.0), "not finite"),
+    ],
+)
+def test_pulses_that_cannot_be(pulse, arguments, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        getattr(mr.GroundMotion, pulse)(*arguments)
+
+
+def test_velocity_is_the_integral(uneven):
+    t = np.linspace(0, uneven.duration, 10 * (len(uneven.accel) - 1) + 1)  # holds every sample: the rule is exact
+    expected = cumulative_trapezoid(uneven(t), t, initial=0)
+    np.testing.assert_allclose(uneven.velocity(t), expected, atol=1e-13)
+    for i in (0, 1, 777, 1234, len(t) - 1):
+        one = uneven.velocity(float(t[i]))
+        assert type(one) is float
+        assert one == pytest.approx(expected[i], abs=1e-13)
+    assert uneven.velocity(-1.0) == 0.0
+    assert uneven.velocity(uneven.duration + 5) == uneven.residual_velocity
+    np.testing.assert_array_equal(uneven.velocity(np.array([-1.0, 99.0])), [0.0, uneven.residual_velocity])
+
+
+def test_measures_between_the_samples():
+    """a = 1 - 2 t: the velocity t - t^2 is zero at both samples and largest between them."""
+    motion = mr.GroundMotion([1.0, -1.0], 1.0)
+    assert motion.residual_velocity == 0.0
+    assert motion.peak_velocity == pytest.approx(0.25)
+    assert motion.residual_displacement == pytest.approx(1 / 6)
+    assert motion.arias_intensity == pytest.approx(math.pi / (2 * mr.GRAVITY) / 3)
+
+
+def test_residual_displacement(uneven):
+    t = np.linspace(0, uneven.duration, 100 * (len(uneven.accel) - 1) + 1)
+    assert uneven.residual_displacement == pytest.approx(np.trapezoid(uneven.velocity(t), t), rel=1e-4)
+
+
+def test_arias_intensity_of_a_sine():
+    motion = mr.GroundMotion.sine(2.0, 0.5, cycles=3)
+    assert motion.arias_intensity == pytest.approx(math.pi / (2 * mr.GRAVITY) * 2.0**2 / 2 * 1.5, rel=1e-4)
+
+
+def test_the_same_seed_gives_the_same_bytes():
+    first, again, other = (mr.GroundMotion.synthetic(3.0, 12.0, seed=s) for s in (7, 7, 8))
+    assert first.accel.tobytes() == again.accel.tobytes()
+    assert np.corrcoef(first.accel, other.accel)[0, 1] < 0.5
+    assert first.peak == pytest.approx(3.0, rel=1e-15)
+    assert (first.duration, first.dt) == (pytest.approx(12.0), 0.01)
+    assert abs(first.residual_velocity) < 1e-12
+    assert first.peak_velocity > 0.1
+    assert first.accel[0] == first.accel[-1] == 0
+
+
+@pytest.mark.parametrize(("ground", "damping"), [(2.5, 0.6), (1.0, 0.3), (5.0, 0.2)])
+def test_the_spectrum_of_a_synthetic_record(ground, damping):
+    power = 0.0
+    for seed in range(30):
+        motion = mr.GroundMotion.synthetic(
+            1.0, 40.0, seed=seed, ground_frequency=ground, ground_damping=damping, filter_frequency=0.3
+        )
+        f, one = periodogram(motion.accel, 1 / motion.dt, detrend=False)
+        power += one / one.sum()
+    w, wg, wf = 2 * np.pi * f, 2 * np.pi * ground, 2 * np.pi * 0.3
+    stated = (wg**4 + 4 * damping**2 * wg**2 * w**2) / ((wg**2 - w**2) ** 2 + 4 * damping**2 * wg**2 * w**2)
+    stated *= w**4 / ((wf**2 - w**2) ** 2 + 4 * 0.6**2 * wf**2 * w**2)
+    bands = [(0.1, 0.3), (0.3, 0.6), (0.8 * ground, 1.2 * ground), (2 * ground, 3 * ground), (20, 30)]
+    found, expected = (np.array([s[(f > a) & (f < b)].mean() for a, b in bands]) for s in (power, stated))
+    np.testing.assert_allclose(found / found[2], expected / expected[2], rtol=0.2)
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"peak": 0.0}, "peak = 0 m/s2"),
+        ({"duration": 0.5}, "duration = 0.5 s"),
+        ({"dt": 0.2}, "dt = 0.2 s is outside the valid range 1e-05 to 0.1 s"),
+        ({"filter_frequency": 3.0}, "filter_frequency = 3 Hz is outside the valid range 0.01 to 2.5 Hz"),
+        ({"rise": 0.7, "fall": 0.6}, "fall = 0.6 is outside"),
+    ],
+)
+def test_synthetic_records_that_cannot_be(options, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        mr.GroundMotion.synthetic(**({"peak": 3.0, "duration": 10.0, "seed": 0} | options))
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 7])
+def test_a_finer_step_is_the_same_motion(uneven, parts):
+    finer = uneven.resampled(0.02 / parts)
+    assert len(finer.accel) == parts * (len(uneven.accel) - 1) + 1
+    t = np.linspace(0, uneven.duration - 1e-9, 999)
+    np.testing.assert_allclose(finer(t), uneven(t), atol=1e-12)
+    np.testing.assert_allclose(finer.velocity(t), uneven.velocity(t), atol=1e-12)
+
+
+@pytest.mark.parametrize("dt", [0.003, 0.025, 0.05, 0.3])
+def test_the_duration_survives_another_step(uneven, dt):
+    other = uneven.resampled(dt)
+    assert other.dt == dt
+    assert abs(other.duration - uneven.duration) <= dt / 2
+
+
+def test_a_coarser_step_keeps_what_it_can_carry():
+    """1 Hz passes through a step of 0.05 s with its phase; 11 Hz, beyond its Nyquist frequency, folds into nothing."""
+    t = 0.005 * np.arange(2001)
+    slow, fast = np.sin(2 * np.pi * t), np.sin(2 * np.pi * 11 * t)
+    coarse = mr.GroundMotion(slow + fast, 0.005).resampled(0.05)
+    np.testing.assert_allclose(coarse.accel[20:-20], slow[::10][20:-20], atol=0.01)
+    back = mr.GroundMotion(slow, 0.005).resampled(0.05).resampled(0.005)
+    np.testing.assert_allclose(back.accel, slow, atol=0.02)
+
+
+def test_a_short_pulse_takes_a_coarser_step():
+    motion = mr.GroundMotion.rectangular(1.5, 1.2)
+    np.testing.assert_allclose(motion.resampled(1.0).accel, 1.5)
+    with pytest.raises(ValueError, match=r"dt = 0\.8 s is outside the valid range 1e-05 to 0\.5 s"):
+        mr.GroundMotion.rectangular(1.5, 0.5).resampled(0.8)

@@ -8,7 +8,9 @@ from mjrock.response import peak_energies, restitution_of, rocking_history
 def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):
     for case in (two_sided, one_sided):
         exact = mr.solve_analytical(case, e, output_step=2e-3)
-        _, peaks, impacts = rocking_history(case, exact.t, exact.theta, exact.omega, 1e-3 * case.block.alpha)
+        _, peaks, impacts = rocking_history(
+            case, exact.t, exact.theta, exact.omega, exact.energy, (1e-3 * case.block.alpha, 0)
+        )
         n = len(peaks)
         np.testing.assert_allclose(peaks, exact.peaks[:n], rtol=1e-4)
         for sampled, true in zip(impacts[: n - 1], exact.impacts, strict=False):
@@ -22,7 +24,7 @@ def test_a_wall_that_stops_dead_has_one_impact_and_no_rebound(one_sided):
     t = np.linspace(0, 1, 1001)
     theta = np.maximum(0.05 * np.cos(2 * np.pi * t), 0) * (t < 0.5)
     theta += (t > 0.5) * 1e-5 * np.sin(20 * np.pi * t)
-    _, peaks, impacts = rocking_history(one_sided, t, theta, np.gradient(theta, t), 1e-3)
+    _, peaks, impacts = rocking_history(one_sided, t, theta, np.gradient(theta, t), 0 * t, (1e-3, 0))
     assert len(peaks) == 1
     assert len(impacts) == 1
     assert impacts[0].t == pytest.approx(0.25, abs=2e-3)
@@ -33,9 +35,9 @@ def test_maxima_on_the_side_of_the_stop_are_not_rocking(one_sided, two_sided):
     t = np.linspace(0, 4, 4001)
     theta = 0.05 * np.cos(2 * np.pi * t)
     omega = np.gradient(theta, t)
-    _, peaks, _ = rocking_history(two_sided, t, theta, omega, 1e-3)
+    _, peaks, _ = rocking_history(two_sided, t, theta, omega, 0 * t, (1e-3, 0))
     assert len(peaks) == 8
-    _, peaks, _ = rocking_history(one_sided, t, theta, omega, 1e-3)
+    _, peaks, _ = rocking_history(one_sided, t, theta, omega, 0 * t, (1e-3, 0))
     assert len(peaks) == 4
 
 
@@ -52,6 +54,6 @@ def test_a_release_that_is_not_quite_still_is_one_peak(two_sided, e):
     for first in (1e-20, -1e-20, 1e-6):
         omega = exact.omega.copy()
         omega[0] = first
-        _, peaks, impacts = rocking_history(two_sided, exact.t, exact.theta, omega, 1e-4)
+        _, peaks, impacts = rocking_history(two_sided, exact.t, exact.theta, omega, exact.energy, (1e-4, 0))
         np.testing.assert_allclose(peaks, exact.peaks[: len(peaks)], rtol=1e-4)
         assert impacts[0].restitution == pytest.approx(e.base, rel=1e-3)

@@ -1,5 +1,6 @@
 import dataclasses
 import math
+import re
 
 import mujoco
 import numpy as np
@@ -116,8 +117,8 @@ def test_a_nan_or_a_warning_of_the_engine_is_an_error(two_sided, contacts, monke
     monkeypatch.chdir(tmp_path)  # MuJoCo leaves MUJOCO_LOG.TXT where it warns
     released = simulation.release
 
-    def thrown(model, start, pushed):
-        data = released(model, start, pushed)
+    def thrown(model, start):
+        data = released(model, start)
         data.qvel[1] = 1e12
         return data
 
@@ -185,3 +186,42 @@ def _is(model, contact, pair):
 def test_contacts_in_place_of_a_case_without_them(two_sided, contacts):
     no_side = dataclasses.replace(contacts, side=None)
     assert mr.simulate(two_sided, no_side, 1e-3).outcome is mr.Outcome.TIME_ENDED
+
+
+def test_a_batch_is_its_runs(wall, contacts):
+    """To the last bit, though the runs differ in release, duration and ground, and one of them falls."""
+    pulse = mr.GroundMotion.sine(-2.5, 0.9)
+    cases = [
+        mr.Case(wall, 0.4 * wall.alpha, 1.5),
+        mr.Case(wall, 0.0, 2.0, motion=pulse),
+        mr.Case(wall, 1.02 * wall.alpha, 6.0),
+        mr.Case(wall, 0.0, 1.2, motion=pulse.reversed()),
+    ]
+    together = mr.simulate_batch(cases, contacts, 1e-3, ledger=True)
+    for case, found in zip(cases, together, strict=True):
+        alone = mr.simulate(case, contacts, 1e-3, ledger=True)
+        assert found.case is case
+        assert found.outcome is alone.outcome
+        np.testing.assert_array_equal(found.t, alone.t)
+        np.testing.assert_array_equal(found.theta, alone.theta)
+        np.testing.assert_array_equal(found.energy_residual, alone.energy_residual)
+    assert together[2].outcome is mr.Outcome.OVERTURNED
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_run_that_breaks_down_leaves_the_batch_alone(wall, contacts, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    wild = mr.GroundMotion([0.0, 1e13, 0.0], 0.1)
+    cases = [mr.Case(wall, 0.3 * wall.alpha, 0.5, motion=m) for m in (None, wild, None)]
+    before, broken, after = mr.simulate_batch(cases, contacts, 1e-3)
+    assert isinstance(broken, mr.SimulationError)
+    with pytest.raises(mr.SimulationError, match=re.escape(str(broken))):
+        mr.simulate(cases[1], contacts, 1e-3)
+    np.testing.assert_array_equal(before.theta, after.theta)
+
+
+def test_a_batch_has_one_geometry(wall, contacts):
+    cases = [mr.Case(wall, 0.01, 1.0), mr.Case(mr.Block(b=0.2, h=2.0), 0.01, 1.0)]
+    with pytest.raises(ValueError, match=r"cases\[1\] has another wall"):
+        mr.simulate_batch(cases, contacts, 1e-3)
+    assert mr.simulate_batch([], contacts, 1e-3) == []
