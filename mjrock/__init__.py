@@ -8,6 +8,7 @@ classical rocking theory, and `compare` sets two answers side by side.
 from ._version import __version__
 from .analytical import solve_analytical
 from .block import GRAVITY, Block
+from .campaign import Analysis, Grid, campaign
 from .case import Case
 from .compare import Comparison, compare
 from .compliant import solve_compliant
@@ -20,16 +21,19 @@ from .motion import GroundMotion
 from .response import Impact, Outcome, Response
 from .restitution import Restitution
 from .simulation import SimulationError, automatic_timestep, simulate, simulate_batch
+from .store import Store
 
 __all__ = [
     "GRAVITY",
     "PUBLISHED",
+    "Analysis",
     "Block",
     "Case",
     "Comparison",
     "ContactParameters",
     "Contacts",
     "DampingLaw",
+    "Grid",
     "GroundMotion",
     "Impact",
     "Interface",
@@ -39,8 +43,10 @@ __all__ = [
     "Response",
     "Restitution",
     "SimulationError",
+    "Store",
     "__version__",
     "automatic_timestep",
+    "campaign",
     "compare",
     "contact_parameters",
     "contact_stiffness",

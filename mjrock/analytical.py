@@ -60,7 +60,7 @@ def solve_analytical(
     state = (0.0, case.theta0, case.omega0)
     s, event = case.direction, Event.TIME
     impacts: list[Impact] = []
-    peaks = [] if case.released_outwards else [case.release_peak]
+    peaks = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
     at_rest = case.theta0 == 0 and case.omega0 == 0
     while state[0] < case.duration:
         if at_rest:
@@ -68,11 +68,10 @@ def solve_analytical(
             if lifted >= case.duration:
                 break
             state, s, at_rest = (lifted, 0.0, 0.0), side, False
-        outwards = s * state[2] > 0
         state, event = arcs.advance(state, s)
         if event is Event.FALL:
             break
-        if event is Event.TURN and outwards:
+        if event is Event.PEAK:
             peaks.append(abs(state[1]))
         elif event is Event.IMPACT:
             before = state[2]

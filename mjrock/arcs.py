@@ -30,7 +30,8 @@ NYSTROM = 50.0
 class Event(enum.Enum):
     """How an arc ended."""
 
-    TURN = "omega = 0"
+    PEAK = "omega = 0 on the way out"
+    TROUGH = "omega = 0 on the way in"
     IMPACT = "theta = 0"
     FALL = "on its face"
     TIME = "the time is over"
@@ -92,7 +93,7 @@ class FreeArcs:
             return (t, theta, omega), Event.FALL
         if not arc.t_events[0].size:
             return (t, theta, omega), Event.TIME
-        return ((t, theta, 0.0), Event.TURN) if turns else ((t, 0.0, omega), Event.IMPACT)
+        return ((t, theta, 0.0), Event.PEAK) if turns else ((t, 0.0, omega), Event.IMPACT)
 
     def sample(self, t: Array) -> tuple[Array, Array]:
         """Rotation and velocity at any times; zero between the arcs."""
@@ -178,7 +179,7 @@ class ForcedArcs:
                     new_theta, new_omega = step(h)[:2]
             event = None
             if omega * new_omega < 0:
-                h, event = when(1, h), Event.TURN
+                h, event = when(1, h), Event.PEAK if s * omega > 0 else Event.TROUGH
                 new_theta, new_omega = step(h)[0], 0.0
             if s * new_theta <= 0:
                 h, event = when(0, h), Event.IMPACT

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -48,7 +48,7 @@ class GroundMotion:
 
     accel: Array
     dt: float
-    name: str = "ground motion"
+    name: str = field(default="ground motion", compare=False)
 
     def __init__(self, accel: ArrayLike, dt: float, name: str = "ground motion") -> None:
         values = np.array(accel, dtype=float)

@@ -152,7 +152,7 @@ def rocking_history(
     """
     times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
     rocking = sizes > uplift[0]
-    prepended = released and not case.released_outwards and (case.motion is None or case.theta0 != 0)
+    prepended = released and not case.released_outwards and case.release_energy > 0
     if prepended:
         rocking &= times > t[1]  # the release itself, where its velocity is not zero to the last digit
     residual = sizes[(times > times[rocking][-1]) if rocking.any() else times > t[0]]

@@ -125,3 +125,17 @@ def test_an_earthquake_of_either_polarity_ends_well(wall, e):
                 assert response.t[-1] <= 12.0
                 if side_stop:
                     assert response.theta.min() >= -1e-9
+
+
+def test_every_maximum_is_a_peak(wall, e):
+    """Also the first after uplift from rest, and the one after a minimum in the air."""
+    for seed in range(6):
+        motion = GroundMotion.synthetic(4.0, 6.0, seed=seed)
+        response = mr.solve_analytical(mr.Case(wall, 0.0, 8.0, side_stop=False, motion=motion), e, output_step=1e-3)
+        theta = np.abs(response.theta)
+        tops = theta[1:-1][(theta[1:-1] > theta[:-2]) & (theta[1:-1] > theta[2:])]
+        large = 1e-3 * wall.alpha
+        assert len(tops[tops > large]) == np.count_nonzero(response.peaks > large)
+        np.testing.assert_allclose(
+            np.sort(tops[tops > large]), np.sort(response.peaks[response.peaks > large]), rtol=1e-3
+        )
