@@ -8,7 +8,7 @@ classical rocking theory, and `compare` sets two answers side by side.
 from ._version import __version__
 from .analytical import solve_analytical
 from .block import GRAVITY, Block
-from .campaign import Analysis, Grid, campaign
+from .campaign import Analysis, Grid, campaign, results
 from .case import Case
 from .compare import Comparison, compare
 from .compliant import solve_compliant
@@ -51,6 +51,7 @@ __all__ = [
     "contact_parameters",
     "contact_stiffness",
     "reference_frequency",
+    "results",
     "simulate",
     "simulate_batch",
     "solve_analytical",

@@ -175,6 +175,10 @@ class Grid(Sequence[Any]):
         """How many points there are."""
         return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
 
+    def __iter__(self) -> Iterator[Any]:
+        """The tasks in order."""
+        return (self[i] for i in range(len(self)))
+
     def __getitem__(self, index: Any) -> Any:
         """The task of one point, or a list of them for a slice."""
         if isinstance(index, slice):
@@ -243,7 +247,16 @@ def campaign(
                     run.write([job], [_carry_out(job.task, job.history)])
             else:
                 run.across(run.by_threads(pending, count, total), lambda: _processes(count), count, own=True)
+        if total is not None and run.asked != total:
+            raise RuntimeError(f"the tasks ended after {run.asked} of {total}; the same call carries on from there")
     return Path(store)
+
+
+def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
+    """The row of each task, in the order asked, from a store that may hold other rows too; None where there is none."""
+    with Store(store) as file:
+        rows = {row["key"]: row for row in file.rows()}
+    return [rows.get(fingerprint(VERSION, task)) for task in tasks]
 
 
 def _processes(count: int) -> ProcessPoolExecutor:
@@ -304,11 +317,13 @@ class _Campaign:
         self.seconds = 0.0
         self.finished = 0
         self.skipped = 0
+        self.asked = 0
 
     def pending(self, tasks: Iterable[Task]) -> Iterator[_Job]:
         """The tasks that have no row yet, each once."""
         statuses = self.file.statuses()
         for position, task in enumerate(tasks):
+            self.asked += 1
             key = fingerprint(VERSION, task)
             history = None if self.folder is None else self.folder / f"{key}.npz"
             status = statuses.get(key)
@@ -382,16 +397,17 @@ class _Campaign:
             flying: dict[Future[list[Row]], list[_Job]] = {}
             with make() as executor:
                 try:
-                    while not ended:
+                    while True:
                         while len(flying) < 2 * width and (jobs := self.take(pending, again, flying.values())):
                             again.extendleft(reversed(jobs))  # where they are safe if the executor is broken
                             future = executor.submit(_carry_out_all, [(job.task, job.history) for job in jobs])
                             for _ in jobs:
                                 again.popleft()
                             flying[future] = jobs
+                        if ended := not flying:
+                            break
                         for future in wait(flying, return_when=FIRST_COMPLETED).done:
                             self.collect(future, flying, again)
-                        ended = not flying and not again
                 except BrokenExecutor as error:
                     if not own:
                         raise RuntimeError(

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -82,6 +82,20 @@ def test_the_same_table_whoever_does_it(tmp_path):
     assert len(tables[0].splitlines()) == 31
 
 
+def test_it_goes_on_when_all_that_was_in_flight_is_done(tmp_path):
+    """Workers that are quicker than the campaign leave nothing in flight for a moment."""
+
+    class AtOnce(ThreadPoolExecutor):
+        def submit(self, call, /, *args):
+            future = Future()
+            future.set_result(call(*args))
+            return future
+
+    with AtOnce() as executor:
+        path = mr.campaign(squares(tmp_path, 50), tmp_path / "c.sqlite", executor=executor)
+    assert len(table(path).splitlines()) == 51
+
+
 def test_a_failed_case_is_a_row(tmp_path):
     tasks = [Square(1), Square(-2), Square(3), Square(1)]
     path = mr.campaign(iter(tasks), tmp_path / "c.sqlite", workers=1)
@@ -98,6 +112,12 @@ def test_nothing_is_done_twice(tmp_path):
     mr.campaign(squares(tmp_path, 20), path, workers=2)
     assert done_once(tmp_path, 20)
     assert len(table(path).splitlines()) == 21
+
+
+def test_results_are_those_of_the_tasks_asked(tmp_path):
+    path = mr.campaign(squares(tmp_path, 10), tmp_path / "c.sqlite", workers=1)
+    rows = mr.results([Square(7), Square(99), Square(2)], path)
+    assert [row and row["square"] for row in rows] == [49, None, 4]
 
 
 def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):

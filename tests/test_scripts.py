@@ -25,11 +25,17 @@ WRITES = {
     "work_precision": {"work_precision.csv", "work_precision.png", "work_precision.txt"},
     "convergence": {"convergence.png", "convergence.txt"},
     "make_models": {"figure3_one_sided"},
+    "overturning_spectrum": {f"overturning_spectrum.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "ida": {f"ida.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "fragility": {f"fragility.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "throughput": {"throughput.txt"},
 }
 
 
 def test_no_script_is_forgotten():
-    assert {p.stem for p in SCRIPTS.glob("*.py")} == set(WRITES) | {"cli", "paper"}
+    assert {p.stem for p in SCRIPTS.glob("*.py")} == set(WRITES) | {"cli", "paper", "suite"}
 
 
 @pytest.mark.parametrize("name", WRITES)

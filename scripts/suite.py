@@ -1,0 +1,93 @@
+"""What the earthquake studies share: the suite of ground motions, the analyses of both solvers, and how a run went."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import cli
+import mjrock as mr
+
+STILL = 0.01
+"""Peak rotation below which a wall is said to have stayed at rest, in multiples of alpha [-]."""
+READERS = {".at2": mr.GroundMotion.from_at2, ".sac": mr.GroundMotion.from_sac}
+SETTLING = 5.0
+"""Time that a wall is followed after the record [s]."""
+OPTIONS: Mapping[str, Mapping[str, object]] = {
+    "analytical": {"rtol": 1e-8, "output_step": 0.05},
+    "MuJoCo": {"accuracy": 1e-3, "output_step": 0.05},
+}
+"""Options of both solvers: what is kept of a run is its peak and its outcome."""
+
+
+def parser(description: str | None, out: str, *, records: bool = True) -> argparse.ArgumentParser:
+    """A script's parser with the options of an earthquake study, `records` among them or not."""
+    made = cli.parser(description, out)
+    if records:
+        made.add_argument(
+            "--records", type=Path, help="folder of .at2 and .sac records (default: seeded synthetic ones)"
+        )
+    made.add_argument("--workers", type=int, help="processes (default: one for each processor)")
+    return made
+
+
+def motions(folder: Path | None, count: int = 10) -> list[mr.GroundMotion]:
+    """The records of a folder, or `count` synthetic ones."""
+    if folder is None:
+        return [mr.GroundMotion.synthetic(3.0, 15.0, seed=seed) for seed in range(count)]
+    files = sorted(path for path in folder.iterdir() if path.suffix.lower() in READERS)
+    if not files:
+        raise ValueError(f"{folder} holds no record; the endings that are read are {', '.join(READERS)}")
+    return [READERS[path.suffix.lower()](path) for path in files]
+
+
+def to_peak(motion: mr.GroundMotion, pga: float) -> mr.GroundMotion:
+    """The motion scaled to a peak ground acceleration in g."""
+    return motion.scaled(pga * mr.GRAVITY / motion.peak)
+
+
+def analysis(
+    wall: mr.Block,
+    motion: mr.GroundMotion,
+    solver: str,
+    *,
+    k_n: float,
+    side_stop: bool = True,
+    settling: float = SETTLING,
+    **labels: object,
+) -> mr.Analysis:
+    """A wall at rest under a ground motion, in rocking theory or in MuJoCo with the damping law."""
+    e = mr.Restitution.from_geometry(wall.alpha)
+    case = mr.Case(wall, 0.0, motion.duration + settling, side_stop=side_stop, motion=motion)
+    contacts = mr.Contacts.from_law(wall, e, k_base=k_n, k_side=k_n if side_stop else None)
+    return mr.Analysis(case, solver, e=e, contacts=contacts, options=OPTIONS[solver], labels=labels)
+
+
+def run(tasks: Sequence[Any], store: Path, workers: int | None) -> list[dict[str, Any]]:
+    """The rows of the tasks, from the store or newly made.
+
+    Raises:
+        ValueError: if a case has failed, with the first error.
+    """
+    mr.campaign(tasks, store, workers=workers)
+    rows = [dict(row or {}) for row in mr.results(tasks, store)]
+    failed = [row for row in rows if row["status"] == "failed"]
+    if failed:
+        raise ValueError(f"{len(failed)} of {len(rows)} cases failed, the first with {failed[0]['error']}; see {store}")
+    return rows
+
+
+def verdict(row: Mapping[str, object]) -> str:
+    """Whether the wall of a row rests, rocks or overturns."""
+    if row["outcome"] == mr.Outcome.OVERTURNED.value:
+        return "overturns"
+    return "rests" if float(str(row["peak_over_alpha"])) < STILL else "rocks"
+
+
+def slender_wall(slenderness: float, half_diagonal: float) -> mr.Block:
+    """The wall of a slenderness h/b [-] and a half diagonal R [m]."""
+    alpha = math.atan(1 / slenderness)
+    return mr.Block(b=half_diagonal * math.sin(alpha), h=half_diagonal * math.cos(alpha))
