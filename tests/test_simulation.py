@@ -225,3 +225,13 @@ def test_a_batch_has_one_geometry(wall, contacts):
     with pytest.raises(ValueError, match=r"cases\[1\] has another wall"):
         mr.simulate_batch(cases, contacts, 1e-3)
     assert mr.simulate_batch([], contacts, 1e-3) == []
+
+
+def test_energy_from_nowhere_is_noticed_on_a_shaken_base(wall, contacts, monkeypatch):
+    """What the ground puts in is accounted for; the twin forgets a tenth of it."""
+    case = mr.Case(wall, 0.0, 3.0, motion=mr.GroundMotion.sine(-3.0, 1.2))
+    mr.simulate(case, contacts)
+    work = simulation.ground_work
+    monkeypatch.setattr(simulation, "ground_work", lambda *run: 0.9 * work(*run))
+    with pytest.raises(mr.SimulationError, match="appeared from nowhere"):
+        mr.simulate(case, contacts)
