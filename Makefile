@@ -22,7 +22,7 @@ lint: $(READY)
 models: $(READY)
 	$(BIN)/python scripts/make_models.py
 
-figures: $(READY) # the pictures and tables of the README
+figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions for agreement.py
 	$(BIN)/python scripts/figure3.py --out docs/figures
 	$(BIN)/python scripts/table2.py --out docs/figures
 	$(BIN)/python scripts/convergence.py --out docs/figures
@@ -32,6 +32,12 @@ figures: $(READY) # the pictures and tables of the README
 	$(BIN)/python scripts/hard_cases.py --out docs/figures
 	$(BIN)/python scripts/trouble.py --out docs/figures
 	$(BIN)/python scripts/work_precision.py --out docs/figures
+	$(BIN)/python scripts/overturning_spectrum.py --out docs/figures
+	$(BIN)/python scripts/ida.py --out docs/figures
+	$(BIN)/python scripts/fragility.py --out docs/figures
+	$(BIN)/python scripts/polarity.py --out docs/figures
+	$(BIN)/python scripts/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/throughput.py --out docs/figures
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

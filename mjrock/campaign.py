@@ -233,11 +233,6 @@ def campaign(
     with Store(store, writing=True) as file:
         run = _Campaign(file, folder, retry)
         pending = run.pending(tasks)
-        first = next(pending, None)
-        if first is None:
-            return Path(store)
-        file.add_columns([*first.task.labels, *first.task.COLUMNS])
-        pending = itertools.chain([first], pending)
         with tqdm(total=total, unit="case", desc="campaign", delay=1, disable=None, smoothing=0.05) as run.bar:
             if executor is not None:
                 width = getattr(executor, "_max_workers", count)
@@ -322,6 +317,7 @@ class _Campaign:
     def pending(self, tasks: Iterable[Task]) -> Iterator[_Job]:
         """The tasks that have no row yet, each once."""
         statuses = self.file.statuses()
+        columns: tuple[str, ...] = ()
         for position, task in enumerate(tasks):
             self.asked += 1
             key = fingerprint(VERSION, task)
@@ -332,6 +328,10 @@ class _Campaign:
                 self.skipped += 1
                 continue
             statuses[key] = "taken"
+            names = (*task.labels, *task.COLUMNS)
+            if names != columns:
+                self.file.add_columns(names)
+                columns = names
             yield _Job(task, key, position, history)
 
     def write(self, jobs: Sequence[_Job], rows: Sequence[Row]) -> None:

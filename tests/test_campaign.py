@@ -120,6 +120,12 @@ def test_results_are_those_of_the_tasks_asked(tmp_path):
     assert [row and row["square"] for row in rows] == [49, None, 4]
 
 
+def test_tasks_may_have_other_labels_than_the_first(tmp_path):
+    tasks = [Square(1, labels={"name": "a"}), Square(2, labels={"size": 3.5})]
+    path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=1)
+    assert [(row["name"], row["size"]) for row in mr.results(tasks, path)] == [("a", None), (None, 3.5)]
+
+
 def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):
     path = mr.campaign([Square(-1)], tmp_path / "c.sqlite", workers=1)
     monkeypatch.setattr(Square, "__call__", lambda self, history=None: {"square": 1})
