@@ -31,6 +31,7 @@ WRITES = {
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "throughput": {"throughput.txt"},
+    "thresholds": {"thresholds.txt"},
 }
 
 
