@@ -8,12 +8,13 @@ classical rocking theory, and `compare` sets two answers side by side.
 from ._version import __version__
 from .analytical import solve_analytical
 from .block import GRAVITY, Block
+from .calibration import Plan, calibrate
 from .campaign import Analysis, Grid, campaign, results
 from .case import Case
 from .compare import Comparison, compare
 from .compliant import solve_compliant
 from .contact import ContactParameters, contact_parameters, contact_stiffness
-from .damping import PUBLISHED, DampingLaw, PowerLaw
+from .damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, PowerLaw
 from .interface import Contacts, Interface, reference_frequency
 from .ledger import Ledger
 from .mjcf import wall_mjcf
@@ -24,6 +25,8 @@ from .simulation import SimulationError, automatic_timestep, simulate, simulate_
 from .store import Store
 
 __all__ = [
+    "CALIBRATED",
+    "CALIBRATED_BED",
     "GRAVITY",
     "PUBLISHED",
     "Analysis",
@@ -39,6 +42,7 @@ __all__ = [
     "Interface",
     "Ledger",
     "Outcome",
+    "Plan",
     "PowerLaw",
     "Response",
     "Restitution",
@@ -46,6 +50,7 @@ __all__ = [
     "Store",
     "__version__",
     "automatic_timestep",
+    "calibrate",
     "campaign",
     "compare",
     "contact_parameters",

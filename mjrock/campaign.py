@@ -254,6 +254,28 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
     return [rows.get(fingerprint(VERSION, task)) for task in tasks]
 
 
+def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[dict[str, Any]]:
+    """The rows of the tasks, in the order asked, once a campaign has run those that the store does not hold.
+
+    Args:
+        tasks: the tasks, that can be gone through more than once.
+        store: the SQLite file.
+        options: those of `campaign`.
+
+    Raises:
+        RuntimeError: if a task has failed; its row in the store says how.
+        ValueError, OSError: as `campaign`.
+    """
+    campaign(tasks, store, **options)
+    rows = [row or {"status": "missing", "error": "no row"} for row in results(tasks, store)]
+    failed = [row for row in rows if row["status"] != "done"]
+    if failed:
+        raise RuntimeError(
+            f"{len(failed)} of {len(rows)} tasks failed, the first with {failed[0]['error']}; see {store}"
+        )
+    return rows
+
+
 def _processes(count: int) -> ProcessPoolExecutor:
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(count, mp_context=context, initializer=_die_with_the_campaign)

@@ -2,12 +2,87 @@
 
 from __future__ import annotations
 
+import json
 import math
+import tomllib
 import warnings
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .block import Block
 from .restitution import Restitution
+
+Array = NDArray[np.float64]
+LEAST, HIGHEST = 1e-3, 0.3
+"""Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
+DENSITY = 2000.0
+"""Density of the walls that laws are fitted on [kg/m3]."""
+
+
+@dataclass(frozen=True)
+class Groups:
+    """The numbers that the damping ratios of a wall on its interfaces can depend on; floats, or arrays of one shape.
+
+    A rigid wall on unilateral springs and dashpots whose dashpots go with the reference frequency has no other: its
+    size and its density drop out where k_n / (density * g) and h/b are the same.
+
+    Args:
+        slenderness: h/b [-].
+        k_n: interface stiffness of the base [N/m3].
+        softness: rotation at which an edge of the wall at rest decompresses, over alpha [-]. It is
+            2 (h/b) density g / (k_n alpha), the share of the way to overturning in which the wall does not rock yet.
+        work: softness * 0.75 / (phi (2 - phi)), phi = theta_0/alpha of the release [-]: what the weight does on the
+            springs of the base, over the energy that arrives; the softness itself for a release at alpha/2.
+        side_ratio: interface stiffness of the side over that of the base [-].
+        housner: -ln e_2s of Eq. 2, the loss that conservation of angular momentum asks for [-].
+        base_loss: -ln e_2s, what is asked for [-].
+        side_loss: -ln |e_side|, what is asked for [-].
+    """
+
+    slenderness: Any
+    k_n: Any
+    softness: Any
+    work: Any
+    side_ratio: Any
+    housner: Any
+    base_loss: Any
+    side_loss: Any
+
+    @classmethod
+    def of(cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5) -> Groups:
+        """The groups of `wall` on a base of `k_n` [N/m3] against a side of `k_side`, the same where it is None."""
+        softness = wall.weight / (2 * k_n * wall.length * wall.b**2) / wall.alpha
+        return cls(
+            slenderness=wall.slenderness,
+            k_n=k_n,
+            softness=softness,
+            work=softness * 0.75 / (amplitude * (2 - amplitude)),
+            side_ratio=1.0 if k_side is None else k_side / k_n,
+            housner=-math.log(Restitution.from_geometry(wall.alpha).base),
+            base_loss=-math.log(e.base),
+            side_loss=-math.log(abs(e.side)),
+        )
+
+    @classmethod
+    def stack(cls, groups: list[Groups]) -> Groups:
+        """Many as one, whose fields are arrays of shape (n,)."""
+        return cls(*np.array([[getattr(one, name.name) for one in groups] for name in fields(cls)], dtype=float))
+
+
+class Form(Protocol):
+    """A formula for one damping ratio: a frozen dataclass of its coefficients, the last of which is its R2."""
+
+    @property
+    def r_squared(self) -> float:
+        """R2 of the damping ratio over the matched simulations that it was fitted to [-]."""
+
+    def xi(self, groups: Groups, loss: Any) -> Any:
+        """The damping ratio [-] that loses `loss` = -ln|e| in the impact of this formula; floats or arrays."""
 
 
 @dataclass(frozen=True)
@@ -24,54 +99,277 @@ class PowerLaw:
         factor = slenderness**self.slenderness_exponent * k_n**self.stiffness_exponent
         return float(-self.coefficient * factor * math.log(abs(e)))
 
+    def xi(self, groups: Groups, loss: Any) -> Any:
+        """As `Form.xi`."""
+        factor = groups.slenderness**self.slenderness_exponent * groups.k_n**self.stiffness_exponent
+        return self.coefficient * factor * loss
+
+
+@dataclass(frozen=True)
+class CornerLaw:
+    """The base of a wall on two corner lines.
+
+    With L = -ln e_2s the loss asked for, L_H that of Eq. 2, s = softness and w = work, the loss goes from an undamped
+    bounce to a plastic touch-down as the damping grows:
+
+        L = L_f - (L_f - L_u) exp(-xi / xi_0)        xi = xi_0 ln[(L_f - L_u) / (L_f - L)]
+        L_f = L_H + floor w                          plastic: Housner's loss, and the work of the weight on the springs
+        L_u = max(0, L_H - bounce sqrt(s) b/h)       undamped: what the bounce off the springs gives back
+        xi_0 = scale s^softness_exponent (h/b)^slenderness_exponent (1 + growth w)
+
+    No damping loses more than L_f or less than L_u: a restitution beyond them is out of reach.
+    """
+
+    floor: float
+    bounce: float
+    scale: float
+    softness_exponent: float
+    slenderness_exponent: float
+    growth: float
+    r_squared: float = math.nan
+
+    def _parts(self, groups: Groups) -> tuple[Any, Any, Any]:
+        s = groups.softness
+        most = groups.housner + self.floor * groups.work
+        least = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(s) / groups.slenderness)
+        steepness = s**self.softness_exponent * groups.slenderness**self.slenderness_exponent
+        return most, least, self.scale * steepness * (1 + self.growth * groups.work)
+
+    def xi(self, groups: Groups, loss: Any) -> Any:
+        """As `Form.xi`; infinite where no damping loses as much, zero or less where none loses as little."""
+        most, least, scale = self._parts(groups)
+        left = np.maximum(0.0, most - loss) / (most - least)
+        with np.errstate(divide="ignore"):
+            return -scale * np.log(left)
+
+    def loss(self, groups: Groups, xi: Any) -> Any:
+        """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
+        most, least, scale = self._parts(groups)
+        return most - (most - least) * np.exp(-xi / scale)
+
+
+@dataclass(frozen=True)
+class BedLaw:
+    """The base of a wall on a bed of many lines.
+
+    The lines close one after the other: an early one is damped while the wall still turns about a late one, so the loss
+    grows with the logarithm of the damping, and for small losses in proportion to it, as in the paper. With
+    L = -ln e_2s, L_H that of Eq. 2 and w = work:
+
+        L = A ln(1 + xi / xi_0)        xi = xi_0 (e_2s^(-1/A) - 1)
+        A = inertia L_H + weight w
+        xi_0 = scale w^exponent
+    """
+
+    inertia: float
+    weight: float
+    scale: float
+    exponent: float
+    r_squared: float = math.nan
+
+    def _parts(self, groups: Groups) -> tuple[Any, Any]:
+        w = groups.work
+        return self.inertia * groups.housner + self.weight * w, self.scale * w**self.exponent
+
+    def xi(self, groups: Groups, loss: Any) -> Any:
+        """As `Form.xi`."""
+        amplitude, scale = self._parts(groups)
+        return scale * np.expm1(np.minimum(loss / amplitude, 50.0))
+
+    def loss(self, groups: Groups, xi: Any) -> Any:
+        """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
+        amplitude, scale = self._parts(groups)
+        return amplitude * np.log1p(xi / scale)
+
+
+@dataclass(frozen=True)
+class SideLaw:
+    """The side stop, once the base has the damping of its own law.
+
+    The top of the wall hits the stop like a mass on a spring and a dashpot, with the damping ratio
+    zeta = xi sqrt(2 k_side / k_base) (h/b)^1.5: the rocking frequency against the stop over that on the base. The base
+    takes little in the quick sequence base, side, base, so the stop has to lose nearly all of L = -ln|e_1s|, with
+    s = softness:
+
+        xi = scale (h/b)^slenderness_exponent (k_side / k_base)^ratio_exponent L (1 + curvature L) (1 + softening s L)
+        L = side_loss + base_share base_loss         -ln|e_1s| itself has base_share = 2
+    """
+
+    scale: float
+    slenderness_exponent: float
+    ratio_exponent: float
+    base_share: float
+    curvature: float
+    softening: float
+    r_squared: float = math.nan
+
+    def xi(self, groups: Groups, loss: Any) -> Any:
+        """As `Form.xi`."""
+        total = loss + self.base_share * groups.base_loss
+        factor = groups.slenderness**self.slenderness_exponent * groups.side_ratio**self.ratio_exponent
+        curve = (1 + self.curvature * total) * (1 + self.softening * groups.softness * total)
+        return self.scale * factor * total * curve
+
+
+FORMS: dict[str, type] = {form.__name__: form for form in (PowerLaw, CornerLaw, BedLaw, SideLaw)}
+"""The formulas that a file may name."""
+
 
 @dataclass(frozen=True)
 class DampingLaw:
-    """Two power laws, their source, and the ranges they were fitted over.
+    """A formula for the base and one for the side, their source, and the ranges they were fitted over.
 
-    Calling a law gives `(xi_base, xi_side)` as fractions, and warns (UserWarning) outside the fitted ranges.
+    Calling a law gives `(xi_base, xi_side)` as fractions, and warns (UserWarning) outside the fitted ranges, or where
+    no damping of the base loses as much or as little as is asked for; it then gives the damping that comes closest.
 
     Args:
         name: what a generated model records.
         source: where the coefficients come from.
-        base: law of the base, of ln e_2s.
-        side: law of the side stop, of ln |e_side|.
+        base: formula of the base, of e_2s.
+        side: formula of the side stop, of e_side.
         R_range: half diagonals covered by the fit [m].
         slenderness_range: h/b covered by the fit [-].
         k_n_range: interface stiffnesses covered by the fit [N/m3].
+        side_range: |e_side| covered by the fit [-].
+        points: contact lines a face that the law was fitted for, or None where the source does not say.
+        scalable: whether size and density enter through dimensionless groups alone. `R_range` is then no limit, and
+            `k_n_range` holds for walls of 2000 kg/m3 and goes with the density.
+        runs: matched simulations behind base and side.
+        errors: standard errors of the coefficients by "base" and "side" and name, where they are known.
     """
 
     name: str
     source: str
-    base: PowerLaw
-    side: PowerLaw
+    base: Form
+    side: Form
     R_range: tuple[float, float]
     slenderness_range: tuple[float, float]
     k_n_range: tuple[float, float]
+    side_range: tuple[float, float] = (0.0, 1.0)
+    points: int | None = None
+    scalable: bool = False
+    runs: tuple[int, int] = (0, 0)
+    errors: Mapping[str, Mapping[str, float]] = field(default_factory=dict, compare=False)
 
-    def __call__(self, wall: Block, e: Restitution, k_n: float) -> tuple[float, float]:
-        """Damping ratios of base and side for interface stiffness `k_n` of the base [N/m3].
+    def __call__(
+        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+    ) -> tuple[float, float]:
+        """Damping ratios of base and side [-]; the published law depends on neither `k_side` nor `amplitude`.
+
+        Args:
+            wall: the wall.
+            e: the restitution asked for.
+            k_n: interface stiffness of the base [N/m3].
+            k_side: interface stiffness of the side [N/m3]; that of the base where it is None.
+            amplitude: rotation over alpha that the wall comes from [-], in (0, 1].
 
         Raises:
-            ValueError: if `k_n` is not positive, or `e.side` is zero (its logarithm has no value).
+            ValueError: for a value outside its range, or if `e.side` is zero (its logarithm has no value).
         """
-        if not k_n > 0:
-            raise ValueError(f"k_n = {k_n:g} N/m3 is outside the valid range k_n > 0")
+        for symbol, k in (("k_n", k_n), ("k_side", k_n if k_side is None else k_side)):
+            if not k > 0:
+                raise ValueError(f"{symbol} = {k:g} N/m3 is outside the valid range {symbol} > 0")
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
+        if not 0 < amplitude <= 1:
+            raise ValueError(f"amplitude = {amplitude:g} is outside the valid range 0 < theta_0/alpha <= 1")
+        groups = Groups.of(wall, e, k_n, k_side, amplitude)
+        self._warn_outside(wall, e, k_n, k_side)
+        xi_base = float(self.base.xi(groups, groups.base_loss))
+        if self.scalable:
+            lowest, highest = self.reach(wall, k_n, amplitude)
+            if not lowest <= e.base <= highest:
+                warnings.warn(
+                    f"{self.name}: no damping of this base makes e_2s = {e.base:.4g}; it reaches {lowest:.4g} to "
+                    f"{highest:.4g}, and gets the damping that comes closest",
+                    stacklevel=2,
+                )
+            xi_base = min(max(xi_base, LEAST), HIGHEST)
+        return xi_base, float(self.side.xi(groups, groups.side_loss))
+
+    def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
+        """The lowest and the highest e_2s that a base of `k_n` [N/m3] can be given, as far as the law knows.
+
+        They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
+        """
+        loss = getattr(self.base, "loss", None)
+        if loss is None:
+            return 0.0, 1.0
+        groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
+        return math.exp(-float(loss(groups, HIGHEST))), math.exp(-float(loss(groups, LEAST)))
+
+    def _warn_outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> None:
+        scale = DENSITY / wall.density if self.scalable else 1.0
         covered = {
-            "R [m]": (wall.R, self.R_range),
             "h/b [-]": (wall.slenderness, self.slenderness_range),
-            "k_n [N/m3]": (k_n, self.k_n_range),
+            "k_n [N/m3]": (k_n * scale, self.k_n_range),
         }
+        if self.scalable:
+            covered["k_side [N/m3]"] = ((k_n if k_side is None else k_side) * scale, self.k_n_range)
+            covered["|e_side| [-]"] = (abs(e.side), self.side_range)
+        else:
+            covered = {"R [m]": (wall.R, self.R_range)} | covered
         outside = [
             f"{name} = {value:.4g} not in {low:g} to {high:g}"
             for name, (value, (low, high)) in covered.items()
             if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9)
         ]
         if outside:
-            warnings.warn(f"{self.name}: outside the range of the fit: {'; '.join(outside)}", stacklevel=2)
-        return self.base(wall.slenderness, k_n, e.base), self.side(wall.slenderness, k_n, e.side)
+            warnings.warn(f"{self.name}: outside the range of the fit: {'; '.join(outside)}", stacklevel=3)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the law as a TOML file that `DampingLaw.load` reads and a text editor shows.
+
+        Raises:
+            OSError: if the file cannot be written.
+        """
+        head = {one.name: getattr(self, one.name) for one in fields(self) if one.name not in ("base", "side", "errors")}
+        lines = [f"{key} = {_toml(value)}" for key, value in head.items() if value is not None]
+        for part, form in (("base", self.base), ("side", self.side)):
+            lines += ["", f"[{part}]", f'form = "{type(form).__name__}"']
+            errors = self.errors.get(part, {})
+            for key, value in asdict(form).items():  # type: ignore[call-overload]
+                note = f"  # +- {errors[key]:.2g}" if key in errors else ""
+                lines.append(f"{key} = {_toml(value)}{note}")
+            if errors:
+                lines += ["", f"[errors.{part}]", *(f"{key} = {_toml(value)}" for key, value in errors.items())]
+        path = Path(path)
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return path
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read a law that `save` wrote.
+
+        Raises:
+            OSError: if the file cannot be read.
+            ValueError: if it is no law: not TOML, a formula that there is not, or a coefficient missing or too many.
+        """
+        try:
+            text = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            made: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
+            for part in ("base", "side"):
+                given = dict(text[part])
+                name = given.pop("form")
+                if name not in FORMS:
+                    raise ValueError(f"form = {name!r} is none of {', '.join(FORMS)}")
+                made[part] = FORMS[name](**given)
+            return cls(**made)
+        except KeyError as error:
+            raise ValueError(f"{path} is not a damping law: {error} is missing") from None
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{path} is not a damping law: {error}") from None
+
+
+def _toml(value: object) -> str:
+    """A value as TOML; numbers at full precision."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(_toml(item) for item in value)}]"
+    if isinstance(value, float) and math.isnan(value):
+        return "nan"
+    if isinstance(value, bool | str):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(value)
 
 
 PUBLISHED = DampingLaw(
@@ -86,3 +384,12 @@ PUBLISHED = DampingLaw(
     k_n_range=(0.5e8, 30e8),
 )
 """The law of the paper (Eqs. 5-6), fitted there in a finite element code with its own contact discretisation."""
+
+LAWS = Path(__file__).with_name("laws")
+"""Folder of the laws that come with the package."""
+
+CALIBRATED = DampingLaw.load(LAWS / "calibrated.toml")
+"""The law for two corner lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+
+CALIBRATED_BED = DampingLaw.load(LAWS / "calibrated_bed.toml")
+"""The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .block import Block, require_within
-from .damping import PUBLISHED
+from .damping import PUBLISHED, DampingLaw
 from .restitution import Restitution
 
-Law = Callable[[Block, Restitution, float], tuple[float, float]]
+Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 Array = NDArray[np.float64]
 
 
@@ -170,7 +170,9 @@ class Contacts:
         law: Law = PUBLISHED,
         points: int = 2,
     ) -> Contacts:
-        """Interfaces of `wall` whose damping ratios `law(wall, e, k_base)` predicts, in the chosen layout.
+        """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
+
+        A law of your own is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` too.
 
         Raises:
             ValueError: as `from_damping`, and what the law raises.
@@ -180,7 +182,8 @@ class Contacts:
                 require_within(f"{name} stiffness k_n", k, 1e4, 1e14, "N/m3")
         if k_side is not None and e.side >= 0:
             raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
-        xi_base, xi_side = law(wall, e, k_base)
+        predicted = law(wall, e, k_base, k_side) if isinstance(law, DampingLaw) else law(wall, e, k_base)
+        xi_base, xi_side = predicted
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall, k_base=k_base, xi_base=xi_base, k_side=k_side, xi_side=xi_side, points=points, law=name

@@ -19,6 +19,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
+from mjrock.campaign import completed
 
 SOLVERS = ("analytical", "MuJoCo")
 WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]
@@ -50,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         level=LEVELS[1:4] if args.quick else LEVELS,
         solver=SOLVERS,
     )
-    found = suite.run(grid, out / "agreement.sqlite", args.workers)
+    found = completed(grid, out / "agreement.sqlite", workers=args.workers)
     figure = Figure(figsize=(8.4, 7.2), layout="constrained")
     table = []
     for line, (side_stop, title) in zip(figure.subplots(2, 2), ((1, "one-sided"), (0, "two-sided")), strict=True):

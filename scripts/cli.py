@@ -10,8 +10,6 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from mjrock import SimulationError
-
 
 def parser(description: str | None, out: str) -> argparse.ArgumentParser:
     """A parser with the options that every script has."""
@@ -63,7 +61,7 @@ def run(main: Callable[[Sequence[str] | None], None]) -> int:
     """Call a script's main; an error that the user can mend is printed, not traced. Returns the exit code."""
     try:
         main(None)
-    except (ValueError, OSError, SimulationError) as error:
+    except (ValueError, OSError, RuntimeError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     return 0

@@ -16,6 +16,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
+from mjrock.campaign import completed
 from mjrock.fragility import fit_fragility
 from paper import FIGURE_3, K_N
 
@@ -35,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return suite.analysis(FIGURE_3, suite.to_peak(motion, pga), solver, k_n=K_N)
 
     grid = mr.Grid(build, solver=SOLVERS, motion=motions, pga=levels.tolist())
-    found = suite.run(grid, out / "fragility.sqlite", args.workers)
+    found = completed(grid, out / "fragility.sqlite", workers=args.workers)
     fell = np.array([row["outcome"] == mr.Outcome.OVERTURNED.value for row in found])
     fell = fell.reshape(len(SOLVERS), len(motions), len(levels))
     fits = [fit_fragility(np.tile(levels, len(motions)), own.ravel()) for own in fell]

@@ -17,6 +17,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
+from mjrock.campaign import completed
 from paper import FIGURE_3, K_N
 
 SOLVERS = ("analytical", "MuJoCo")
@@ -35,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return suite.analysis(FIGURE_3, suite.to_peak(motion, pga), solver, k_n=K_N)
 
     grid = mr.Grid(build, solver=SOLVERS, motion=motions, pga=levels.tolist())
-    found = suite.run(grid, out / "ida.sqlite", args.workers)
+    found = completed(grid, out / "ida.sqlite", workers=args.workers)
     fell = [row["outcome"] == mr.Outcome.OVERTURNED.value for row in found]
     peaks = np.where(fell, math.inf, [row["peak_over_alpha"] for row in found])
     peaks = peaks.reshape(len(SOLVERS), len(motions), len(levels))

@@ -19,6 +19,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
+from mjrock.campaign import completed
 from paper import FIGURE_3
 
 SIDES = {"two-sided": (False, -1), "one-sided, outward first": (True, -1), "one-sided, inward first": (True, 1)}
@@ -53,7 +54,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         n = 4 if args.quick else size
         frequency, amplitude = np.linspace(0.5, 8.0, n), np.linspace(0.5, 14.0, n)
         grid = mr.Grid(build, solver=[solver], sides=SIDES, frequency=frequency.tolist(), amplitude=amplitude.tolist())
-        found = np.array([mode(row) for row in suite.run(grid, out / "overturning_spectrum.sqlite", args.workers)])
+        found = np.array(
+            [mode(row) for row in completed(grid, out / "overturning_spectrum.sqlite", workers=args.workers)]
+        )
         for ax, sides, modes in zip(line, SIDES, found.reshape(3, n, n), strict=True):
             plotting.overturning_map(ax, frequency, amplitude, modes.T)
             ax.set_title(f"{plotting.STYLES[solver]['label']}, {sides}", fontsize=9)

@@ -15,6 +15,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
+from mjrock.campaign import completed
 from paper import FIGURE_3, K_N
 
 SOLVERS = ("analytical", "MuJoCo")
@@ -31,7 +32,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return suite.analysis(FIGURE_3, suite.to_peak(motion, pga).polarities[polarity], solver, k_n=K_N)
 
     grid = mr.Grid(build, solver=SOLVERS, motion=motions, pga=levels, polarity=(0, 1))
-    found = suite.run(grid, out / "polarity.sqlite", args.workers)
+    found = completed(grid, out / "polarity.sqlite", workers=args.workers)
     figure = Figure(figsize=(7.4, 3.8), layout="constrained")
     rows = []
     for ax, solver in zip(figure.subplots(1, 2), SOLVERS, strict=True):

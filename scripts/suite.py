@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import cli
 import mjrock as mr
@@ -64,20 +63,6 @@ def analysis(
     case = mr.Case(wall, 0.0, motion.duration + settling, side_stop=side_stop, motion=motion)
     contacts = mr.Contacts.from_law(wall, e, k_base=k_n, k_side=k_n if side_stop else None)
     return mr.Analysis(case, solver, e=e, contacts=contacts, options=OPTIONS[solver], labels=labels)
-
-
-def run(tasks: Sequence[Any], store: Path, workers: int | None) -> list[dict[str, Any]]:
-    """The rows of the tasks, from the store or newly made.
-
-    Raises:
-        ValueError: if a case has failed, with the first error.
-    """
-    mr.campaign(tasks, store, workers=workers)
-    rows = [dict(row or {}) for row in mr.results(tasks, store)]
-    failed = [row for row in rows if row["status"] == "failed"]
-    if failed:
-        raise ValueError(f"{len(failed)} of {len(rows)} cases failed, the first with {failed[0]['error']}; see {store}")
-    return rows
 
 
 def verdict(row: Mapping[str, object]) -> str:

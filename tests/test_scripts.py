@@ -32,6 +32,9 @@ WRITES = {
     "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "throughput": {"throughput.txt"},
     "thresholds": {"thresholds.txt"},
+    "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
+    | {"calibrated_residuals_side.png", "calibration.csv", "calibration.sqlite", "calibration.txt"},
+    "validate_law": {"table2_laws.csv", "validation.csv", "validation.png", "validation.sqlite", "validation.txt"},
 }
 
 
