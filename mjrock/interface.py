@@ -176,14 +176,23 @@ class Contacts:
 
         Raises:
             ValueError: as `from_damping`, and what the law raises.
+
+        Warns:
+            UserWarning: what the law warns of, and where it was fitted for another number of lines.
         """
         for name, k in (("base", k_base), ("side", k_side)):
             if k is not None:
                 require_within(f"{name} stiffness k_n", k, 1e4, 1e14, "N/m3")
         if k_side is not None and e.side >= 0:
             raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
-        predicted = law(wall, e, k_base, k_side) if isinstance(law, DampingLaw) else law(wall, e, k_base)
-        xi_base, xi_side = predicted
+        if isinstance(law, DampingLaw):
+            xi_base, xi_side = law(wall, e, k_base, k_side)
+            if law.points not in (None, points):
+                warnings.warn(
+                    f"{law.name} was fitted for {law.points} contact lines a face, not {points}", stacklevel=2
+                )
+        else:
+            xi_base, xi_side = law(wall, e, k_base)
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall, k_base=k_base, xi_base=xi_base, k_side=k_side, xi_side=xi_side, points=points, law=name

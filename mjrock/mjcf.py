@@ -20,10 +20,10 @@ from .pose import release_pose
 RADIUS = 1e-6
 """Radius of the contact spheres in half heights [-]: friction acts at their surface, so it is tiny."""
 FREE_FRICTION = 1.0
-"""Friction coefficient of the edges of a wall without a side stop [-]. It holds any wall in free rocking, whose base is
-pushed with at most (3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of what loads it. It is no larger because two edges
-that both stick while the wall turns over work against each other: with mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a
-third too much."""
+"""Friction coefficient of the edges of a wall without a side stop on two lines [-]; on a bed of n lines n/2 times that,
+as an edge carries so much less. It holds any wall in free rocking, whose base is pushed with at most
+(3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of what loads it. It is no larger because two edges that both stick while
+the wall turns over work against each other: with mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a third too much."""
 HELD_FRICTION = 30.0
 """Friction coefficient of the outer edge of a wall with a side stop [-]. It is not to slip when the side impact throws
 the base while it is hardly loaded: on the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %, from mu = 10
@@ -117,7 +117,7 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
         grip: dict[str, object] = {"condim": "1"}
         if i in (0, len(base_rows) - 1):
             mu = HELD_FRICTION if i else inner_friction(wall, contacts)
-            mu = mu if case.side_stop else FREE_FRICTION
+            mu = mu if case.side_stop else FREE_FRICTION * contacts.base.points / 2
             grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": hold}
         sphere = {"size": radius, "pos": (x, 0, -h)}
         _add_point(body, pairs, f"base_{i}", sphere, "base", row, grip)

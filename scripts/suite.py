@@ -58,10 +58,10 @@ def analysis(
     settling: float = SETTLING,
     **labels: object,
 ) -> mr.Analysis:
-    """A wall at rest under a ground motion, in rocking theory or in MuJoCo with the damping law."""
+    """A wall at rest under a ground motion, in rocking theory or in MuJoCo with the calibrated damping law."""
     e = mr.Restitution.from_geometry(wall.alpha)
     case = mr.Case(wall, 0.0, motion.duration + settling, side_stop=side_stop, motion=motion)
-    contacts = mr.Contacts.from_law(wall, e, k_base=k_n, k_side=k_n if side_stop else None)
+    contacts = mr.Contacts.from_law(wall, e, k_base=k_n, k_side=k_n if side_stop else None, law=mr.CALIBRATED)
     return mr.Analysis(case, solver, e=e, contacts=contacts, options=OPTIONS[solver], labels=labels)
 
 

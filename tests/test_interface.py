@@ -82,3 +82,16 @@ def test_percent_instead_of_a_fraction_is_noticed(wall):
 def test_a_side_that_does_not_rebound_has_no_damping(wall):
     with pytest.raises(ValueError, match=r"side restitution = 0\.47 is no rebound"):
         mr.Contacts.from_law(wall, mr.Restitution(0.97, 0.47), k_base=K_N, k_side=K_N)
+
+
+def test_a_law_is_told_the_side_and_says_what_it_was_fitted_for(wall, e):
+    made = mr.Contacts.from_law(wall, e, k_base=5e8, k_side=1e8, law=mr.CALIBRATED)
+    assert (made.base.xi, made.side.xi) == mr.CALIBRATED(wall, e, 5e8, 1e8)
+    assert made.side.xi > 2 * mr.CALIBRATED(wall, e, 5e8)[1]
+    with pytest.warns(UserWarning, match="CALIBRATED was fitted for 2 contact lines a face, not 16"):
+        mr.Contacts.from_law(wall, e, k_base=5e8, law=mr.CALIBRATED, points=16)
+
+
+def test_a_law_of_ones_own_has_three_arguments(wall, e):
+    made = mr.Contacts.from_law(wall, e, k_base=5e8, k_side=1e8, law=lambda wall, e, k_n: (0.04, 0.01))
+    assert (made.base.xi, made.side.xi) == (0.04, 0.01)
