@@ -253,7 +253,9 @@ def damping_curves(
         ax.semilogy(*matches, linestyle="", marker=marker, markersize=4, color=color, label=label)
     ax.set_xlabel("restitution asked for $|e|$ [-]")
     ax.set_ylabel(r"damping ratio $\xi$ [-]")
-    ax.legend(frameon=False, fontsize=7)
+    ax.locator_params(axis="x", nbins=6)
+    ax.set_ylim(bottom=0.1 * ax.get_ylim()[0])  # room for the legend
+    ax.legend(frameon=False, fontsize=7, loc="lower left", ncols=2)
     return ax
 
 

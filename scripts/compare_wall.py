@@ -12,6 +12,15 @@ import cli
 import mjrock as mr
 from mjrock import plotting
 
+LAWS = {"published": mr.PUBLISHED, "calibrated": mr.CALIBRATED, "calibrated-bed": mr.CALIBRATED_BED}
+
+
+def law(name: str | None, points: int) -> mr.DampingLaw:
+    """The law of a name, of a file, or the one that was calibrated for a layout."""
+    if name is None:
+        return mr.CALIBRATED if points == 2 else mr.CALIBRATED_BED
+    return LAWS[name] if name in LAWS else mr.DampingLaw.load(name)
+
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Parse the options, run the solvers, write and print the comparison."""
@@ -23,6 +32,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument("--k-base", type=float, default=5e8, help="interface stiffness of the base [N/m3]")
     options.add_argument("--k-side", type=float, default=5e8, help="interface stiffness of the side stop [N/m3]")
     options.add_argument("--points", type=int, default=2, help="contact lines on each face; 2 are the corners")
+    options.add_argument(
+        "--law", help=f"{', '.join(LAWS)}, or a .toml file (default: the calibrated law of the layout)"
+    )
     options.add_argument("--release", type=float, default=0.5, help="rotation at release as a share of alpha [-]")
     options.add_argument("--sides", type=int, choices=(1, 2), default=1, help="1: against a side stop; 2: free to both")
     options.add_argument("--duration", type=float, default=3.0, help="time to follow the motion [s]")
@@ -38,7 +50,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     else:
         e = mr.Restitution.from_lumped(args.lumped, wall.alpha)
     k_side = args.k_side if args.sides == 1 else None
-    contacts = mr.Contacts.from_law(wall, e, k_base=args.k_base, k_side=k_side, points=args.points)
+    chosen = law(args.law, args.points)
+    contacts = mr.Contacts.from_law(wall, e, k_base=args.k_base, k_side=k_side, law=chosen, points=args.points)
     duration = min(args.duration, 1.0) if args.quick else args.duration
     case = mr.Case(wall, theta0=args.release * wall.alpha, duration=duration, side_stop=args.sides == 1)
     out = cli.folder(args.out)

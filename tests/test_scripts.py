@@ -59,7 +59,7 @@ def test_help(name, capsys):
 
 
 def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
-    compare_wall.main(["--out", str(tmp_path)])
+    compare_wall.main(["--law", "published", "--out", str(tmp_path)])
     step = mr.simulate(one_sided, contacts).stats["timestep"]
     assert (tmp_path / "scene.xml").read_text() == mr.wall_mjcf(one_sided, contacts, step)
     with open(tmp_path / "comparison.csv") as file:
@@ -74,6 +74,7 @@ def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
         (["--release", "30"], "theta0 = 4.25691 rad is outside the valid range"),
         (["--lumped", "0.4"], "lumped restitution = 0.4"),
         (["--timestep", "-1"], "timestep = -1 s"),
+        (["--law", "mine.toml"], "mine.toml"),
         (["--out", "/dev/null/here"], "Not a directory"),
     ],
 )
