@@ -494,7 +494,7 @@ def calibrate(
         options: `executor` and `workers` of `campaign`, `accuracy` of `Match`.
 
     Raises:
-        ValueError, OSError, RuntimeError: as `run` and `regress`.
+        ValueError, OSError, RuntimeError: as `completed` and `regress`.
     """
     plan = plan or Plan()
     accuracy = options.pop("accuracy", 1e-4)

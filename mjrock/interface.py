@@ -169,10 +169,12 @@ class Contacts:
         k_side: float | None = None,
         law: Law = PUBLISHED,
         points: int = 2,
+        amplitude: float = 0.5,
     ) -> Contacts:
         """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
 
-        A law of your own is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` too.
+        A law of your own is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` too, and the `amplitude`
+        theta_0/alpha of the rebound that matters most [-].
 
         Raises:
             ValueError: as `from_damping`, and what the law raises.
@@ -186,7 +188,7 @@ class Contacts:
         if k_side is not None and e.side >= 0:
             raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
         if isinstance(law, DampingLaw):
-            xi_base, xi_side = law(wall, e, k_base, k_side)
+            xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
             if law.points not in (None, points):
                 warnings.warn(
                     f"{law.name} was fitted for {law.points} contact lines a face, not {points}", stacklevel=2

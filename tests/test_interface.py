@@ -88,6 +88,8 @@ def test_a_law_is_told_the_side_and_says_what_it_was_fitted_for(wall, e):
     made = mr.Contacts.from_law(wall, e, k_base=5e8, k_side=1e8, law=mr.CALIBRATED)
     assert (made.base.xi, made.side.xi) == mr.CALIBRATED(wall, e, 5e8, 1e8)
     assert made.side.xi > 2 * mr.CALIBRATED(wall, e, 5e8)[1]
+    small = mr.Contacts.from_law(wall, e, k_base=1e8, law=mr.CALIBRATED, amplitude=0.3)
+    assert small.base.xi == mr.CALIBRATED(wall, e, 1e8, amplitude=0.3)[0] < mr.CALIBRATED(wall, e, 1e8)[0]
     with pytest.warns(UserWarning, match="CALIBRATED was fitted for 2 contact lines a face, not 16"):
         mr.Contacts.from_law(wall, e, k_base=5e8, law=mr.CALIBRATED, points=16)
 
