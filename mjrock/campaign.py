@@ -176,19 +176,46 @@ class Grid(Sequence[Any]):
         return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
 
     def __iter__(self) -> Iterator[Any]:
-        """The tasks in order."""
-        return (self[i] for i in range(len(self)))
+        """The tasks in order; a point whose values `build` refuses becomes a task that fails with what it said."""
+        for i in range(len(self)):
+            try:
+                yield self[i]
+            except ValueError as error:
+                yield Refused(str(error), self._labels(self._point(i)))
 
     def __getitem__(self, index: Any) -> Any:
         """The task of one point, or a list of them for a slice."""
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
-        shape = [len(values) for values in self.axes.values()]
-        places = np.unravel_index(range(len(self))[index], shape)
-        point = {name: values[int(i)] for (name, values), i in zip(self.axes.items(), places, strict=True)}
-        task = self.build(**point)
-        shown = {n: v if isinstance(v, str | int | float) else getattr(v, "name", repr(v)) for n, v in point.items()}
-        return replace(task, labels=shown | dict(task.labels))
+        point = self._point(range(len(self))[index])
+        try:
+            task = self.build(**point)
+        except ValueError as error:
+            shown = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
+            raise ValueError(f"{error} (at {shown})") from error
+        return replace(task, labels=self._labels(point) | dict(task.labels))
+
+    def _point(self, index: int) -> dict[str, Any]:
+        places = np.unravel_index(index, [len(values) for values in self.axes.values()])
+        return {name: values[int(i)] for (name, values), i in zip(self.axes.items(), places, strict=True)}
+
+    @staticmethod
+    def _labels(point: Mapping[str, object]) -> dict[str, object]:
+        return {n: v if isinstance(v, str | int | float) else getattr(v, "name", repr(v)) for n, v in point.items()}
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A point of a grid that its builder refused."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ()
+
+    complaint: str
+    labels: Mapping[str, object]
+
+    def __call__(self, history: Path | None = None) -> Row:
+        """Fail with the complaint."""
+        raise ValueError(self.complaint)
 
 
 def campaign(
@@ -279,6 +306,17 @@ def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[
 def _processes(count: int) -> ProcessPoolExecutor:
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(count, mp_context=context, initializer=_die_with_the_campaign)
+
+
+def _await_worker(executor: Executor) -> None:
+    """Wait until a worker answers, so that a death at start-up is not taken for the work of a case."""
+    try:
+        executor.submit(os.getpid).result()
+    except BrokenExecutor as error:
+        raise RuntimeError(
+            "the worker processes die as they start: they import the script that calls the campaign; let it do so "
+            'below `if __name__ == "__main__":`; or give workers=1'
+        ) from error
 
 
 def _die_with_the_campaign() -> None:
@@ -403,7 +441,7 @@ class _Campaign:
             return []
         if again:
             return [again.popleft()] if again[0].deaths < DEATHS or not flying else []
-        size = int(np.clip(CHUNK_SECONDS * self.finished / self.seconds, 1, 64)) if self.finished else 1
+        size = int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64)) if self.finished else 1
         return list(itertools.islice(pending, size))
 
     def across(self, pending: Iterator[_Job], make: Callable[[], Any], width: int, *, own: bool) -> None:
@@ -418,6 +456,8 @@ class _Campaign:
         while not ended:
             flying: dict[Future[list[Row]], list[_Job]] = {}
             with make() as executor:
+                if own:
+                    _await_worker(executor)
                 try:
                     while True:
                         while len(flying) < 2 * width and (jobs := self.take(pending, again, flying.values())):

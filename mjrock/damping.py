@@ -292,6 +292,8 @@ class DampingLaw:
 
         They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
         """
+        if not k_n > 0:
+            raise ValueError(f"k_n = {k_n:g} N/m3 is outside the valid range k_n > 0")
         loss = getattr(self.base, "loss", None)
         if loss is None:
             return 0.0, 1.0

@@ -19,6 +19,8 @@ def law(name: str | None, points: int) -> mr.DampingLaw:
     """The law of a name, of a file, or the one that was calibrated for a layout."""
     if name is None:
         return mr.CALIBRATED if points == 2 else mr.CALIBRATED_BED
+    if name not in LAWS and not name.endswith(".toml"):
+        raise ValueError(f"law = {name!r} is none of {', '.join(LAWS)} and no .toml file")
     return LAWS[name] if name in LAWS else mr.DampingLaw.load(name)
 
 

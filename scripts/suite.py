@@ -26,10 +26,8 @@ def parser(description: str | None, out: str, *, records: bool = True) -> argpar
     """A script's parser with the options of an earthquake study, `records` among them or not."""
     made = cli.parser(description, out)
     if records:
-        made.add_argument(
-            "--records", type=Path, help="folder of .at2 and .sac records (default: seeded synthetic ones)"
-        )
-    made.add_argument("--workers", type=int, help="processes (default: one for each processor)")
+        made.add_argument("--records", type=Path, help="folder of .at2 and .sac records; else synthetic ones")
+    made.add_argument("--workers", type=int, help="processes; else one for each processor")
     return made
 
 

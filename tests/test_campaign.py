@@ -271,3 +271,29 @@ def test_dask_survives_the_death_of_a_worker(tmp_path):
     assert (tmp_path / "died-11-0").exists()
     with mr.Store(path) as store:
         assert [r["square"] for r in store.rows()] == [i**2 for i in range(40)]
+
+
+def test_a_point_that_cannot_be_built_is_a_row(tmp_path, wall, e):
+    def build(slenderness):
+        return mr.Analysis(mr.Case(mr.Block(b=2.1 / slenderness, h=2.1), 0.01, 1.0), "analytical", e=e)
+
+    grid = mr.Grid(build, slenderness=[5, 0.5, 7])
+    with pytest.raises(ValueError, match=r"slenderness h/b = 0.5 .*\(at slenderness = 0.5\)"):
+        grid[1]
+    rows = mr.results(grid, mr.campaign(grid, tmp_path / "c.sqlite", workers=1))
+    assert [row["status"] for row in rows] == ["done", "failed", "done"]
+    assert "slenderness h/b = 0.5 is outside" in rows[1]["error"]
+
+
+def test_a_script_without_its_guard_is_told_so(tmp_path):
+    script = tmp_path / "unguarded.py"
+    script.write_text(
+        "import mjrock as mr\nfrom campaign_tasks import Square\n"
+        "mr.campaign([Square(1), Square(2)], 'c.sqlite', workers=2)\n"
+    )
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent)}
+    run = subprocess.run(
+        [sys.executable, str(script)], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 1
+    assert 'below `if __name__ == "__main__":`' in run.stderr.splitlines()[-1]
