@@ -69,6 +69,9 @@ class GroundMotion:
                 stacklevel=2,
             )
 
+    def __repr__(self) -> str:
+        return f"<GroundMotion {self.name!r}: {len(self.accel)} samples, dt = {self.dt:g} s, peak {self.peak:.3g} m/s2>"
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, GroundMotion) and self.dt == other.dt and np.array_equal(self.accel, other.accel)
 

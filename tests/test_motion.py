@@ -475,3 +475,7 @@ def test_a_short_pulse_takes_a_coarser_step():
     np.testing.assert_allclose(motion.resampled(1.0).accel, 1.5)
     with pytest.raises(ValueError, match=r"dt = 0\.8 s is outside the valid range 1e-05 to 0\.5 s"):
         mr.GroundMotion.rectangular(1.5, 0.5).resampled(0.8)
+
+
+def test_it_prints_short():
+    assert repr(mr.GroundMotion([0.0, 2.0], 0.5, "x")) == "<GroundMotion 'x': 2 samples, dt = 0.5 s, peak 2 m/s2>"
