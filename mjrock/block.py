@@ -55,6 +55,12 @@ class Block:
         """The wall of full sizes `thickness` 2b, `height` 2h and `length` [m]."""
         return cls(b=thickness / 2, h=height / 2, length=length, density=density)
 
+    @classmethod
+    def from_slenderness(cls, slenderness: float, R: float, length: float = 1.0, density: float = 2000.0) -> Block:
+        """The wall of a `slenderness` h/b [-] and a half diagonal `R` [m], as Table 1 of the paper lists walls."""
+        alpha = math.atan(1 / slenderness)
+        return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
+
     @property
     def slenderness(self) -> float:
         """h/b [-], as Eqs. 5-6 and Table 1 of the paper use it."""

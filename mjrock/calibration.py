@@ -30,7 +30,7 @@ from .restitution import Restitution
 from .simulation import simulate
 
 Array = NDArray[np.float64]
-Row = dict[str, object]
+Row = dict[str, Any]
 
 R_RANGE, SLENDERNESS_RANGE, AMPLITUDE_RANGE, K_N_RANGE = (1.4, 2.8), (4.0, 15.0), (0.3, 0.8), (0.5e8, 30e8)
 """Table 1: half diagonal [m], h/b [-], theta_0/alpha [-], interface stiffness of base and of side [N/m3]."""
@@ -67,8 +67,7 @@ class Combination:
     @property
     def wall(self) -> Block:
         """The wall, 1 m long, of 2000 kg/m3."""
-        alpha = math.atan(1 / self.slenderness)
-        return Block(b=self.R * math.sin(alpha), h=self.R * math.cos(alpha), density=DENSITY)
+        return Block.from_slenderness(self.slenderness, self.R, density=DENSITY)
 
 
 REFERENCE = Combination()
@@ -354,7 +353,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
         )
     groups = Groups.stack([task.groups for task, _ in reached])
     loss = np.array([task.loss for task, _ in reached])
-    xi = np.array([float(str(row["xi"])) for _, row in reached])
+    xi = np.array([row["xi"] for _, row in reached])
     members = list(dict.fromkeys(task.combination for task, _ in reached))
     place = {member: i for i, member in enumerate(members)}
     fold = np.array([place[task.combination] % folds for task, _ in reached])

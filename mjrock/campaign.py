@@ -49,7 +49,7 @@ BATCH = 8
 BATCHED = frozenset({"timestep", "newmark_beta", "output_step", "ledger"})
 """Options of runs that can be stepped together."""
 
-Row = dict[str, object]
+Row = dict[str, Any]
 
 
 class Task(Protocol):
@@ -281,7 +281,7 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
     return [rows.get(fingerprint(VERSION, task)) for task in tasks]
 
 
-def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[dict[str, Any]]:
+def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[Row]:
     """The rows of the tasks, in the order asked, once a campaign has run those that the store does not hold.
 
     Args:
@@ -403,7 +403,7 @@ class _Campaign:
             ]
         )
         self.finished += len(rows)
-        self.seconds += sum(float(str(row["seconds"])) for row in rows)
+        self.seconds += sum(row["seconds"] for row in rows)
         self.failed += sum(row["status"] == "failed" for row in rows)
         if not self.bar.disable:
             self.bar.initial = self.skipped  # what was there already is no part of the rate

@@ -21,7 +21,7 @@ from .contact import row_terms
 from .interface import Contacts, Interface
 from .mjcf import inverse_weight
 from .pose import base_gaps, side_gaps
-from .stepping import Steps, push
+from .stepping import Steps, ground_work, push
 
 Array = NDArray[np.float64]
 _Gaps = Callable[[Block, Contacts, Array], Array]
@@ -69,8 +69,7 @@ class Ledger:
         wall = case.block
         step, weight = steps.h[:, None], inverse_weight(wall.mass)
         start = steps.pose - 0.5 * step * steps.before
-        seams = steps.t - 0.5 * steps.h
-        width = np.append(np.diff(seams), 0.0)[:, None]
+        width = steps.widths[:, None]
         middle = np.concatenate([steps.velocity, (steps.after - steps.before) / step], axis=1)
         sine, cosine = np.sin(steps.pose[:, 2, None]), np.cos(steps.pose[:, 2, None])
 
@@ -112,14 +111,14 @@ class Ledger:
         before = steps.before
         moving = wall.mass * (before[:, 0] ** 2 + before[:, 1] ** 2) + wall.inertia * before[:, 2] ** 2
         return cls(
-            t=seams,
+            t=steps.seams,
             kinetic=0.5 * moving,
             potential=wall.weight * start[:, 1],
             elastic=elastic,
             base_dashpots=_since_release(base_work),
             side_dashpots=_since_release(side_work),
             friction=_since_release(friction_work),
-            ground=_since_release(pushed * middle[:, 0] * width[:, 0]),
+            ground=_since_release(ground_work(case, steps)),
         )
 
 

@@ -235,14 +235,15 @@ def _between_passes(
         leaves = exits[exits >= i]
         j = int(leaves[0]) if leaves.size else len(t) - 1
         low = float(energy[i : j + 1].min())
-        crossed = i + int(np.argmax(s * theta[i : j + 2] <= 0)) if (s * theta[i : j + 2] <= 0).any() else j
+        behind = np.flatnonzero(s * theta[i : j + 2] <= 0)
+        crossed = i + int(behind[0]) if behind.size else j
         before = rigid + 0.5 * wall.toe_inertia * float(omega[i]) ** 2
         if low < least or not leaves.size:
             after, side = max(0.0, low), s
         else:
             after, side = rigid + 0.5 * wall.toe_inertia * float(omega[j + 1]) ** 2, outside[j + 1]
-        speeds = (math.sqrt(2 * value / wall.toe_inertia) for value in (before, after))
-        impacts.append(Impact(float(t[crossed]), -s * next(speeds), side * next(speeds), before, after))
+        arriving, leaving = (math.sqrt(2 * value / wall.toe_inertia) for value in (before, after))
+        impacts.append(Impact(float(t[crossed]), -s * arriving, side * leaving, before, after))
     return tuple(impacts)
 
 

@@ -20,7 +20,7 @@ from .ledger import Ledger
 from .mjcf import inverse_weight, wall_mjcf
 from .pose import base_gaps, mechanical_energy, release_pose, side_gaps
 from .response import Response, State, ending, rocking_history
-from .stepping import SMOOTH, StepError, Steps, fitted_steps, fixed_steps, push, short_step
+from .stepping import SMOOTH, StepError, Steps, fitted_steps, fixed_steps, ground_work, short_step
 
 Array = NDArray[np.float64]
 ENERGY_GAIN = 1e-3
@@ -80,13 +80,6 @@ def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, floa
     gains = np.diff(np.interp(marks, t, energy))
     worst = int(gains.argmax())
     return float(gains[worst]), float(marks[worst + 1])
-
-
-def ground_work(case: Case, steps: Steps) -> Array:
-    """Work that the moving base has done in each step [J], shape (n,), between the seams of the leapfrog's windows."""
-    widths = np.append(np.diff(steps.t - 0.5 * steps.h), 0.0)
-    work: Array = push(case, steps.t, steps.h) * steps.velocity[:, 0] * widths
-    return work
 
 
 class _Run:
@@ -223,7 +216,6 @@ def simulate(
     while True:
         h = short_step(case, contacts, used)
         model = compile_wall(wall_mjcf(case, contacts, h, newmark_beta=newmark_beta), case.block)
-        _warn_if_coarse(case, contacts, h)
         data = release(model, start)
         begun = time.perf_counter()
         try:

@@ -86,6 +86,16 @@ class Steps:
         """Velocities at the times of the poses, shape (n, 3)."""
         return 0.5 * (self.before + self.after)
 
+    @property
+    def seams(self) -> Array:
+        """Starts of the leapfrog's windows, half a step before the poses [s], shape (n,)."""
+        return self.t - 0.5 * self.h
+
+    @property
+    def widths(self) -> Array:
+        """Lengths of the windows, from seam to seam, zero for the last [s], shape (n,)."""
+        return np.append(np.diff(self.seams), 0.0)
+
 
 def _check(data: mujoco.MjData, values: Array, t: float) -> None:
     warned = [mujoco.mjtWarning(i).name for i, w in enumerate(data.warning) if w.number]
@@ -107,6 +117,12 @@ def push(case: Case, t: float | Array, h: float | Array) -> float | Array:
         return 0.0
     velocity = case.motion.velocity
     return -case.block.mass * (velocity(t + 0.5 * h) - velocity(t - 0.5 * h)) / h
+
+
+def ground_work(case: Case, steps: Steps) -> Array:
+    """Work that the moving base has done in the window of each step [J], shape (n,)."""
+    work: Array = push(case, steps.t, steps.h) * steps.velocity[:, 0] * steps.widths
+    return work
 
 
 def fixed_steps(
@@ -138,11 +154,13 @@ def fixed_steps(
     with tqdm(total=max(totals) * h, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
         while going:
             steps = min(CHUNK, max(totals[i] for i in going) - done)
-            forces = np.zeros((len(going), steps, model.nv))
-            for force, i in zip(forces, going, strict=True):
-                force[:, 0] = push(cases[i], h * np.arange(done, done + steps), h)
+            forces = None
+            if any(cases[i].motion for i in going):
+                forces = np.zeros((len(going), steps, model.nv))
+                for force, i in zip(forces, going, strict=True):
+                    force[:, 0] = push(cases[i], h * np.arange(done, done + steps), h)
             threads = data[: min(len(going), os.cpu_count() or 1)]
-            run, _ = rollout.rollout(model, threads, state[going], forces, control_spec=applied)
+            run, _ = rollout.rollout(model, threads, state[going], forces, nstep=steps, control_spec=applied)
             state[going] = run[:, -1]
             done += steps
             bar.update(steps * h)

@@ -21,11 +21,8 @@ import suite
 from mjrock import plotting
 from mjrock.campaign import completed
 
-SOLVERS = ("analytical", "MuJoCo")
 WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]
 """Slenderness h/b [-] and half diagonal R [m]."""
-STIFF = 3e9
-"""Interface stiffness of base and side [N/m3]: the upper end of the paper's Table 1."""
 LEVELS = [1.2, 1.8, 2.5, 3.5, 5.0]
 """Peak ground acceleration in multiples of what lifts the wall, g tan(alpha) [-]."""
 
@@ -38,9 +35,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     def build(
         side_stop: int, wall: int, motion: mr.GroundMotion, polarity: int, level: float, solver: str
     ) -> mr.Analysis:
-        block = suite.slender_wall(*WALLS[wall])
+        block = mr.Block.from_slenderness(*WALLS[wall])
         scaled = suite.to_peak(motion, level * math.tan(block.alpha)).polarities[polarity]
-        return suite.analysis(block, scaled, solver, k_n=STIFF, side_stop=bool(side_stop))
+        return suite.analysis(block, scaled, solver, k_n=suite.STIFF, side_stop=bool(side_stop))
 
     grid = mr.Grid(
         build,
@@ -49,22 +46,21 @@ def main(argv: Sequence[str] | None = None) -> None:
         motion=suite.motions(args.records, 3 if args.quick else 8),
         polarity=(0, 1),
         level=LEVELS[1:4] if args.quick else LEVELS,
-        solver=SOLVERS,
+        solver=suite.SOLVERS,
     )
     found = completed(grid, out / "agreement.sqlite", workers=args.workers)
     figure = Figure(figsize=(8.4, 7.2), layout="constrained")
     table = []
     for line, (side_stop, title) in zip(figure.subplots(2, 2), ((1, "one-sided"), (0, "two-sided")), strict=True):
         own = [row for row in found if row["side_stop"] == side_stop]
-        ends = np.reshape([suite.verdict(row) for row in own], (-1, 2))
-        peaks = np.where(ends == "overturns", 9.0, np.reshape([row["peak_over_alpha"] for row in own], (-1, 2)))
+        ends, peaks = suite.in_pairs(own)
         rocks = (ends == "rocks").all(axis=1)
         ratio = np.percentile(peaks[rocks, 1] / peaks[rocks, 0], [5, 50, 95]) if rocks.any() else []
         test = ks_2samp(*np.maximum(peaks, suite.STILL).T)
         plotting.pairs(line[0], peaks, ("rocking theory", "MuJoCo"), (suite.STILL / 3, 1.5)).set_title(
             title, fontsize=10
         )
-        plotting.distributions(line[1], dict(zip(SOLVERS, peaks.T, strict=True)), suite.STILL)
+        plotting.distributions(line[1], dict(zip(suite.SOLVERS, peaks.T, strict=True)), suite.STILL)
         line[1].set_title(f"{title}, Kolmogorov-Smirnov p = {test.pvalue:.2f}", fontsize=10)
         line[1].legend(frameon=False, fontsize=8, loc="upper left")
         counts = ["/".join(str((column == v).sum()) for v in ("rests", "rocks", "overturns")) for column in ends.T]

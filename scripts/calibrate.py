@@ -83,13 +83,13 @@ def summary(found: Calibration) -> str:
         names = coefficients(type(fit.form))
         values = ", ".join(f"{name} = {getattr(fit.form, name):.4g} +- {fit.errors[name]:.2g}" for name in names)
         power = regress(PowerLaw, tasks, rows)
-        reached = [(task, float(str(row["xi"]))) for task, row in zip(tasks, rows, strict=True) if row["reached"]]
+        reached = [(task, row["xi"]) for task, row in zip(tasks, rows, strict=True) if row["reached"]]
         xi = np.array([value for _, value in reached])
         predicted = [float(fit.form.xi(task.groups, task.loss)) for task, _ in reached]
         whole = r_squared(np.clip(predicted, LEAST, HIGHEST) if part == "base" else np.array(predicted), xi)
         text += [
             f"{part}: {type(fit.form).__name__}({values})",
-            f"  {len(rows)} searches of {sum(int(str(row['runs'])) for row in rows)} simulations, {len(xi)} reached, "
+            f"  {len(rows)} searches of {sum(row['runs'] for row in rows)} simulations, {len(xi)} reached, "
             f"{len(fit.xi)} fitted",
             f"  R2 of xi {fit.form.r_squared:.4f}, of ln xi {fit.logarithmic:.4f}; by fits that have not seen the "
             f"combination {fit.held_out:.4f}; median |error| of xi {np.median(np.abs(fit.predicted / fit.xi - 1)):.1%}",
@@ -119,7 +119,7 @@ def curves(found: Calibration, part: str) -> plotting.Drawing:
     pairs: dict[Combination, list[tuple[Match, float]]] = {}
     for task, row in zip(tasks, rows, strict=True):
         if row["reached"]:
-            pairs.setdefault(task.combination, []).append((task, float(str(row["xi"]))))
+            pairs.setdefault(task.combination, []).append((task, row["xi"]))
     most = max(len(matches) for matches in pairs.values())
     full = sorted((m for m in pairs.values() if len(m) >= 0.7 * most), key=lambda m: float(m[0][0].groups.softness))
     families = []
@@ -166,7 +166,7 @@ def sensitivities(found: Calibration, store: Path, workers: int | None, picture:
                 if (part, key) == ("base", "k_side"):
                     continue
                 own = [(one, row) for (swept_key, one), row in zip(swept, matched, strict=True) if swept_key == key]
-                xi = np.array([float(str(row["xi"])) if row["reached"] else np.nan for _, row in own])
+                xi = np.array([row["xi"] if row["reached"] else np.nan for _, row in own])
                 known = xi[np.isfinite(xi)]
                 spread = f"{known.max() / known.min():.3f}" if known.size > 1 else "-"
                 rows.append([start, part, name, spread, f"{len(known)} of {len(xi)}"])

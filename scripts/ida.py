@@ -20,8 +20,6 @@ from mjrock import plotting
 from mjrock.campaign import completed
 from paper import FIGURE_3, K_N
 
-SOLVERS = ("analytical", "MuJoCo")
-
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Run every record at every intensity, draw the curves, and print the capacities."""
@@ -35,14 +33,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     def build(solver: str, motion: mr.GroundMotion, pga: float) -> mr.Analysis:
         return suite.analysis(FIGURE_3, suite.to_peak(motion, pga), solver, k_n=K_N)
 
-    grid = mr.Grid(build, solver=SOLVERS, motion=motions, pga=levels.tolist())
+    grid = mr.Grid(build, solver=suite.SOLVERS, motion=motions, pga=levels.tolist())
     found = completed(grid, out / "ida.sqlite", workers=args.workers)
     fell = [row["outcome"] == mr.Outcome.OVERTURNED.value for row in found]
     peaks = np.where(fell, math.inf, [row["peak_over_alpha"] for row in found])
-    peaks = peaks.reshape(len(SOLVERS), len(motions), len(levels))
+    peaks = peaks.reshape(len(suite.SOLVERS), len(motions), len(levels))
 
     figure = Figure(figsize=(8.2, 3.6), layout="constrained")
-    for ax, solver, curves in zip(figure.subplots(1, 2, sharey=True), SOLVERS, peaks, strict=True):
+    for ax, solver, curves in zip(figure.subplots(1, 2, sharey=True), suite.SOLVERS, peaks, strict=True):
         plotting.incremental(ax, levels, curves, solver).label_outer()
         ax.legend(frameon=False, fontsize=8, loc="lower right")
     plotting.save(figure, out / "ida.png")
@@ -51,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         [motion.name, *("-" if math.isnan(c) else f"{c:.3f}" for c in pair)]
         for motion, pair in zip(motions, capacity.T, strict=True)
     ]
-    header = ["record", *(f"first overturned at PGA [g], {plotting.STYLES[s]['label']}" for s in SOLVERS)]
+    header = ["record", *(f"first overturned at PGA [g], {plotting.STYLES[s]['label']}" for s in suite.SOLVERS)]
     text = cli.table(header, rows)
     cli.write(out / "ida.txt", text + "\n")
     cells = [(r["solver"], r["motion"], r["pga"], r["outcome"], r["peak_over_alpha"]) for r in found]

@@ -6,7 +6,6 @@ a release at alpha/2; a dash where the wall does not rebound beyond the rotation
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Sequence
 
@@ -23,8 +22,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     grid = [(slenderness, k) for slenderness in (4, 7, 10, 15) for k in (5e7, 5e8, 3e9)]
     rows: list[list[object]] = []
     for slenderness, k in tqdm(grid[:2] if args.quick else grid, disable=None, leave=False):
-        alpha = math.atan(1 / slenderness)
-        wall = mr.Block(b=2.1 * math.sin(alpha), h=2.1 * math.cos(alpha))
+        wall = mr.Block.from_slenderness(slenderness, 2.1)
         e = mr.Restitution.from_geometry(wall.alpha)
         wanted = {False: e.base, True: abs(e.lumped)}
         row: list[object] = [slenderness, f"{k:.0e}"]
@@ -32,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             row.append(f"{theory:.3f}")
             for law in (mr.PUBLISHED, mr.CALIBRATED):
                 contacts = mr.Contacts.from_law(wall, e, k_base=k, k_side=k, law=law)
-                case = mr.Case(wall, 0.5 * alpha, 2.5, side_stop=side_stop)
+                case = mr.Case(wall, 0.5 * wall.alpha, 2.5, side_stop=side_stop)
                 found = mr.simulate(case, contacts, accuracy=1e-4).restitution
                 row.append(f"{found[0]:.3f}" if len(found) else "-")
         rows.append(row)

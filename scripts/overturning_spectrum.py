@@ -23,8 +23,6 @@ from mjrock.campaign import completed
 from paper import FIGURE_3
 
 SIDES = {"two-sided": (False, -1), "one-sided, outward first": (True, -1), "one-sided, inward first": (True, 1)}
-STIFF = 3e9
-"""Interface stiffness of base and side [N/m3]: the upper end of the paper's Table 1."""
 SIZES = {"analytical": 60, "MuJoCo": 26}
 
 
@@ -33,7 +31,7 @@ def build(solver: str, sides: str, frequency: float, amplitude: float) -> mr.Ana
     side_stop, sign = SIDES[sides]
     lifting = mr.GRAVITY * math.tan(FIGURE_3.alpha)
     motion = mr.GroundMotion.sine(sign * amplitude * lifting, 2 * math.pi / (frequency * FIGURE_3.p), samples=200)
-    return suite.analysis(FIGURE_3, motion, solver, k_n=STIFF, side_stop=side_stop, settling=10 / FIGURE_3.p)
+    return suite.analysis(FIGURE_3, motion, solver, k_n=suite.STIFF, side_stop=side_stop, settling=10 / FIGURE_3.p)
 
 
 def mode(row: dict[str, Any]) -> int:

@@ -18,8 +18,6 @@ from mjrock import plotting
 from mjrock.campaign import completed
 from paper import FIGURE_3, K_N
 
-SOLVERS = ("analytical", "MuJoCo")
-
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Run both polarities of every record, draw them against each other, and print."""
@@ -31,14 +29,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     def build(solver: str, motion: mr.GroundMotion, pga: float, polarity: int) -> mr.Analysis:
         return suite.analysis(FIGURE_3, suite.to_peak(motion, pga).polarities[polarity], solver, k_n=K_N)
 
-    grid = mr.Grid(build, solver=SOLVERS, motion=motions, pga=levels, polarity=(0, 1))
+    grid = mr.Grid(build, solver=suite.SOLVERS, motion=motions, pga=levels, polarity=(0, 1))
     found = completed(grid, out / "polarity.sqlite", workers=args.workers)
     figure = Figure(figsize=(7.4, 3.8), layout="constrained")
     rows = []
-    for ax, solver in zip(figure.subplots(1, 2), SOLVERS, strict=True):
+    for ax, solver in zip(figure.subplots(1, 2), suite.SOLVERS, strict=True):
         own = [row for row in found if row["solver"] == solver]
-        ends = np.reshape([suite.verdict(row) for row in own], (-1, 2))
-        peaks = np.where(ends == "overturns", 9.0, np.reshape([row["peak_over_alpha"] for row in own], (-1, 2)))
+        ends, peaks = suite.in_pairs(own)
         plotting.pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5))
         ax.set_title(plotting.STYLES[solver]["label"], fontsize=10)
         rocking = (ends == "rocks").all(axis=1)

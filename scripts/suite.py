@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import argparse
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 import cli
 import mjrock as mr
 
 STILL = 0.01
 """Peak rotation below which a wall is said to have stayed at rest, in multiples of alpha [-]."""
+FALLEN = 9.0
+"""Peak rotation that stands for overturning, in multiples of alpha [-]."""
+STIFF = 3e9
+"""Interface stiffness of base and side for a nearly rigid base [N/m3]: the upper end of the paper's Table 1."""
 READERS = {".at2": mr.GroundMotion.from_at2, ".sac": mr.GroundMotion.from_sac}
 SETTLING = 5.0
 """Time that a wall is followed after the record [s]."""
@@ -20,6 +27,7 @@ OPTIONS: Mapping[str, Mapping[str, object]] = {
     "MuJoCo": {"accuracy": 1e-3, "output_step": 0.05},
 }
 """Options of both solvers: what is kept of a run is its peak and its outcome."""
+SOLVERS = tuple(OPTIONS)
 
 
 def parser(description: str | None, out: str, *, records: bool = True) -> argparse.ArgumentParser:
@@ -54,23 +62,24 @@ def analysis(
     k_n: float,
     side_stop: bool = True,
     settling: float = SETTLING,
-    **labels: object,
 ) -> mr.Analysis:
     """A wall at rest under a ground motion, in rocking theory or in MuJoCo with the calibrated damping law."""
     e = mr.Restitution.from_geometry(wall.alpha)
     case = mr.Case(wall, 0.0, motion.duration + settling, side_stop=side_stop, motion=motion)
     contacts = mr.Contacts.from_law(wall, e, k_base=k_n, k_side=k_n if side_stop else None, law=mr.CALIBRATED)
-    return mr.Analysis(case, solver, e=e, contacts=contacts, options=OPTIONS[solver], labels=labels)
+    return mr.Analysis(case, solver, e=e, contacts=contacts, options=OPTIONS[solver])
 
 
-def verdict(row: Mapping[str, object]) -> str:
+def verdict(row: Mapping[str, Any]) -> str:
     """Whether the wall of a row rests, rocks or overturns."""
     if row["outcome"] == mr.Outcome.OVERTURNED.value:
         return "overturns"
-    return "rests" if float(str(row["peak_over_alpha"])) < STILL else "rocks"
+    return "rests" if float(row["peak_over_alpha"]) < STILL else "rocks"
 
 
-def slender_wall(slenderness: float, half_diagonal: float) -> mr.Block:
-    """The wall of a slenderness h/b [-] and a half diagonal R [m]."""
-    alpha = math.atan(1 / slenderness)
-    return mr.Block(b=half_diagonal * math.sin(alpha), h=half_diagonal * math.cos(alpha))
+def in_pairs(rows: Sequence[Mapping[str, Any]]) -> tuple[NDArray[np.str_], NDArray[np.float64]]:
+    """Verdicts and peak rotations in multiples of alpha of rows that follow each other in pairs, shapes (n, 2); a wall
+    that overturns has a peak beyond any other."""
+    ends = np.reshape([verdict(row) for row in rows], (-1, 2))
+    peaks = np.reshape([row["peak_over_alpha"] for row in rows], (-1, 2))
+    return ends, np.where(ends == "overturns", FALLEN, peaks)

@@ -32,7 +32,7 @@ from paper import FIGURE_3, K_N
 def shaken(solver: str, seed: int, slenderness: float, pga: float, polarity: int) -> mr.Analysis:
     """A wall under a synthetic record."""
     motion = suite.to_peak(mr.GroundMotion.synthetic(3.0, 10.0, seed=seed, dt=0.02), pga).polarities[polarity]
-    return suite.analysis(suite.slender_wall(slenderness, 2.1), motion, solver, k_n=K_N, settling=2.0)
+    return suite.analysis(mr.Block.from_slenderness(slenderness, 2.1), motion, solver, k_n=K_N, settling=2.0)
 
 
 def fixed(seed: int, pga: float) -> mr.Analysis:

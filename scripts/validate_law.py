@@ -21,7 +21,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.calibration import Combination, Match, Plan, combinations, regress, well_matched
 from mjrock.campaign import completed
-from mjrock.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+from mjrock.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, Groups
 from paper import K_N, TABLE_2
 
 SEED = 1001
@@ -43,16 +43,6 @@ def laws(folder: Path | None) -> dict[int, list[DampingLaw]]:
         return {2: [PUBLISHED, CALIBRATED], 16: [PUBLISHED, CALIBRATED_BED]}
     own = [DampingLaw.load(path) for path in sorted(folder.glob("*.toml"))]
     return {points: [PUBLISHED, *(law for law in own if law.points == points)] for points in (2, 16)}
-
-
-def contacts_of(
-    law: DampingLaw, wall: mr.Block, e: mr.Restitution, k_base: float, k_side: float, points: int
-) -> mr.Contacts:
-    """Interfaces with the damping of a law, which is told the stiffness of both."""
-    xi_base, xi_side = law(wall, e, k_base, k_side)
-    return mr.Contacts.from_damping(
-        wall, k_base=k_base, xi_base=xi_base, k_side=k_side, xi_side=xi_side, points=points, law=law.name
-    )
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -84,7 +74,7 @@ def validation(
         for law in here:
             for one in ones:
                 e = mr.Restitution.from_geometry(one.wall.alpha)
-                contacts = contacts_of(law, one.wall, e, one.k_base, one.k_side, points)
+                contacts = mr.Contacts.from_law(one.wall, e, one.k_base, one.k_side, law, points)
                 for sides in (2, 1):
                     labels = {
                         "points": points, "damping": law.name, "sides": sides, "R": one.R,
@@ -143,7 +133,7 @@ def possible(law: DampingLaw, one: Combination, wanted: float) -> bool:
     wall = one.wall
     low, high = law.reach(wall, one.k_base)
     peak = wall.rotation_at(wanted**2 * float(wall.potential_energy(one.amplitude * wall.alpha)))
-    uplift = wall.weight / (2 * one.k_base * wall.length * wall.b**2)
+    uplift = Groups.of(wall, mr.Restitution.from_geometry(wall.alpha), one.k_base).softness * wall.alpha
     return low <= mr.Restitution.from_geometry(wall.alpha).base <= high and peak > uplift
 
 
@@ -156,7 +146,7 @@ def table_2(compared: Mapping[int, Sequence[DampingLaw]], out: Path) -> str:
         theory = mr.solve_analytical(case, e)
         for points, here in compared.items():
             for law in here:
-                contacts = contacts_of(law, wall, e, K_N, K_N, points)
+                contacts = mr.Contacts.from_law(wall, e, K_N, K_N, law, points)
                 assert contacts.side is not None
                 candidate = mr.simulate(case, contacts, accuracy=1e-4)
                 wanted, peak = mr.compare(theory, candidate).first_rebound_peak
@@ -195,7 +185,7 @@ def step_study(compared: Mapping[int, Sequence[DampingLaw]], store: Path, worker
             fits = [regress(form, [tasks[i] for i in both], [own[i] for i in both]) for own in (coarse, fine)]
             groups, loss = fits[0].groups, fits[0].loss
             shift = np.abs(np.asarray(fits[1].form.xi(groups, loss)) / np.asarray(fits[0].form.xi(groups, loss)) - 1)
-            matched = np.array([float(str(fine[i]["xi"])) / float(str(coarse[i]["xi"])) for i in both])
+            matched = np.array([fine[i]["xi"] / coarse[i]["xi"] for i in both])
             rows.append(
                 [
                     points, part, len(both), f"{np.exp(np.mean(np.log(matched))) - 1:+.2%}",

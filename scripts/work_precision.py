@@ -286,11 +286,10 @@ def table_1_walls(count: int) -> list[tuple[mr.Case, mr.Contacts]]:
     for i in range(count):
         slenderness, R = rng.uniform(4, 15), rng.uniform(1.4, 2.8)
         k_base, k_side = np.exp(rng.uniform(math.log(0.5e8), math.log(30e8), 2)).tolist()
-        alpha = math.atan(1 / slenderness)
-        wall = mr.Block(b=R * math.sin(alpha), h=R * math.cos(alpha))
+        wall = mr.Block.from_slenderness(slenderness, R)
         e = mr.Restitution.from_geometry(wall.alpha)
         contacts = mr.Contacts.from_law(wall, e, k_base=k_base, k_side=k_side)
-        drawn.append((mr.Case(wall, rng.uniform(0.3, 0.8) * alpha, 3.0, side_stop=i % 2 == 1), contacts))
+        drawn.append((mr.Case(wall, rng.uniform(0.3, 0.8) * wall.alpha, 3.0, side_stop=i % 2 == 1), contacts))
     return drawn
 
 

@@ -56,3 +56,9 @@ def test_bad_sizes_are_named_with_the_valid_range(sizes, complaint):
 def test_an_energy_beyond_overturning_has_no_rotation(wall):
     with pytest.raises(ValueError, match="overturning"):
         wall.rotation_at(2 * float(wall.potential_energy(wall.alpha)))
+
+
+def test_the_wall_of_a_slenderness():
+    wall = mr.Block.from_slenderness(7.0, 2.1, length=3.0, density=1800.0)
+    assert (wall.slenderness, wall.R) == (pytest.approx(7.0), pytest.approx(2.1))
+    assert (wall.length, wall.density) == (3.0, 1800.0)

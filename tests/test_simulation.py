@@ -240,10 +240,9 @@ def test_energy_from_nowhere_is_noticed_on_a_shaken_base(wall, contacts, monkeyp
 @pytest.mark.parametrize("points", [16, 64])
 def test_friction_holds_a_two_sided_bed(points):
     """However many lines share the load of an edge, the base stays where it is."""
-    alpha = math.atan(1 / 4)
-    soft = mr.Block(b=2.1 * math.sin(alpha), h=2.1 * math.cos(alpha))
+    soft = mr.Block.from_slenderness(4.0, 2.1)
     contacts = mr.Contacts.from_damping(soft, k_base=5e7, xi_base=0.03, points=points)
-    case = mr.Case(soft, 0.5 * alpha, 2.5, side_stop=False)
+    case = mr.Case(soft, 0.5 * soft.alpha, 2.5, side_stop=False)
     run, law = mr.simulate(case, contacts), mr.solve_compliant(case, contacts)
     assert run.restitution[0] == pytest.approx(law.restitution[0], rel=1e-3)
     assert abs(run.stats["base_displacement"]) < 0.005

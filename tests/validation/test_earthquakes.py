@@ -20,7 +20,7 @@ def test_outcomes_and_distributions(tmp_path):
     agreement.main(["--records", str(RECORDS), "--out", str(tmp_path)])
     with open(tmp_path / "agreement.csv") as file:
         rows = list(csv.DictReader(file))
-    theory, mujoco = ([row for row in rows if row["solver"] == solver] for solver in agreement.SOLVERS)
+    theory, mujoco = ([row for row in rows if row["solver"] == solver] for solver in suite.SOLVERS)
     assert len(theory) == len(mujoco) >= 200
     same = np.mean([suite.verdict(a) == suite.verdict(b) for a, b in zip(theory, mujoco, strict=True)])
     assert same > 0.8
@@ -30,7 +30,7 @@ def test_outcomes_and_distributions(tmp_path):
             for row in rows
             if (row["solver"], row["side_stop"]) == (solver, side_stop)
         ]
-        for solver in agreement.SOLVERS
+        for solver in suite.SOLVERS
         for side_stop in "10"
     }
     for side_stop in "10":

@@ -50,11 +50,10 @@ class TestVerification:
     @pytest.mark.parametrize("xi_base", [0.0, 0.02])
     def test_soft_bases(self, slenderness, xi_base):
         """Where both edges stay closed over a large rotation, friction is not to work against itself."""
-        alpha = math.atan(1 / slenderness)
-        soft = mr.Block(b=2 * math.sin(alpha), h=2 * math.cos(alpha))
+        soft = mr.Block.from_slenderness(slenderness, 2.0)
         contacts = mr.Contacts.from_damping(soft, k_base=5e7, xi_base=xi_base, k_side=5e7, xi_side=0.01)
         for side_stop in (False, True):
-            case = mr.Case(soft, 0.5 * alpha, 2.0, side_stop=side_stop)
+            case = mr.Case(soft, 0.5 * soft.alpha, 2.0, side_stop=side_stop)
             law, run = mr.solve_compliant(case, contacts), mr.simulate(case, contacts, accuracy=1e-4)
             assert run.impacts[0].restitution == pytest.approx(law.impacts[0].restitution, abs=1e-3)
 
