@@ -1,28 +1,35 @@
 """One-sided rocking masonry walls in MuJoCo, and the energy lost at every impact.
 
 Units are SI, angles radians, damping ratios fractions. `Block` is the wall, `Case` the problem, `Contacts` the
-compliant interfaces; `simulate` asks MuJoCo, `solve_compliant` asks SciPy the same contact law, `solve_analytical` asks
-classical rocking theory, and `compare` sets two answers side by side.
+compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compliant` the same law in SciPy,
+`solve_analytical` is classical rocking theory, and `compare` sets two answers side by side.
 """
 
 from ._version import __version__
-from .analytical import solve_analytical
-from .block import GRAVITY, Block
-from .calibration import Plan, calibrate
-from .campaign import Analysis, Grid, campaign, results
-from .case import Case
-from .compare import Comparison, compare
-from .compliant import solve_compliant
-from .contact import ContactParameters, contact_parameters, contact_stiffness
-from .damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, PowerLaw
-from .interface import Contacts, Interface, reference_frequency
-from .ledger import Ledger
-from .mjcf import wall_mjcf
-from .motion import GroundMotion
-from .response import Impact, Outcome, Response
-from .restitution import Restitution
-from .simulation import SimulationError, automatic_timestep, simulate, simulate_batch
-from .store import Store
+from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
+from .engine.model import SimulationError, wall_mjcf
+from .engine.scene import Scene
+from .engine.simulation import automatic_timestep, simulate, simulate_batch
+from .engine.wall import wall_scene
+from .problem.block import Block
+from .problem.case import Case
+from .problem.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+from .problem.forms import PowerLaw
+from .problem.interface import Contacts, Interface, reference_frequency
+from .problem.motion import GroundMotion
+from .problem.quantities import GRAVITY
+from .problem.restitution import Restitution
+from .reference.compliant import solve_compliant
+from .result.compare import Comparison, compare
+from .result.history import Impact
+from .result.ledger import Ledger
+from .result.response import Outcome, Response
+from .study.analysis import Analysis
+from .study.calibration import Plan, calibrate
+from .study.campaign import campaign, results
+from .study.grid import Grid
+from .study.store import Store
+from .theory.analytical import solve_analytical
 
 __all__ = [
     "CALIBRATED",
@@ -46,6 +53,7 @@ __all__ = [
     "PowerLaw",
     "Response",
     "Restitution",
+    "Scene",
     "SimulationError",
     "Store",
     "__version__",
@@ -62,4 +70,5 @@ __all__ = [
     "solve_analytical",
     "solve_compliant",
     "wall_mjcf",
+    "wall_scene",
 ]

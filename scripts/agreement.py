@@ -19,7 +19,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
-from mjrock.campaign import completed
+from mjrock.study.campaign import completed
 
 WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]
 """Slenderness h/b [-] and half diagonal R [m]."""

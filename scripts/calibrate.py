@@ -16,22 +16,12 @@ import numpy as np
 
 import cli
 from mjrock import Restitution, Store, plotting
-from mjrock.calibration import (
-    REFERENCE,
-    Calibration,
-    Combination,
-    Match,
-    Plan,
-    Regression,
-    calibrate,
-    coefficients,
-    presumed_damping,
-    r_squared,
-    regress,
-    sweep,
-)
-from mjrock.campaign import completed
-from mjrock.damping import HIGHEST, LEAST, PowerLaw
+from mjrock.problem.damping import HIGHEST, LEAST
+from mjrock.problem.forms import PowerLaw
+from mjrock.study.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
+from mjrock.study.campaign import completed
+from mjrock.study.match import REFERENCE, Combination, Match
+from mjrock.study.regression import Regression, coefficients, r_squared, regress
 
 LAYOUTS = {"CALIBRATED": 2, "CALIBRATED_BED": 16}
 QUICK = Plan(base_count=10, side_count=6, losses=(0.8, 1.0, 1.1), sides=(0.3, 0.4, 0.5))

@@ -16,8 +16,8 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
-from mjrock.campaign import completed
-from mjrock.fragility import fit_fragility
+from mjrock.study.campaign import completed
+from mjrock.study.fragility import fit_fragility
 from paper import FIGURE_3, K_N
 
 SOLVERS = {"analytical": "o", "MuJoCo": "s"}

@@ -13,12 +13,12 @@ from tqdm import tqdm
 
 import cli
 import mjrock as mr
-from mjrock import mjcf
+from mjrock.engine import scene, wall
 from paper import FIGURE_3, K_N
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """Vary the two constants of `mjrock.mjcf`, and the step, and print the table."""
+    """Vary the coefficient of friction, the inertia of its row and the step, and print the table."""
     args = cli.parser(__doc__, "friction").parse_args(argv)
     out = cli.folder(args.out)
     steps = (1e-4,) if args.quick else (1e-5, 1e-4)
@@ -27,14 +27,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     one_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 1.6)
     two_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0, side_stop=False)
     limits = [mr.solve_compliant(case, contacts) for case in (two_sided, one_sided)]
-    variants = [(mu, mjcf.HELD_MASSES) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
-    variants += [(mjcf.HELD_FRICTION, masses) for masses in (1e1, 1e2, 1e4)]
+    variants = [(mu, scene.HELD_MASSES) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
+    variants += [(wall.HELD_FRICTION, masses) for masses in (1e1, 1e2, 1e4)]
     rows: list[list[object]] = [
         ["no slip", "", "SciPy", *(f"{r:.4f}" for limit in limits for r in limit.restitution[:2])]
     ]
     for step in steps:
         for mu, masses in tqdm(variants, desc=f"step {step:g} s", disable=None, leave=False):
-            with mock.patch.multiple(mjcf, HELD_FRICTION=mu, HELD_MASSES=masses):
+            with mock.patch.object(wall, "HELD_FRICTION", mu), mock.patch.object(scene, "HELD_MASSES", masses):
                 runs = [mr.simulate(case, contacts, step) for case in (two_sided, one_sided)]
             rows.append([mu, masses, step * 1e3, *(f"{r:.4f}" for run in runs for r in run.restitution[:2])])
     header = ["mu [-]", "row inertia [m]", "step [ms]", "2s e_1", "2s e_2", "1s e_1", "1s e_2"]

@@ -19,7 +19,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
-from mjrock.campaign import completed
+from mjrock.study.campaign import completed
 from paper import FIGURE_3
 
 SIDES = {"two-sided": (False, -1), "one-sided, outward first": (True, -1), "one-sided, inward first": (True, 1)}

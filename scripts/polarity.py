@@ -15,7 +15,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
-from mjrock.campaign import completed
+from mjrock.study.campaign import completed
 from paper import FIGURE_3, K_N
 
 

@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 import cli
 import mjrock as mr
-from mjrock.response import Outcome
+from mjrock import Outcome
 
 UNPAID = {False: 0.02, True: 0.10}
 """Most energy that the ledger may have too much at any time, over the energy of release, inside and outside Table 1:

@@ -19,9 +19,12 @@ import numpy as np
 import cli
 import mjrock as mr
 from mjrock import plotting
-from mjrock.calibration import Combination, Match, Plan, combinations, regress, well_matched
-from mjrock.campaign import completed
-from mjrock.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw, Groups
+from mjrock.problem.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+from mjrock.problem.forms import Groups
+from mjrock.study.calibration import Plan
+from mjrock.study.campaign import completed
+from mjrock.study.match import Combination, Match, combinations
+from mjrock.study.regression import regress, well_matched
 from paper import K_N, TABLE_2
 
 SEED = 1001

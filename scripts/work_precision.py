@@ -25,9 +25,13 @@ from tqdm import tqdm
 
 import cli
 import mjrock as mr
-from mjrock import mjcf, plotting, simulation, stepping
-from mjrock.contact import impedance, least_inertia
-from mjrock.response import Response, peak_energies, restitution_of, rocking_history
+from mjrock import plotting
+from mjrock.engine.contact import WITHIN
+from mjrock.engine.mjcf import RADIUS
+from mjrock.engine.model import Engine
+from mjrock.engine.stepping import StepError, fixed_steps
+from mjrock.result.history import peak_energies, restitution_of, rocking_history
+from mjrock.result.response import Response
 from paper import FIGURE_3, K_N
 
 Solve = Callable[[mr.Case, mr.Contacts, bool], tuple[Response, float]]
@@ -65,7 +69,9 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
 
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
         started = time.perf_counter()
-        model = simulation.compile_wall(mr.wall_mjcf(case, contacts, h), case.block)
+        scene = mr.wall_scene(case, contacts)
+        engine = Engine.of(mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, h)), scene)
+        model = engine.model
         model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
         if default_contacts:
             model.pair_solref[:] = 0.02, 1.0
@@ -73,22 +79,17 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
             model.pair_solreffriction[:] = 0
             model.opt.impratio = 1
         else:
-            W = mjcf.inverse_weight(case.block.mass)
-            d = impedance(least_inertia(W), W)
-            faces = contacts.faces(side_stop=case.side_stop)
-            k, c = (np.concatenate([getattr(face, name) for face in faces]) for name in ("stiffness", "damping"))
-            model.pair_solref[:] = -(1 - d) * W * np.stack([k, c], axis=1)
+            d = WITHIN[0]
+            model.pair_solref[:] = -(1 - d) * scene.weight[:, None] * np.stack([scene.k, scene.c], axis=1)
             model.pair_solimp[:, :2] = d
             held = model.pair_solreffriction[:, 1] < 0
             model.pair_solreffriction[held, 1] = -d / (2 * h)
             model.opt.impratio = 1e7
-        data = simulation.release(model)
+        engine.release(scene.started)
         synchronised = integrator == "RK4"  # the others keep velocities half a step back, as our own steps do
         if synchronised:
-            mujoco.mj_resetDataKeyframe(model, data, model.key("release").id)
-        (steps,) = stepping.fixed_steps(model, [data], [case], 0)
-        if isinstance(steps, stepping.StepError):
-            raise steps
+            engine.data.qvel[:] = scene.started[1].ravel()
+        steps = fixed_steps(engine, scene, h, 0)
         seconds = time.perf_counter() - started
         omega = (steps.before if synchronised else steps.velocity)[:, 2]
         return _as_response(case, contacts, steps.t, steps.pose[:, 2], omega, len(steps.t)), seconds
@@ -133,12 +134,16 @@ def free_wall(h: float) -> Solve:
         key = root.find("keyframe/key")
         assert key is not None
         across, up, theta = map(float, key.get("qpos", "").split())
-        up += wall.h + mjcf.RADIUS * wall.h
+        up += wall.h + RADIUS * wall.h
         pose = (across, 0.0, up, math.cos(theta / 2), 0.0, math.sin(theta / 2), 0.0)
         key.set("qpos", " ".join(map(repr, pose)))
         key.set("qvel", "0 0 0 0 0 0")
         model = mujoco.MjModel.from_xml_string(ET.tostring(root, encoding="unicode"))
-        data = simulation.release(model)
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        for _ in range(10):
+            mujoco.mj_forward(model, data)
+            data.qvel[:] = -0.5 * h * data.qacc
         count = round(case.duration / h)
         theta_t, omega_t = np.empty(count), np.empty(count)
         for n in range(count):
@@ -171,7 +176,6 @@ def _as_response(case: mr.Case, contacts: mr.Contacts, t, theta, omega, steps: i
         t,
         theta,
         omega,
-        np.zeros_like(t),
         impacts,
         peaks,
         mr.Outcome.TIME_ENDED,
@@ -194,7 +198,7 @@ def measure(
     for reference, contacts in references:
         try:
             response, _ = solve(reference.case, contacts, True)
-        except (mr.SimulationError, stepping.StepError):
+        except (mr.SimulationError, StepError):
             return Point(label, method, setting, 0, math.nan, math.nan, math.nan, math.nan)
         steps = response.stats.get("steps", response.stats.get("evaluations", 0))
         wanted = restitution_of(peak_energies(reference.case, reference.peaks))[:rebounds]
@@ -343,40 +347,38 @@ def profile() -> str:
         started = time.perf_counter()
         mr.simulate(case, contacts, 1e-3, output_step=1e-3)
         whole = time.perf_counter() - started
-        model = simulation.compile_wall(mr.wall_mjcf(case, contacts, 1e-3), FIGURE_3)
-        data = simulation.release(model)
-        started = time.perf_counter()
-        mujoco.mj_step(model, data, 60_000)
-        bare = time.perf_counter() - started
-    recording = whole - bare
+        bare = bare_engine(case, contacts, 1e-3, 60_000)
     lines.append(
         f"fixed 1 ms, 60 s: {60 / whole:.0f} times real time, {whole / bare:.2f} times mj_step(model, data, n) with "
-        f"nothing recorded: text, compilation, recording and evaluation {recording / whole:.0%} of the run"
+        f"nothing recorded: recording and evaluation {(whole - bare) / whole:.0%} of the run"
     )
     one = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 6.0, side_stop=False)
     runs = [mr.simulate(one, contacts) for _ in range(20)]
-    whole = statistics.median(r.stats["wall_time"] for r in runs)
-    steps = runs[0].stats["steps"]
-    model = simulation.compile_wall(mr.wall_mjcf(one, contacts, runs[0].stats["timestep"]), FIGURE_3)
-    data = simulation.release(model)
-    started = time.perf_counter()
-    mujoco.mj_step(model, data, steps)
-    engine = time.perf_counter() - started
+    whole, stepping = (statistics.median(run.stats[name] for run in runs) for name in ("wall_time", "stepping_time"))
+    steps, scene = runs[0].stats["steps"], mr.wall_scene(one, contacts)
+    engine = statistics.median(bare_engine(one, contacts, runs[0].stats["timestep"], steps) for _ in range(20))
     compiling = []
     for _ in range(20):
         started = time.perf_counter()
-        simulation.compile_wall(mr.wall_mjcf(one, contacts, 1e-3), FIGURE_3)
+        Engine.compile(scene)
         compiling.append(time.perf_counter() - started)
-    setup, after = (
-        statistics.median(compiling),
-        statistics.median(r.stats["wall_time"] - r.stats["stepping_time"] for r in runs),
-    )
     lines.append(
-        f"fitted, 6 s: {whole * 1e3:.1f} ms for {steps} steps, of which the engine's steps {engine / whole:.0%}, text "
-        f"and compilation {setup / whole:.0%}, evaluation and output {after / whole:.0%}, the Python loop the rest, "
-        f"{1 - (engine + setup + after) / whole:.0%}"
+        f"fitted, 6 s: {whole * 1e3:.1f} ms for {steps} steps, of which the engine's steps {engine / whole:.0%}, the "
+        f"rest of the loop {(stepping - engine) / whole:.0%}, scene, release, evaluation and output "
+        f"{(whole - stepping) / whole:.0%}; text and compilation, once for a wall, "
+        f"{statistics.median(compiling) * 1e3:.1f} ms"
     )
     return "\n".join(lines)
+
+
+def bare_engine(case: mr.Case, contacts: mr.Contacts, timestep: float, steps: int) -> float:
+    """Seconds of as many of the engine's own steps, with nothing recorded."""
+    model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, timestep))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    started = time.perf_counter()
+    mujoco.mj_step(model, data, steps)
+    return time.perf_counter() - started
 
 
 def main(argv: Sequence[str] | None = None) -> None:

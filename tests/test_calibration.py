@@ -6,19 +6,13 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import calibration
-from mjrock.calibration import (
-    REFERENCE,
-    Combination,
-    Match,
-    Plan,
-    combinations,
-    highest_branch,
-    least_difference,
-    regress,
-)
-from mjrock.campaign import completed
-from mjrock.damping import CALIBRATED, HIGHEST, BedLaw, CornerLaw, PowerLaw, SideLaw
+from mjrock.problem.damping import CALIBRATED, HIGHEST
+from mjrock.problem.forms import BedLaw, CornerLaw, PowerLaw, SideLaw
+from mjrock.study import match
+from mjrock.study.calibration import Plan
+from mjrock.study.campaign import completed
+from mjrock.study.match import REFERENCE, Combination, Match, combinations, highest_branch, least_difference
+from mjrock.study.regression import regress
 
 BOUNDS = (1e-3, 0.3)
 
@@ -146,10 +140,8 @@ def test_a_second_run_carries_on_from_the_store(tmp_path, monkeypatch):
     first = completed(tasks[:2], tmp_path / "a.sqlite", workers=1)
     assert [row["slenderness"] for row in first] == [task.combination.slenderness for task in tasks[:2]]
     asked = []
-    original = calibration.simulate
-    monkeypatch.setattr(
-        calibration, "simulate", lambda case, *args, **kw: asked.append(case) or original(case, *args, **kw)
-    )
+    original = match.simulate
+    monkeypatch.setattr(match, "simulate", lambda case, *args, **kw: asked.append(case) or original(case, *args, **kw))
     again = completed(tasks, tmp_path / "a.sqlite", workers=1)
     assert again[:2] == first
     assert {case.block for case in asked} == {tasks[2].combination.wall}

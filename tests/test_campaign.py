@@ -14,8 +14,7 @@ import pytest
 from campaign_tasks import Square
 
 import mjrock as mr
-
-module = sys.modules["mjrock.campaign"]  # the name is the function's
+from mjrock.study import batch, runner
 
 
 def table(path):
@@ -137,7 +136,7 @@ def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):
 
 def test_another_version_makes_other_rows(tmp_path, monkeypatch):
     path = mr.campaign(squares(tmp_path, 3), tmp_path / "c.sqlite", workers=1)
-    monkeypatch.setattr(module, "VERSION", "mjrock 99")
+    monkeypatch.setattr(runner, "VERSION", "mjrock 99")
     mr.campaign(squares(tmp_path, 3), path, workers=1)
     assert len(table(path).splitlines()) == 7
 
@@ -210,15 +209,15 @@ def test_threads_of_the_engine(tmp_path, wall, contacts, monkeypatch):
 
     grid = mr.Grid(build, polarity=[0, 1], scale=np.linspace(0.5, 1.5, 12).tolist())
     batches = []
-    original = module.simulate_batch
+    original = batch.simulate_batch
     monkeypatch.setattr(
-        module, "simulate_batch", lambda cases, *a, **k: batches.append(len(cases)) or original(cases, *a, **k)
+        batch, "simulate_batch", lambda cases, *a, **k: batches.append(len(cases)) or original(cases, *a, **k)
     )
     tables = [table(mr.campaign(grid, tmp_path / "1.sqlite", workers=1))]
     assert not batches
     tables.append(table(mr.campaign(grid, tmp_path / "2.sqlite", workers=2)))
     assert sum(batches) == 24
-    monkeypatch.setattr(module, "START_UP", -1e9)  # processes, whatever the measurement says
+    monkeypatch.setattr(runner, "START_UP", -1e9)  # processes, whatever the measurement says
     tables.append(table(mr.campaign(grid, tmp_path / "3.sqlite", workers=2)))
     assert sum(batches) < 48
     assert tables[0] == tables[1] == tables[2]

@@ -20,7 +20,7 @@ def test_energy_never_rises(two_sided, one_sided, contacts):
 
 def test_a_wall_at_rest_stays_at_rest(wall, contacts):
     response = mr.solve_compliant(mr.Case(wall, 0.0, 1.0), contacts)
-    assert np.abs(response.theta).max() < 1e-12
+    assert np.abs(response.theta).max() < 1e-10  # the absolute tolerance of the integration
     assert response.outcome is mr.Outcome.AT_REST
 
 

@@ -4,7 +4,8 @@ import warnings
 import pytest
 
 import mjrock as mr
-from mjrock.damping import CALIBRATED, CALIBRATED_BED, DampingLaw, Groups
+from mjrock.problem.damping import CALIBRATED, CALIBRATED_BED, DampingLaw
+from mjrock.problem.forms import Groups
 
 
 def test_no_warning_inside_table_1(wall, e):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from mjrock.fragility import fit_fragility
+from mjrock.study.fragility import fit_fragility
 
 
 def drawn(n, seed=0, median=0.4, dispersion=0.35):

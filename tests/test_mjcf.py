@@ -108,17 +108,18 @@ def test_a_row_that_mujoco_would_clamp_takes_the_smallest_inertia_it_represents(
 
 def test_every_contact_point_sits_where_the_wall_touches(one_sided, contacts, wall):
     """Gap and normal are those of the corner at every rotation, whatever the radius of the sphere."""
-    from mjrock.pose import base_gaps
+    from mjrock.engine.kinematics import gaps
 
+    scene = mr.wall_scene(one_sided, contacts)
     model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(one_sided, contacts, 1e-3))
     data = mujoco.MjData(model)
     for theta in (-0.002, 0.001, 0.1):
         data.qpos[:] = 0.0, -0.002 - 0.3 * abs(np.sin(theta)), theta
         mujoco.mj_forward(model, data)
-        gaps = base_gaps(wall, contacts, data.qpos.copy())
         found = {model.geom(c.geom[1]).name: c.dist for c in data.contact} | {
             model.geom(c.geom[0]).name: c.dist for c in data.contact
         }
-        for i, gap in enumerate(gaps):
+        for name, gap in zip(scene.point_names, gaps(scene.points, data.qpos[None].copy())[0], strict=True):
+            assert (name in found) == (gap < 0)
             if gap < 0:
-                assert found[f"base_{i}"] == pytest.approx(gap, abs=1e-14)
+                assert found[name] == pytest.approx(gap, abs=1e-14)

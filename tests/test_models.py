@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import make_models
+import mjrock as mr
 
 
 def reference(folder):
@@ -52,6 +53,26 @@ def test_stock_mujoco_follows_the_reference(model):
     rebound = t > t[np.flatnonzero(law < 0.02 * alpha)[0]]
     peaks = [np.abs(y[rebound]).max() for y in (rotation, law)]
     assert peaks[0] == pytest.approx(peaks[1], rel=0.1, abs=1e-3 * alpha)
+
+
+@pytest.mark.parametrize("model", make_models.ALL, ids=lambda m: m.name)
+def test_the_text_is_the_simulation(model):
+    """Stock MuJoCo, from the keyframe, is `simulate` at the step of the text, to 1e-9 alpha at every step."""
+    engine = mujoco.MjModel.from_xml_path(str(make_models.MODELS / model.name / "scene.xml"))
+    data = mujoco.MjData(engine)
+    mujoco.mj_resetDataKeyframe(engine, data, engine.key("release").id)
+    run = mr.simulate(model.case, model.contacts, engine.opt.timestep)
+    pose = np.empty((len(run.t), 3))
+    for i in range(len(pose)):
+        pose[i] = data.qpos
+        mujoco.mj_step(engine, data)
+    assert np.abs(pose - run.pose[:, 0]).max() < 1e-9 * model.case.block.alpha
+    # the twin that must fail: the velocity at the release instead of half a step before it
+    mujoco.mj_resetDataKeyframe(engine, data, engine.key("release").id)
+    data.qvel[:] = 0.0
+    for _ in range(len(pose) - 1):
+        mujoco.mj_step(engine, data)
+    assert np.abs(data.qpos - run.pose[-1, 0]).max() > 1e-9 * model.case.block.alpha
 
 
 def test_the_folder_holds_nothing_else():

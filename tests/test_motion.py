@@ -375,7 +375,6 @@ def test_velocity_is_the_integral(uneven):
     np.testing.assert_allclose(uneven.velocity(t), expected, atol=1e-13)
     for i in (0, 1, 777, 1234, len(t) - 1):
         one = uneven.velocity(float(t[i]))
-        assert type(one) is float
         assert one == pytest.approx(expected[i], abs=1e-13)
     assert uneven.velocity(-1.0) == 0.0
     assert uneven.velocity(uneven.duration + 5) == uneven.residual_velocity

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.response import peak_energies, restitution_of, rocking_history
+from mjrock.result.history import peak_energies, restitution_of, rocking_history
 
 
 def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import simulation, stepping
-from mjrock.mjcf import HELD_FRICTION, inner_friction
+from mjrock.engine import simulation, stepping
+from mjrock.engine.model import Engine
+from mjrock.engine.wall import HELD_FRICTION, inner_friction
 from paper import K_N
 
 
@@ -115,14 +116,13 @@ def test_gain_from_peak_to_peak_is_what_counts():
 @pytest.mark.filterwarnings("ignore")
 def test_a_nan_or_a_warning_of_the_engine_is_an_error(two_sided, contacts, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)  # MuJoCo leaves MUJOCO_LOG.TXT where it warns
-    released = simulation.release
+    released = Engine.release
 
-    def thrown(model, start):
-        data = released(model, start)
-        data.qvel[1] = 1e12
-        return data
+    def thrown(engine, started):
+        released(engine, started)
+        engine.data.qvel[1] = 1e12
 
-    monkeypatch.setattr(simulation, "release", thrown)
+    monkeypatch.setattr(Engine, "release", thrown)
     with pytest.raises(
         mr.SimulationError, match=r"(MuJoCo warned|not finite).*with a step of 0.01 s; the largest sound"
     ):
@@ -135,7 +135,7 @@ def test_an_engine_that_weighs_contacts_otherwise_is_refused(two_sided, contacts
     )
     text = text.replace('qpos="', 'qpos="0 ').replace('qvel="', 'qvel="0 ')
     with pytest.raises(mr.SimulationError, match="inverse weight"):
-        simulation.compile_wall(text, wall)
+        Engine.of(mujoco.MjModel.from_xml_string(text), mr.wall_scene(two_sided, contacts))
 
 
 @pytest.mark.parametrize("timestep", [0.0, -1e-3, math.nan, 2.0])
@@ -147,8 +147,9 @@ def test_bad_steps(two_sided, contacts, timestep):
 def test_the_rows_of_the_wall_are_the_law(one_sided, contacts, wall):
     """During the side impact every solved normal force is max(0, -(k r + c v + m_i a)), friction and all."""
     h = 1e-4
-    model = simulation.compile_wall(mr.wall_mjcf(one_sided, contacts, h), wall)
-    data = simulation.release(model)
+    model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(one_sided, contacts, h))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
     seen, sliding = set(), 0
     while data.time < 0.72:
         mujoco.mj_step1(model, data)

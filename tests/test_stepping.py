@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import simulation, stepping
+from mjrock.engine import simulation
+from mjrock.engine.kinematics import gaps
+from mjrock.engine.mjcf import pair_rows
+from mjrock.engine.model import engine_of
+from mjrock.engine.pace import short_step
+from mjrock.engine.stepping import fitted_steps
 from paper import FIGURE_3, K_N
 
 
@@ -52,12 +57,13 @@ def test_touch_phase_scatter_is_gone(contacts):
 
 def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
     """Half a short step before the first pose in a new contact, the gap closes."""
-    h = stepping.short_step(one_sided, contacts, 1e-3)
-    model = simulation.compile_wall(mr.wall_mjcf(one_sided, contacts, h), FIGURE_3)
-    steps = stepping.fitted_steps(model, simulation.release(model), one_sided, contacts, 1e-3)
-    from mjrock.pose import side_gaps
-
-    top = side_gaps(FIGURE_3, contacts, steps.pose)[:, -1]
+    scene = mr.wall_scene(one_sided, contacts)
+    h = short_step(scene, 1e-3)
+    with engine_of(scene) as engine:
+        engine.follow(h, pair_rows(scene, h, 0.25))
+        engine.release(scene.started)
+        steps = fitted_steps(engine, scene, 1e-3)
+    top = gaps(scene.points, steps.pose)[:, -1]
     first = np.flatnonzero((top[:-1] > 0) & (top[1:] <= 0))[0] + 1
     speed = (top[first] - top[first - 1]) / steps.h[first - 1]
     assert steps.h[first] == h
@@ -65,26 +71,14 @@ def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
 
 
 def test_steps_follow_the_contacts_not_the_wall(two_sided, contacts):
-    soft, stiff = (mr.Contacts.from_damping(FIGURE_3, k_base=k, xi_base=0.002) for k in (K_N, 4 * K_N))
-    h = stepping.short_step(two_sided, soft, 1e-3)
-    assert stepping.short_step(two_sided, soft, 4e-3) == pytest.approx(2 * h)
-    assert stepping.short_step(two_sided, stiff, 1e-3) == pytest.approx(h / 2)
-    strong = mr.Contacts.from_damping(FIGURE_3, k_base=K_N, xi_base=0.9)
-    assert stepping.short_step(two_sided, strong, 1e-3) < h
-
-
-@pytest.mark.parametrize("points", [2, 3, 7, 32])
-def test_the_next_point_to_touch_is_an_end_of_the_open_ones(points):
-    positions = np.linspace(-0.3, 0.3, points)
-    rng = np.random.default_rng(3)
-    for offset, slope in rng.normal(size=(200, 2)) * (0.01, 0.05):
-        gaps = offset + slope * positions
-        open_points = positions[gaps >= 0]
-        ends = stepping._open_ends(offset, slope, 0.3, points)
-        if len(open_points):
-            np.testing.assert_allclose([min(ends), max(ends)], [open_points[0], open_points[-1]], atol=1e-12)
-        else:
-            assert ends == ()
+    soft, stiff, strong = (
+        mr.wall_scene(two_sided, mr.Contacts.from_damping(FIGURE_3, k_base=k, xi_base=xi))
+        for k, xi in ((K_N, 0.002), (4 * K_N, 0.002), (K_N, 0.9))
+    )
+    h = short_step(soft, 1e-3)
+    assert short_step(soft, 4e-3) == pytest.approx(2 * h)
+    assert short_step(stiff, 1e-3) == pytest.approx(h / 2)
+    assert short_step(strong, 1e-3) < h
 
 
 def test_samples_are_uniform_and_end_on_time(one_sided, contacts):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.store import Store, fingerprint
+from mjrock.study.store import Store, fingerprint
 
 
 def row(key, position=0, **columns):

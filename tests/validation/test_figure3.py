@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import simulation
 from paper import FIGURE_3, FIGURE_3_XI, K_N
 
 
@@ -59,7 +58,7 @@ class TestVerification:
 
     def test_a_base_that_slips_fails(self, one_sided, contacts, monkeypatch):
         """The twin that must fail: with mu = 1 the side impact throws the base along."""
-        monkeypatch.setattr("mjrock.mjcf.HELD_FRICTION", 1.0)
+        monkeypatch.setattr("mjrock.engine.wall.HELD_FRICTION", 1.0)
         found = mr.compare(mr.solve_compliant(one_sided, contacts), mr.simulate(one_sided, contacts, 1e-4))
         assert found.restitution[0, 1] < 0.9 * found.restitution[0, 0]
 
@@ -68,8 +67,8 @@ class TestVerification:
         """At a step of 10 us friction coefficient and row inertia can be varied a hundredfold without effect."""
         exact = mr.solve_compliant(one_sided, contacts).restitution[0]
         for mu, masses in ((10.0, 1e3), (30.0, 1e1), (30.0, 1e3), (30.0, 1e5), (1000.0, 1e3)):
-            monkeypatch.setattr("mjrock.mjcf.HELD_FRICTION", mu)
-            monkeypatch.setattr("mjrock.mjcf.HELD_MASSES", masses)
+            monkeypatch.setattr("mjrock.engine.wall.HELD_FRICTION", mu)
+            monkeypatch.setattr("mjrock.engine.scene.HELD_MASSES", masses)
             run = mr.simulate(mr.Case(FIGURE_3, one_sided.theta0, 1.2), contacts, 1e-5)
             assert run.restitution[0] == pytest.approx(exact, rel=0.002)
 
@@ -97,9 +96,10 @@ class TestValidation:
     def test_the_discrete_integrator_fails(self, two_sided, contacts, e):
         """The twin that must fail: MuJoCo's `discrete` treats the same rows implicitly and damps on its own account."""
         h = 1e-3
-        model = simulation.compile_wall(mr.wall_mjcf(two_sided, contacts, h), two_sided.block)
+        model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(two_sided, contacts, h))
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
-        data = simulation.release(model)
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
         theta = np.empty(6001)
         for i in range(len(theta)):
             theta[i] = data.qpos[2]

@@ -1,0 +1,107 @@
+"""Compilation of the inner loops by numba, and what happens where numba cannot compile or cannot store its result.
+
+`compiled` marks a loop for compilation at its first call. The result is stored beside the module, or in the user's
+cache folder where the package lies on a read-only disk. Where neither can be written, each process compiles anew.
+`jitable` marks a small function that compiled loops call; called from Python it runs as Python. With
+NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+try:
+    import numba
+    import numba.core.caching
+    import numba.extending
+    from numba.core import event
+except ImportError:
+    numba = None
+
+
+def _notice(text: str) -> None:
+    sys.stderr.write(f"mjrock: {text}\n")
+
+
+def _sources() -> str:
+    """A digest of every module that holds compiled functions.
+
+    numba recompiles a function when its own file has changed. A compiled function also contains the functions of other
+    files that it calls, so that a change in any of these files has to recompile it as well.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        text = path.read_bytes()
+        if b"@compiled" in text or b"@jitable" in text:
+            digest.update(text)
+    return digest.hexdigest()
+
+
+if numba is None:
+    _notice("numba is not installed; the loops run as plain Python, some fifty times slower")
+
+    def compiled(function: Function) -> Function:
+        """The function as it is: there is no numba."""
+        return function
+
+    jitable = compiled
+
+else:
+    SOURCES = _sources()
+
+    class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]
+        """numba's cache on disk, which is a convenience: whatever is wrong with it, the function is compiled anew."""
+
+        def __init__(self, function: Function) -> None:
+            super().__init__(function)
+            self._cache_file._source_stamp = SOURCES
+
+        def load_overload(self, *key: Any) -> Any:
+            """The compiled function, or None where it cannot be read."""
+            try:
+                return super().load_overload(*key)
+            except Exception:
+                return None
+
+        def save_overload(self, *key: Any) -> None:
+            """Store the compiled function unless the disk refuses."""
+            with contextlib.suppress(OSError):
+                super().save_overload(*key)
+
+    class _FirstCompilation(event.Listener):  # type: ignore[misc]
+        """Says once that the loops are being compiled."""
+
+        said = False
+
+        def on_start(self, event: Any) -> None:
+            """Tell the user why nothing seems to happen."""
+            own = getattr(event.data.get("dispatcher"), "py_func", None)
+            if not self.said and own is not None and own.__module__.startswith("mjrock."):
+                _FirstCompilation.said = True
+                _notice("compiling the loops, which takes some seconds and happens once")
+
+        def on_end(self, event: Any) -> None:
+            """Nothing to say."""
+
+    event.register("numba:compile", _FirstCompilation())
+
+    jitable = numba.extending.register_jitable
+
+    def compiled(function: Function) -> Function:
+        """Compile a function at its first call, and store the result on disk where that is possible.
+
+        The function allocates nothing: it writes into arrays that it is given. numba then need not count references to
+        arrays, which would take longer than the arithmetic.
+        """
+        made = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
+        if made is not function:  # it is with NUMBA_DISABLE_JIT=1
+            with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
+                made._cache = _Cache(function)
+        return made  # type: ignore[no-any-return]

@@ -1,0 +1,1 @@
+"""The contact law in MuJoCo. This package knows no restitution."""

@@ -1,0 +1,169 @@
+"""The accounts of a run: where its energy is at every step, and what dashpots, friction and the ground did to it.
+
+Everything follows from the recorded poses and half-step velocities. The books are kept at the seams of the leapfrog's
+windows, where a velocity is known and where a touch that is centred in time falls. Over a window a constant force acts.
+What it does to the kinetic energy is force times mean velocity times length, without error. With Newmark's beta = 1/4 a
+spring stores exactly what it should; with another beta the residual contains the (1/4 - beta) h^2 k v^2 / 2 by which
+the step shifts the energy of the contact.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import compiled, jitable
+from ..problem.quantities import Array, Integers
+from ..result.ledger import Ledger
+from .contact import row
+from .ground import Ground, mean_acceleration
+from .kinematics import Points, along, energies, gap, spring_energy, take_frame
+from .scene import Scene
+from .stepping import Steps
+
+
+def ground_work(scene: Scene, steps: Steps) -> Array:
+    """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
+    work = np.empty(len(steps.t))
+    _ground_work(Ground.of(scene.motion), steps.t, steps.h, steps.widths, steps.velocity[:, 0::3] @ scene.mass, work)
+    return work
+
+
+@compiled
+def _ground_work(ground: Ground, t: Array, h: Array, width: Array, momentum: Array, work: Array) -> None:
+    for n in range(len(t)):
+        work[n] = -mean_acceleration(ground, t[n], h[n]) * momentum[n] * width[n]
+
+
+def ledger(scene: Scene, steps: Steps) -> Ledger:
+    """The ledger of a run."""
+    start = steps.pose - 0.5 * steps.h[:, None] * steps.before
+    stored = energies(scene.points, scene.masses, start, steps.before)
+    groups = tuple(dict.fromkeys(scene.group))
+    number = np.array([groups.index(name) for name in scene.group])
+    dashpots, friction = np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t))
+    _contact_work(
+        scene.points,
+        number,
+        steps.h,
+        steps.widths,
+        steps.pose,
+        steps.before,
+        steps.after,
+        start,
+        steps.beta,
+        steps.ringing,
+        steps.kind,
+        np.empty((3, len(scene.mass), 4)),
+        np.empty((2, len(scene.k))),
+        np.empty((2, len(scene.masses))),
+        dashpots,
+        friction,
+    )
+    return Ledger(
+        t=steps.seams,
+        kinetic=stored[:, 0],
+        potential=stored[:, 1],
+        elastic=stored[:, 2],
+        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate(groups)},
+        friction=_since_release(friction),
+        ground=_since_release(ground_work(scene, steps)),
+    )
+
+
+def _since_release(work: Array) -> Array:
+    """Sums up to the start of each window."""
+    return np.append(0.0, np.cumsum(work[:-1]))
+
+
+@jitable
+def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: float, mu: float) -> tuple[float, float]:
+    """Normal and tangential force of an elliptic contact, as MuJoCo solves it.
+
+    A contact that sticks has the forces of its two rows. One that slides has a force on the cone, mu times the normal
+    one: the point of the cone that is nearest to the forces of the rows, weighted with their inertias. One that is
+    pulled open has none.
+
+    Args:
+        normal, stopping: forces of the two rows without the cone [N].
+        slip_inertia, inertia: inertias of the two rows [kg].
+        mu: coefficient of friction [-].
+    """
+    sideways = abs(stopping)
+    if normal > 0 and sideways <= mu * normal:
+        return normal, stopping
+    share = mu * mu * inertia / slip_inertia
+    pressing = (normal + mu * sideways * inertia / slip_inertia) / (1 + share)
+    if pressing <= 0:
+        return 0.0, 0.0
+    return pressing, math.copysign(mu * pressing, stopping)
+
+
+@compiled
+def _contact_work(
+    points: Points,
+    number: Integers,
+    h: Array,
+    width: Array,
+    pose: Array,
+    before: Array,
+    after: Array,
+    start: Array,
+    beta: Array,
+    ringing: Array,
+    kind: Integers,
+    frames: Array,
+    rows: Array,
+    rates: Array,
+    dashpots: Array,
+    friction: Array,
+) -> None:
+    """Add up the work that dashpots and friction take in the window of each step.
+
+    Args:
+        points: the contacts.
+        number: the group of each contact, shape (m,).
+        h, width: lengths of the steps and of their windows [s], shape (steps,).
+        pose, before, after, start: poses, velocities around them, and poses at the seams, shape (steps, 3 n).
+        beta, ringing, kind: as in `Steps`.
+        frames, rows, rates: room for three frames, two numbers of each row, and two rates, (3, n, 4), (2, m), (2, 3 n).
+        dashpots, friction: the work [J], shapes (steps, groups) and (steps,).
+    """
+    m = len(points.k)
+    frame, seam, next_seam = frames[0], frames[1], frames[2]
+    dashpot, inertia = rows[0], rows[1]
+    middle, acceleration = rates[0], rates[1]
+    for n in range(len(h)):
+        step = h[n]
+        take_frame(pose[n], frame)
+        take_frame(start[n], seam)
+        take_frame(start[min(n + 1, len(h) - 1)], next_seam)
+        for j in range(len(middle)):
+            middle[j] = 0.5 * (before[n, j] + after[n, j])
+            acceleration[j] = (after[n, j] - before[n, j]) / step
+        impratio = math.inf
+        for i in range(m):
+            own_beta, own_ringing = beta[kind[n], i], ringing[kind[n], i]
+            dashpot[i], inertia[i] = row(points.k[i], points.c[i], step, points.weight[i], own_beta, own_ringing)
+            if points.held[i] > 0:
+                impratio = min(impratio, points.held[i] / inertia[i])
+        for i in range(m):
+            g, rate, _ = gap(points, i, frame, middle, middle)
+            curve = gap(points, i, frame, acceleration, middle)[1]
+            given = spring_energy(points, i, seam) - spring_energy(points, i, next_seam)
+            if g >= 0:
+                dashpots[n, number[i]] += given
+                continue
+            sprung = beta[kind[n], i] * step**2 * points.k[i] * curve
+            # what the dashpot, centred or at the end of the step, exerts at the velocity that the leapfrog keeps
+            drag = dashpot[i] * (rate - 0.5 * step * curve) + inertia[i] * curve - sprung
+            law = -(points.k[i] * g + drag + sprung)
+            # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
+            dashpots[n, number[i]] += drag * rate * width[n] if law > 0 else given
+            if points.friction[i] > 0:
+                held = impratio * inertia[i]
+                stopping = -held * along(points, i, frame, after[n])[1] / step
+                pressing, dragging = cone_force(law, stopping, held, inertia[i], points.friction[i])
+                lift = pressing - max(law, 0.0)  # what a sliding cone presses on top of the law
+                friction[n] -= (dragging * along(points, i, frame, middle)[1] + lift * rate) * width[n]

@@ -1,0 +1,223 @@
+"""MuJoCo's contact units. A spring k [N/m] and a dashpot c [N s/m] become solref and solimp, and back.
+
+With a constant impedance d, a contact row of MuJoCo's Euler step obeys
+
+    f = max(0, -(k r + c v + m_i a)),    m_i = d / ((1 - d) W),
+
+with r the gap, v and a its rates, and W the inverse weight of the pair, the sum of `body_invweight0` of its two bodies.
+In the direct format solref = (-(1 - d) W k, -(1 - d) W c) and solimp = (d, d, ...). The Euler step is a leapfrog: v
+lies half a step before r, and v+ = v + h a. The inertia m_i of a row is therefore not an error but a choice. With
+
+    m_i = h c / 2 + beta h^2 k
+
+the step is that of Newmark's method: c acts on the mean of v and v+, and k on r + beta h^2 a. beta = 1/4 (average
+acceleration) is stable at every step and adds no numerical damping. beta = 0 is central difference, 1/12 Fox-Goodwin.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compiled import jitable
+from ..problem.quantities import Array
+
+IMPEDANCE_RANGE = (1e-4, 0.9999)
+"""mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
+WITHIN = (IMPEDANCE_RANGE[0] * (1 + 1e-9), IMPEDANCE_RANGE[1] * (1 - 1e-9))
+"""The same range less a margin for rounding."""
+OVERDAMPED = 0.2
+"""c h W above which a dashpot acts on the velocity at the end of the step instead of the mean velocity [-]. The inverse
+mass that a contact of the wall feels is up to six times W. A centred dashpot leaves a quarter of the velocity there."""
+
+
+@dataclass(frozen=True)
+class ContactParameters:
+    """What a MuJoCo `<pair>` carries, and the inertia that comes with it.
+
+    Args:
+        solref: (-stiffness, -damping), MuJoCo's direct format [1/s2, 1/s].
+        solimp: (d0, dwidth, width, midpoint, power) with d0 = dwidth, so that the impedance is constant.
+        inertia: m_i, the inertia of the contact row [kg].
+    """
+
+    solref: tuple[float, float]
+    solimp: tuple[float, float, float, float, float]
+    inertia: float
+
+    @property
+    def impedance(self) -> float:
+        """d [-]."""
+        return self.solimp[0]
+
+
+def planar_weight(mass: Array) -> Array:
+    """Inverse weight of bodies that move in a plane, 2 / (3 m) [1/kg].
+
+    MuJoCo's `body_invweight0` is the mean of the inverse masses along three axes. Two slides and a hinge leave two.
+    """
+    return 2 / (3 * mass)
+
+
+@jitable
+def inertia_of(impedance: float, inverse_weight: float) -> float:
+    """m_i = d / ((1 - d) W) [kg]."""
+    return impedance / ((1 - impedance) * inverse_weight)
+
+
+@jitable
+def impedance_of(inertia: float, inverse_weight: float) -> float:
+    """d of a row with the inertia m_i [-], the inverse of `inertia_of`."""
+    return inverse_weight * inertia / (1 + inverse_weight * inertia)
+
+
+@jitable
+def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) -> float:
+    """m_i = h c / 2 + beta h^2 k [kg], which makes the Euler step Newmark's with centred damping."""
+    return 0.5 * timestep * c + newmark_beta * timestep**2 * k
+
+
+@jitable
+def row(
+    k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float
+) -> tuple[float, float]:
+    """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
+
+    They are c and `newmark_inertia` but for three cases:
+
+    * A dashpot that would take more than half the inertia that MuJoCo represents is no stronger than that. This is
+      thousands of times the mass of the body.
+    * A dashpot that is stiff for the step (OVERDAMPED) acts on the velocity at the end of the step, m_i = h c instead
+      of h c / 2. Centred in the step, it would throw back the contact that it should stop.
+    * A row whose impedance MuJoCo would clamp has the least inertia that it represents. More inertia than asked for
+      then changes a frequency by less than 1e-4, and it damps nothing.
+
+    Args:
+        k, c: spring [N/m] and dashpot [N s/m].
+        timestep: step h [s].
+        inverse_weight: W [1/kg].
+        newmark_beta: beta [-].
+        ringing: an extra dashpot in units of h k [-], for steps that do not resolve the contact.
+    """
+    strongest = 0.5 * inertia_of(WITHIN[1], inverse_weight) / timestep
+    dashpot = min(c + ringing * timestep * k, strongest)
+    inertia = newmark_inertia(k, dashpot, timestep, newmark_beta)
+    if dashpot * timestep * inverse_weight > OVERDAMPED:
+        inertia += 0.5 * timestep * dashpot
+    return dashpot, max(inertia, inertia_of(WITHIN[0], inverse_weight))
+
+
+@jitable
+def pair_values(k: float, dashpot: float, inertia: float, inverse_weight: float) -> tuple[float, float, float]:
+    """The two numbers of solref, in the direct format [1/s2, 1/s], and the impedance [-] of a row."""
+    d = impedance_of(inertia, inverse_weight)
+    scale = (1 - d) * inverse_weight
+    return -scale * k, -scale * dashpot, d
+
+
+@jitable
+def set_rows(
+    k: Array,
+    c: Array,
+    inverse_weight: Array,
+    held: Array,
+    timestep: float,
+    newmark_beta: Array,
+    ringing: Array,
+    solref: Array,
+    solimp: Array,
+    solreffriction: Array,
+) -> float:
+    """Write the rows of all contacts for a step, and return the `impratio` of the model [-].
+
+    A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate
+    of 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its
+    inertia leaves: a load F creeps at F h / inertia. MuJoCo has one impratio for all contacts. It is the largest with
+    which no friction row has more inertia than it should.
+
+    Args:
+        k, c, inverse_weight: spring [N/m], dashpot [N s/m] and W [1/kg] of each contact, shape (m,).
+        held: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
+        timestep: step h [s].
+        newmark_beta, ringing: as in `row`, shape (m,).
+        solref, solimp, solreffriction: what is written, shapes (m, 2), (m, 2 or more) and (m, 2).
+    """
+    impratio = np.inf
+    for i in range(len(k)):
+        dashpot, inertia = row(k[i], c[i], timestep, inverse_weight[i], newmark_beta[i], ringing[i])
+        solref[i, 0], solref[i, 1], d = pair_values(k[i], dashpot, inertia, inverse_weight[i])
+        solimp[i, 0] = solimp[i, 1] = d
+        if held[i] > 0:
+            solreffriction[i, 0], solreffriction[i, 1] = -1e-30, -d / timestep
+            impratio = min(impratio, held[i] / inertia)
+    return impratio if impratio < np.inf else 1.0
+
+
+@jitable
+def longest_step(k: float, inverse_weight: float) -> float:
+    """The longest step at which MuJoCo represents a spring of stiffness k [s]: h^2 k takes 0.4 of the inertia it
+    can."""
+    return math.sqrt(0.4 * inertia_of(WITHIN[1], inverse_weight) / k)
+
+
+def contact_parameters(
+    k: float, c: float, *, timestep: float, inverse_weight: float, newmark_beta: float = 0.25
+) -> ContactParameters:
+    """MuJoCo's parameters for a unilateral spring and dashpot, integrated as Newmark's method does.
+
+    Args:
+        k: stiffness [N/m], positive.
+        c: damping [N s/m], not negative.
+        timestep: step h of MuJoCo's Euler integrator [s], positive.
+        inverse_weight: W [1/kg], positive: 2/(3 m) for the planar wall (two slides and a hinge), 1/m for a free body.
+        newmark_beta: beta [-], not negative.
+
+    Raises:
+        ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
+    """
+    for name, value, least in (
+        ("stiffness k [N/m]", k, "k > 0"),
+        ("timestep [s]", timestep, "timestep > 0"),
+        ("inverse_weight [1/kg]", inverse_weight, "inverse_weight > 0"),
+    ):
+        if not 0 < value < float("inf"):
+            raise ValueError(f"{name} = {value:g} is outside the valid range {least}")
+    for name, value in (("damping c [N s/m]", c), ("newmark_beta", newmark_beta)):
+        if not 0 <= value < float("inf"):
+            raise ValueError(f"{name} = {value:g} is outside the valid range, which starts at 0")
+    inertia = newmark_inertia(float(k), float(c), float(timestep), float(newmark_beta))
+    stiffness, damping, d = pair_values(float(k), float(c), inertia, float(inverse_weight))
+    low, high = IMPEDANCE_RANGE
+    if not low <= d <= high:
+        remedy = "raise the timestep or newmark_beta" if d < low else "lower the timestep"
+        raise ValueError(
+            f"impedance d = {d:.6g} for k = {k:g} N/m, c = {c:g} N s/m, timestep = {timestep:g} s is outside the valid "
+            f"range {low:g} to {high:g}, where MuJoCo would clamp it and change the stiffness; {remedy}"
+        )
+    return ContactParameters(solref=(stiffness, damping), solimp=(d, d, 0.001, 0.5, 2.0), inertia=inertia)
+
+
+def contact_stiffness(
+    solref: tuple[float, ...], solimp: tuple[float, ...], *, inverse_weight: float
+) -> tuple[float, float]:
+    """The spring k [N/m] and dashpot c [N s/m] of a contact in MuJoCo's direct format; inverts `contact_parameters`.
+
+    Raises:
+        ValueError: if solref is not in the direct (negative) format, or the impedance is not constant or is one that
+            MuJoCo would clamp, or the weight is not positive.
+    """
+    if len(solref) < 2 or len(solimp) < 2 or not 0 < inverse_weight < float("inf"):
+        raise ValueError(
+            f"solref = {tuple(solref)}, solimp = {tuple(solimp)} and inverse_weight = {inverse_weight:g} 1/kg: "
+            "two and at least two numbers and a positive weight are needed"
+        )
+    d, d_width = solimp[0], solimp[1]
+    low, high = IMPEDANCE_RANGE
+    if not (solref[0] < 0 and solref[1] <= 0):
+        raise ValueError(f"solref = {tuple(solref)} is not in the direct format (-stiffness, -damping)")
+    if d != d_width or not low <= d <= high:
+        raise ValueError(f"solimp = {tuple(solimp)} is not a constant impedance in the valid range {low:g} to {high:g}")
+    scale = (1 - d) * inverse_weight
+    return -solref[0] / scale, -solref[1] / scale

@@ -1,0 +1,204 @@
+"""Kinematics of rigid bodies in a plane: the gap between a point and a face, its rates, and the slip along the face.
+
+Poses and velocities of n bodies are flat arrays of 3 n numbers: for each body the displacement x, z of its centroid
+from rest [m] and its rotation theta from rest [rad]. x points away from the side stop of a wall, z upwards, and theta
+is positive where the top of a body turns towards +x. A frame is a pose with its sines and cosines taken once: x, z,
+sin(theta), 1 - cos(theta) of each body. This module is the only place where these formulas stand, apart from the
+independent solver in `mjrock.reference`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled, jitable
+from ..problem.quantities import GRAVITY, Array, Flags, Integers
+
+
+class Points(NamedTuple):
+    """Contact points and the faces that they meet, as arrays for compiled functions.
+
+    Args:
+        body: the body that carries each point, shape (m,).
+        at: position of the point from the centroid of that body, at rest [m], shape (m, 2).
+        face_body: the body whose face the point meets, -1 for the ground, shape (m,).
+        face_at: origin of the face from the centroid of its body, at rest, or from the origin of the world [m], (m, 2).
+        normal: unit vector out of the face at rest, shape (m, 2).
+        between: vector from the origin of the face to the point, at rest [m], shape (m, 2).
+        k: stiffness [N/m], shape (m,).
+        c: damping [N s/m], shape (m,).
+        friction: coefficient of friction [-], zero for none, shape (m,).
+        weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (m,).
+        held: inertia that the friction row should have [kg], zero for no friction, shape (m,).
+        bears: whether the point is pressed while the scene is at rest, shape (m,).
+    """
+
+    body: Integers
+    at: Array
+    face_body: Integers
+    face_at: Array
+    normal: Array
+    between: Array
+    k: Array
+    c: Array
+    friction: Array
+    weight: Array
+    held: Array
+    bears: Flags
+
+
+@jitable
+def take_frame(q: Array, frame: Array) -> None:
+    """Write the frame of a pose, shape (n, 4)."""
+    for body in range(len(frame)):
+        half = 0.5 * q[3 * body + 2]
+        sine = math.sin(half)
+        frame[body, 0], frame[body, 1] = q[3 * body], q[3 * body + 1]
+        frame[body, 2], frame[body, 3] = 2 * sine * math.cos(half), 2 * sine * sine
+
+
+def frame_of(q: Array) -> Array:
+    """The frame of a pose, shape (n, 4)."""
+    frame = np.empty((len(q) // 3, 4))
+    take_frame(q, frame)
+    return frame
+
+
+@jitable
+def carried(frame: Array, v: Array, a: Array, body: int, x: float, z: float) -> tuple[float, ...]:
+    """Displacement, velocity and acceleration of the point (x, z) of a body, x before z each.
+
+    Args:
+        frame: the pose of all bodies.
+        v, a: their velocity and acceleration.
+        body: which body.
+        x, z: position of the point from the centroid at rest [m].
+    """
+    sine, versine = frame[body, 2], frame[body, 3]
+    moved_x, moved_z = z * sine - x * versine, -x * sine - z * versine  # by the rotation alone
+    from_x, from_z = x + moved_x, z + moved_z
+    i = 3 * body
+    w, turn = v[i + 2], a[i + 2]
+    return (
+        frame[body, 0] + moved_x,
+        frame[body, 1] + moved_z,
+        v[i] + w * from_z,
+        v[i + 1] - w * from_x,
+        a[i] + turn * from_z - w * w * from_x,
+        a[i + 1] - turn * from_x - w * w * from_z,
+    )
+
+
+@jitable
+def direction(points: Points, i: int, frame: Array) -> tuple[float, float]:
+    """The normal of the face that point i meets, turned with the body of the face."""
+    nx, nz, face = points.normal[i, 0], points.normal[i, 1], points.face_body[i]
+    if face < 0:
+        return nx, nz
+    sine, versine = frame[face, 2], frame[face, 3]
+    return nx + nz * sine - nx * versine, nz - nx * sine - nz * versine
+
+
+@jitable
+def gap(points: Points, i: int, frame: Array, v: Array, a: Array) -> tuple[float, float, float]:
+    """Gap between point i and its face [m], its rate [m/s], and the rate of that [m/s2].
+
+    g = n . r with r from the origin of the face to the point and n the normal, which turns with the body of the face.
+    A negative gap is a penetration. The rate is linear in v.
+    """
+    x, z, vx, vz, ax, az = carried(frame, v, a, points.body[i], points.at[i, 0], points.at[i, 1])
+    nx, nz = direction(points, i, frame)
+    rx, rz = points.between[i, 0] + x, points.between[i, 1] + z
+    face = points.face_body[i]
+    if face < 0:
+        return nx * rx + nz * rz, nx * vx + nz * vz, nx * ax + nz * az
+    fx, fz, fvx, fvz, fax, faz = carried(frame, v, a, face, points.face_at[i, 0], points.face_at[i, 1])
+    rx, rz, vx, vz, ax, az = rx - fx, rz - fz, vx - fvx, vz - fvz, ax - fax, az - faz
+    # the normal has the rate w (nz, -nx), and this has the rate turn (nz, -nx) - w^2 (nx, nz)
+    w, turn = v[3 * face + 2], a[3 * face + 2]
+    along, out = nz * rx - nx * rz, nx * rx + nz * rz
+    rate = nx * vx + nz * vz + w * along
+    return out, rate, nx * ax + nz * az + 2 * w * (nz * vx - nx * vz) + turn * along - w * w * out
+
+
+@jitable
+def depth(points: Points, i: int, frame: Array) -> float:
+    """Penetration of point i [m], negative where it is open."""
+    body, face = points.body[i], points.face_body[i]
+    x, z, sine, versine = points.at[i, 0], points.at[i, 1], frame[body, 2], frame[body, 3]
+    rx = points.between[i, 0] + frame[body, 0] + z * sine - x * versine
+    rz = points.between[i, 1] + frame[body, 1] - x * sine - z * versine
+    if face >= 0:
+        x, z, sine, versine = points.face_at[i, 0], points.face_at[i, 1], frame[face, 2], frame[face, 3]
+        rx -= frame[face, 0] + z * sine - x * versine
+        rz -= frame[face, 1] - x * sine - z * versine
+    nx, nz = direction(points, i, frame)
+    return -(nx * rx + nz * rz)
+
+
+@jitable
+def along(points: Points, i: int, frame: Array, v: Array) -> tuple[float, float]:
+    """Position of point i along its face from the origin of the face [m], and the slip of the two bodies there [m/s].
+
+    The slip is taken where MuJoCo lets friction act: halfway between the point and the face.
+    """
+    x, z, vx, vz, _, _ = carried(frame, v, v, points.body[i], points.at[i, 0], points.at[i, 1])
+    nx, nz = direction(points, i, frame)
+    rx, rz = points.between[i, 0] + x, points.between[i, 1] + z
+    turn, face = v[3 * points.body[i] + 2], points.face_body[i]
+    if face >= 0:
+        fx, fz, fvx, fvz, _, _ = carried(frame, v, v, face, points.face_at[i, 0], points.face_at[i, 1])
+        rx, rz, vx, vz = rx - fx, rz - fz, vx - fvx, vz - fvz
+    half = 0.5 * (nx * rx + nz * rz)
+    slip = nz * vx - nx * vz - turn * half
+    if face >= 0:
+        slip -= v[3 * face + 2] * half  # the velocity of the other face at the same place
+    return nz * rx - nx * rz, slip
+
+
+@jitable
+def spring_energy(points: Points, i: int, frame: Array) -> float:
+    """Energy in the spring of point i [J]."""
+    pressed = max(depth(points, i, frame), 0.0)
+    return 0.5 * points.k[i] * pressed * pressed
+
+
+def gaps(points: Points, q: Array) -> Array:
+    """Gap of every point [m] at many poses of shape (steps, 3 n), shape (steps, m)."""
+    found = np.empty((len(q), len(points.k)))
+    _gaps(points, q, np.empty((q.shape[1] // 3, 4)), found)
+    return found
+
+
+@compiled
+def _gaps(points: Points, q: Array, frame: Array, found: Array) -> None:
+    for step in range(len(q)):
+        take_frame(q[step], frame)
+        for i in range(len(points.k)):
+            found[step, i] = -depth(points, i, frame)
+
+
+def energies(points: Points, masses: Array, q: Array, v: Array) -> Array:
+    """Kinetic, potential and elastic energy [J] at many poses, shape (steps, 3).
+
+    The potential energy is that of the weight above the position of rest of the centroids. Masses are the generalised
+    ones, (m, m, I) for each body, shape (3 n,).
+    """
+    found = np.zeros((len(q), 3))
+    _energies(points, masses, q, v, np.empty((q.shape[1] // 3, 4)), found)
+    return found
+
+
+@compiled
+def _energies(points: Points, masses: Array, q: Array, v: Array, frame: Array, found: Array) -> None:
+    for step in range(len(q)):
+        take_frame(q[step], frame)
+        for j in range(len(masses)):
+            found[step, 0] += 0.5 * masses[j] * v[step, j] ** 2
+        for j in range(1, len(masses), 3):
+            found[step, 1] += GRAVITY * masses[j] * q[step, j]
+        for i in range(len(points.k)):
+            found[step, 2] += spring_energy(points, i, frame)

@@ -1,0 +1,118 @@
+"""The engine's own memory: `mj_step` by its address, and the arrays and options of a model that steps change.
+
+The compiled loop calls the functions of MuJoCo's library directly, with the addresses of a model and its data. The
+arrays are the views of MuJoCo's Python bindings. `opt.timestep` and `opt.impratio` have no such view. They are doubles
+that lie 56 and 48 bytes before `opt.gravity`, which has one. This is proved for every model, by writing through the
+bindings and reading at the address, before anything is written there.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+
+from ..problem.quantities import Array
+
+TIMESTEP, IMPRATIO = 0, 1
+"""Places of the two options in `Memory.options`."""
+BEFORE_GRAVITY = 56
+"""Bytes from `opt.timestep` to `opt.gravity` in MuJoCo's mjOption."""
+LIBRARIES = {"linux": "libmujoco.so.*", "darwin": "libmujoco.*.dylib", "win32": "mujoco.dll"}
+"""File names of MuJoCo's library in its Python package, by `sys.platform`."""
+
+
+class Memory(NamedTuple):
+    """What a compiled loop needs of a model and its data.
+
+    Args:
+        step, forward: `mj_step` and `mj_forward`, which take the two addresses.
+        model, data: addresses.
+        options: timestep [s] and impratio [-].
+        pose, velocity, acceleration, applied: of all joints, shape (3 n,).
+        solref, solimp, solreffriction: of all pairs, shapes (m, 2), (m, 5) and (m, 2).
+    """
+
+    step: Any
+    forward: Any
+    model: int
+    data: int
+    options: Array
+    pose: Array
+    velocity: Array
+    acceleration: Array
+    applied: Array
+    solref: Array
+    solimp: Array
+    solreffriction: Array
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
+        """The memory of a model and its data, which have to outlive it.
+
+        Raises:
+            RuntimeError: if the options are not where they should be, or the library is not found.
+        """
+        step, forward = functions()
+        return cls(
+            step,
+            forward,
+            model._address,
+            data._address,
+            _options(model),
+            data.qpos,
+            data.qvel,
+            data.qacc,
+            data.qfrc_applied,
+            model.pair_solref,
+            model.pair_solimp,
+            model.pair_solreffriction,
+        )
+
+
+@cache
+def functions() -> tuple[Any, Any]:
+    """`mj_step` and `mj_forward` of the library that the bindings use.
+
+    Raises:
+        RuntimeError: if the library is not found, or is not the one of the bindings.
+    """
+    folder = Path(mujoco.__file__).parent
+    pattern = LIBRARIES.get(sys.platform, LIBRARIES["linux"])
+    found = sorted(folder.glob(pattern))
+    if len(found) != 1:
+        raise RuntimeError(
+            f"{len(found)} files match {pattern} in {folder}, where the library of MuJoCo {mujoco.__version__} is "
+            "expected; reinstall mujoco"
+        )
+    library = ctypes.CDLL(str(found[0]))
+    library.mj_versionString.restype = ctypes.c_char_p
+    version = library.mj_versionString().decode()
+    if version != mujoco.mj_versionString():
+        raise RuntimeError(f"{found[0]} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
+    for function in (library.mj_step, library.mj_forward):
+        function.argtypes, function.restype = (ctypes.c_void_p, ctypes.c_void_p), None
+    return library.mj_step, library.mj_forward
+
+
+def _options(model: mujoco.MjModel) -> Array:
+    """A view of timestep and impratio in the memory of the model, once it is proved to be one."""
+    address = model.opt.gravity.ctypes.data - BEFORE_GRAVITY
+    view = np.ctypeslib.as_array((ctypes.c_double * 2).from_address(address))
+    before = model.opt.timestep, model.opt.impratio
+    proved = True
+    for probe in ((0.123, 45.6), (7.89e-5, 0.321)):
+        model.opt.timestep, model.opt.impratio = probe
+        proved = proved and (view[TIMESTEP], view[IMPRATIO]) == probe
+    model.opt.timestep, model.opt.impratio = before
+    if not proved:
+        raise RuntimeError(
+            f"MuJoCo {mujoco.__version__} does not keep opt.timestep and opt.impratio where mjrock expects them, "
+            f"{BEFORE_GRAVITY} bytes before opt.gravity; use a version of MuJoCo that mjrock has been tested with"
+        )
+    return view

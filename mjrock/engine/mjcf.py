@@ -1,0 +1,230 @@
+"""The MJCF text of a scene: its bodies and contacts, at full precision.
+
+The text is complete. Stock MuJoCo and its viewer load it, the keyframe `release` sets the bodies at their release, and
+stepping it is the simulation at that fixed step. Contacts are explicit `<pair>` elements between small spheres, centred
+on the contact points, and planes or boxes whose surface lies one radius behind the face. Gap and lever are then those
+of the point at every rotation. (The bodies are raised by the radius instead of lowering the ground, because MuJoCo
+takes a static geom within 1e-6 m of the origin to be at the origin.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from .._version import __version__
+from ..problem.quantities import GRAVITY, Array
+from .contact import set_rows
+from .scene import GROUND, Scene
+
+RADIUS = 1e-6
+"""Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
+surface, which is why it is tiny."""
+
+HEAD = """\
+<mujoco model="rocking wall">
+  <!-- {title}; made by mjrock {version}.
+       SI units and radians; k_n in N/m3, xi a fraction. To repeat `simulate(case, contacts, timestep={h})`, reset to
+       the keyframe `release` and step. Its velocities are those half a step before the release, where MuJoCo's Euler
+       step keeps them. A ground motion is not in this text: it acts through qfrc_applied. Steps that fit the motion are
+       not
+       either: they set timestep, impratio, solref, solimp and solreffriction for each length of step, and shift the
+       velocities by half of its change. -->
+  <compiler angle="radian"/>
+  <option timestep={timestep} gravity={gravity} integrator="Euler" cone="elliptic" impratio={impratio} solver="Newton"
+          iterations="50" tolerance="1e-10">
+    <flag warmstart="disable" island="disable" autoreset="disable"/>
+  </option>
+  <statistic center={center} extent={extent}/>
+  <visual>
+    <global azimuth="110" elevation="-12" offwidth="1280" offheight="960"/>
+    <headlight ambient="0.35 0.35 0.35" diffuse="0.4 0.4 0.4" specular="0 0 0"/>
+  </visual>
+  <default>
+    <geom contype="0" conaffinity="0" group="1"/>
+  </default>
+  <asset>
+    <texture name="sky" type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.62 0.7 0.8" width="16"
+    height="96"/> <texture name="paving" type="2d" builtin="checker" rgb1="0.72 0.72 0.7" rgb2="0.66 0.66 0.64"
+    width="64" height="64"/> <material name="paving" texture="paving" texrepeat="1 1" texuniform="true"/>
+    <material name="brick" rgba="0.7 0.33 0.23 1"/>
+    <material name="plaster" rgba="0.85 0.82 0.76 1"/>{meshes}
+  </asset>
+"""
+
+
+def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, velocity: Array | None = None) -> str:
+    """The model of a scene as MJCF text. The same arguments give the same bytes.
+
+    Names: each body and the geom that shows it; each contact point, its pair and its geom by group and number, such as
+    `base_0`; the face that a group meets by the group; the joints `x`, `z` and `theta` of a single body, or with the
+    name of the body before them; the keyframe `release`; the camera `front`.
+
+    Args:
+        scene: the scene.
+        timestep: MuJoCo's step, on which the contact rows depend [s].
+        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.contact.row`.
+        velocity: velocities of the keyframe, half a step before the release, shape (n, 3). None stands for those of the
+            release itself.
+    """
+    corners = np.concatenate([rest + outline for rest, outline in zip(scene.rest, scene.outlines, strict=True)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
+    rows = pair_rows(scene, timestep, newmark_beta)
+    pose, released = scene.started
+    head = HEAD.format(
+        title=scene.title.replace("--", "- -"),
+        version=__version__,
+        h=repr(float(timestep)),
+        timestep=_value(timestep),
+        gravity=_value((0.0, 0.0, -GRAVITY)),
+        impratio=_value(rows.impratio),
+        center=_value((middle[0], 0.0, middle[1])),
+        extent=_value(2 * half),
+        meshes="".join(f"\n    {mesh}" for mesh in _meshes(scene)),
+    )
+    camera = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
+    key = {"qpos": pose.ravel(), "qvel": (released if velocity is None else velocity).ravel()}
+    body = [
+        "<worldbody>",
+        '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
+        _tag("camera", name="front", pos=camera, xyaxes=(1.0, 0.0, 0.0, 0.0, 0.05, 1.0), fovy="28"),
+        *_world(scene),
+        "</worldbody>",
+        "<contact>",
+        *_pairs(scene, rows),
+        "</contact>",
+        "<custom>",
+        *_records(scene, newmark_beta),
+        "</custom>",
+        "<keyframe>",
+        _tag("key", name="release", **key),
+        "</keyframe>",
+    ]
+    return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
+
+
+class Rows(NamedTuple):
+    """The rows of all pairs at one step, as `set_rows` writes them, and the impratio of the model [-]."""
+
+    solref: Array
+    solimp: Array
+    solreffriction: Array
+    impratio: float
+
+
+def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> Rows:
+    """The rows of a scene at a fixed step."""
+    points, m = scene.points, len(scene.k)
+    solref, solimp, hold = np.zeros((m, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (m, 1)), np.zeros((m, 2))
+    beta, none = np.full(m, newmark_beta), np.zeros(m)
+    impratio = set_rows(points.k, points.c, points.weight, points.held, timestep, beta, none, solref, solimp, hold)
+    return Rows(solref, solimp, hold, impratio)
+
+
+def _world(scene: Scene) -> Iterator[str]:
+    """The faces of the ground, and each body with its faces and its contact points."""
+    radius = RADIUS * max(float(np.abs(outline).max()) for outline in scene.outlines)
+    faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
+    for name in sorted(faces, key=faces.__getitem__):
+        if scene.face_body[faces[name]] == GROUND:
+            yield from _ground(scene, name, radius)
+    for j, (name, rest, outline) in enumerate(zip(scene.names, scene.rest, scene.outlines, strict=True)):
+        mass, (width, height) = scene.mass[j], np.ptp(outline, axis=0)
+        across = [mass * (scene.length**2 + side**2) / 12 for side in (height, width)]
+        prefix = "" if len(scene.names) == 1 else f"{name}_"
+        yield f"  <body name={quoteattr(name)} pos={_value((rest[0], 0.0, rest[1] + radius))}>"
+        yield "    " + _tag("inertial", pos=(0, 0, 0), mass=mass, diaginertia=(across[0], scene.inertia[j], across[1]))
+        for joint, kind, axis in (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0 1 0")):
+            yield "    " + _tag("joint", name=prefix + joint, type=kind, axis=axis)
+        if _is_box(outline):
+            yield "    " + _tag(
+                "geom", name=name, type="box", size=(width / 2, scene.length / 2, height / 2), material="brick"
+            )
+        else:
+            yield "    " + _tag("geom", name=name, type="mesh", mesh=name, material="brick")
+        for face in (face for face, i in faces.items() if scene.face_body[i] == j):
+            yield "    " + _tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face], radius))
+        for i in np.flatnonzero(scene.point_body == j):
+            at = (scene.point[i, 0], 0.0, scene.point[i, 1])
+            yield "    " + _tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
+        yield "  </body>"
+
+
+def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
+    """A face of the ground as a plane. Level ground is seen as paving, any other face as a slab behind it."""
+    i = scene.face_names.index(name)
+    x, z = scene.face[i]
+    nx, nz = scene.normal[i]
+    at = (x - radius * nx, 0.0, z - radius * nz + radius)
+    if nz == 1:
+        yield "  " + _tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
+        return
+    met = np.array([own == name for own in scene.face_names])
+    along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
+    places = along @ np.array([nz, -nx])
+    half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())
+    x, z = x + middle * nz, z - middle * nx
+    size, axis = (half, 0.6 * scene.length, 1.0), (nx, 0.0, nz)
+    yield "  " + _tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")
+    thick = 0.15 * half
+    slab, behind = (half, 0.6 * scene.length, thick), (x - thick * nx, 0.0, z - thick * nz)
+    yield "  " + _tag("geom", name=f"{name}_wall", type="box", size=slab, pos=behind, zaxis=axis, material="plaster")
+
+
+def _plate(scene: Scene, i: int, radius: float) -> dict[str, object]:
+    """The face of a body as a plate that is wider than any slip and thicker than any penetration."""
+    extent = max(float(np.abs(outline).max()) for outline in scene.outlines)
+    x, z = scene.face[i]
+    nx, nz = scene.normal[i]
+    at = (x - (extent + radius) * nx, 0.0, z - (extent + radius) * nz)
+    return {"size": (4 * extent, 0.6 * scene.length, extent), "pos": at, "zaxis": (nx, 0.0, nz)}
+
+
+def _meshes(scene: Scene) -> Iterator[str]:
+    """The bodies that are no boxes, as prisms."""
+    for name, outline in zip(scene.names, scene.outlines, strict=True):
+        if not _is_box(outline):
+            vertices = [(x, y, z) for y in (-scene.length / 2, scene.length / 2) for x, z in outline]
+            yield _tag("mesh", name=name, vertex=np.ravel(vertices))
+
+
+def _is_box(outline: Array) -> bool:
+    half = np.ptp(outline, axis=0) / 2
+    return len(outline) == 4 and bool(np.allclose(np.abs(outline), half, rtol=1e-12))
+
+
+def _pairs(scene: Scene, rows: Rows) -> Iterator[str]:
+    """The contacts."""
+    for i, (point, face) in enumerate(zip(scene.point_names, scene.face_names, strict=True)):
+        mu = scene.friction[i]
+        grip: dict[str, object] = {"condim": "1"}
+        if mu > 0:
+            grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": rows.solreffriction[i]}
+        row = {"solref": rows.solref[i], "solimp": rows.solimp[i]}
+        yield "  " + _tag("pair", name=point, geom1=point, geom2=face, **row, **grip)
+
+
+def _records(scene: Scene, newmark_beta: float) -> Iterator[str]:
+    """What made the model."""
+    for name, value in scene.facts.items():
+        if not isinstance(value, str):
+            yield "  " + _tag("numeric", name=name, data=value)
+    yield "  " + _tag("numeric", name="newmark_beta", data=newmark_beta)
+    for name, text in (*scene.facts.items(), ("mjrock", __version__)):
+        if isinstance(text, str):
+            yield "  " + _tag("text", name=name, data=text)
+
+
+def _value(value: object) -> str:
+    """A quoted attribute: texts as they are, numbers with every digit that tells them from their neighbours."""
+    if isinstance(value, str):
+        return quoteattr(value)
+    return f'"{" ".join(repr(float(number)) for number in np.ravel(np.asarray(value)))}"'
+
+
+def _tag(tag: str, /, **attributes: object) -> str:
+    return f"<{tag} {' '.join(f'{key}={_value(value)}' for key, value in attributes.items())}/>"

@@ -1,0 +1,131 @@
+"""The compiled model of a scene, and its release."""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict, deque
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ..problem.case import Case
+from ..problem.interface import Contacts
+from ..problem.quantities import Array, require_within
+from .contact import planar_weight
+from .memory import Memory
+from .mjcf import Rows, pair_rows, scene_mjcf
+from .scene import Scene
+from .wall import wall_scene
+
+KEPT = 16
+"""Scenes whose compiled models are kept for the next run."""
+
+
+class SimulationError(RuntimeError):
+    """A run broke down: NaN, a warning of the engine, or energy from nowhere. The message says what to change."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """A compiled model, its data, and their memory."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    memory: Memory
+
+    @classmethod
+    def compile(cls, scene: Scene) -> Engine:
+        """Compile the text of a scene, and make sure that MuJoCo weighs its contacts as the text presumes.
+
+        Raises:
+            SimulationError: if MuJoCo weighs a body otherwise, or numbers the contacts otherwise.
+        """
+        return cls.of(mujoco.MjModel.from_xml_string(scene_mjcf(scene, 1e-3)), scene)
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, scene: Scene) -> Engine:
+        """The engine of a model that was compiled from the text of a scene. It raises what `compile` raises."""
+        inverse = planar_weight(scene.mass)
+        for j, name in enumerate(scene.names):
+            weighed = float(model.body_invweight0[j + 1, 0])
+            if not math.isclose(weighed, inverse[j], rel_tol=1e-9):
+                raise SimulationError(
+                    f"MuJoCo {mujoco.__version__} gives the body {name} the inverse weight {weighed:g} 1/kg instead of "
+                    f"{inverse[j]:g} 1/kg: its contact stiffness would not be the one asked for"
+                )
+        if tuple(model.pair(i).name for i in range(model.npair)) != scene.point_names:
+            raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")
+        data = mujoco.MjData(model)
+        return cls(model, data, Memory.of(model, data))
+
+    def follow(self, timestep: float, rows: Rows) -> None:
+        """Set the step and the rows of all contacts."""
+        self.model.opt.timestep, self.model.opt.impratio = timestep, rows.impratio
+        self.memory.solref[:], self.memory.solimp[:] = rows.solref, rows.solimp
+        self.memory.solreffriction[:] = rows.solreffriction
+
+    def release(self, started: tuple[Array, Array]) -> None:
+        """Set pose and velocity, shape (n, 3), the velocity half a step back, where the leapfrog keeps it.
+
+        Before the release the ground is quiet.
+        """
+        model, data = self.model, self.data
+        mujoco.mj_resetData(model, data)
+        pose, velocity = (np.ravel(values) for values in started)
+        data.qpos[:], data.qvel[:] = pose, velocity
+        for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
+            mujoco.mj_forward(model, data)
+            data.qvel[:] = velocity - 0.5 * model.opt.timestep * data.qacc
+
+
+_idle: OrderedDict[str, deque[Engine]] = OrderedDict()
+
+
+@contextmanager
+def engine_of(scene: Scene) -> Iterator[Engine]:
+    """An engine for a scene, taken from those of earlier runs where one is idle. It is kept for the next run.
+
+    Runs of one wall under many motions share the text, the compilation and the data. Two threads never share an engine.
+    """
+    try:
+        engine = _idle[scene.key].pop()
+    except (KeyError, IndexError):
+        engine = Engine.compile(scene)
+    yield engine
+    _idle.setdefault(scene.key, deque(maxlen=4)).append(engine)  # one whose run has failed is not kept
+    while len(_idle) > KEPT:
+        _idle.popitem(last=False)
+
+
+def released_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25) -> str:
+    """The text of a scene whose keyframe has the velocity half a step before the release, as the engine finds it."""
+    with engine_of(scene) as engine:
+        engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
+        engine.release(scene.started)
+        return scene_mjcf(scene, timestep, newmark_beta, engine.data.qvel.reshape(-1, 3))
+
+
+def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: float = 0.25) -> str:
+    """The model of `case` on `contacts` as MJCF text; the same arguments give the same bytes.
+
+    Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, contacts, timestep)`. Names:
+    bodies and geoms `wall`, `base`, `side`; contact points `base_0`, `base_1`, ... from the inner to the outer edge and
+    `side_0`, ... from the bottom to the top; joints `x`, `z`, `theta`; keyframe `release`; camera `front`. Without a
+    side stop there is no side geom and no side pair.
+
+    Args:
+        case: the wall and its release.
+        contacts: the interfaces.
+        timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
+        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.contact`. Rows that MuJoCo
+            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.contact.row`.
+
+    Raises:
+        ValueError: if the contacts do not fit the case, or for a value outside its range.
+    """
+    require_within("timestep", timestep, 1e-9, 1.0, "s")
+    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    return released_mjcf(wall_scene(case, contacts), timestep, newmark_beta)

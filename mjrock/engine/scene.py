@@ -1,0 +1,300 @@
+"""The scene: one flat description of what MuJoCo simulates, for any number of bodies.
+
+Everything lies in a plane, x horizontal and z upwards. At rest no body is turned, so that a vector in the frame of a
+body is the same in the world. Contact points on one body meet plane faces of another body or of the ground. The model
+text, the steps, the energy ledger and the result all follow from this description.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..problem.motion import GroundMotion
+from ..problem.quantities import GRAVITY, Array, Integers
+from .contact import planar_weight
+from .kinematics import Points, energies, frame_of, gap, gaps
+
+GROUND = -1
+"""The face of a contact that belongs to no body."""
+HELD_MASSES = 1e3
+"""Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
+a h / HELD_MASSES."""
+SHAPES: dict[str, tuple[str | int, ...]] = {
+    "mass": ("bodies",),
+    "inertia": ("bodies",),
+    "rest": ("bodies", 2),
+    "point_body": ("points",),
+    "point": ("points", 2),
+    "face_body": ("points",),
+    "face": ("points", 2),
+    "normal": ("points", 2),
+    "k": ("points",),
+    "c": ("points",),
+    "friction": ("points",),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Rigid bodies in a plane, the compliant contacts between them and with the ground, and how they are released.
+
+    Args:
+        names: names of the n bodies.
+        mass: masses [kg], shape (n,).
+        inertia: moments of inertia about the centroids [kg m2], shape (n,).
+        rest: positions of the centroids at rest, the contacts undeformed [m], shape (n, 2).
+        outlines: vertices of each body about its centroid, for pictures [m], n arrays of shape (vertices, 2).
+        length: length out of the plane, for pictures [m].
+        point_body: the body that carries each of the m contact points, shape (m,).
+        point: position of each point from the centroid of its body [m], shape (m, 2).
+        face_body: the body whose face each point meets, or GROUND, shape (m,).
+        face: a point of that face, from the centroid of its body or from the origin of the world [m], shape (m, 2).
+        normal: unit vector out of that face, shape (m, 2).
+        k, c: spring [N/m] and dashpot [N s/m] of each contact, shape (m,).
+        friction: coefficient of friction of each contact, zero for none [-], shape (m,).
+        group: name of the group that each contact belongs to. Its points are numbered in the model, and the ledger has
+            an account for each group.
+        settled: pose of the bodies at rest under their weight, shape (n, 3). None searches for it.
+        release: pose and velocity at the release, shape (n, 3) each. None stands for rest at `settled`.
+        duration: how long to follow the motion [s].
+        motion: acceleration of the ground, or None.
+        title: what the scene is, in words, for the model text.
+        facts: numbers and texts that the model records.
+
+    Raises:
+        ValueError: for an array of another shape, a value that cannot be, or bodies that do not stand.
+    """
+
+    names: tuple[str, ...]
+    mass: Array
+    inertia: Array
+    rest: Array
+    outlines: tuple[Array, ...]
+    length: float
+    point_body: Integers
+    point: Array
+    face_body: Integers
+    face: Array
+    normal: Array
+    k: Array
+    c: Array
+    friction: Array
+    group: tuple[str, ...]
+    settled: Array | None = None
+    release: tuple[Array, Array] | None = None
+    duration: float = 1.0
+    motion: GroundMotion | None = None
+    title: str = "Rigid bodies on compliant contacts"
+    facts: Mapping[str, float | str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        sizes: dict[str | int, int] = {"bodies": len(self.names), "points": len(self.group), 2: 2}
+        for name, shape in SHAPES.items():
+            kind = np.int64 if name.endswith("body") else float
+            values = np.ascontiguousarray(getattr(self, name), dtype=kind)
+            wanted = tuple(sizes[size] for size in shape)
+            if values.shape != wanted:
+                raise ValueError(f"{name} has the shape {values.shape}; {wanted} is needed")
+            if not np.isfinite(values).all():
+                raise ValueError(f"{name} holds a value that is not finite")
+            object.__setattr__(self, name, _frozen(values))
+        for name, low in (("mass", 0.0), ("inertia", 0.0), ("k", 0.0)):
+            if not (getattr(self, name) > low).all():
+                raise ValueError(f"{name} = {getattr(self, name).min():g} is outside the valid range {name} > {low:g}")
+        for name in ("c", "friction"):
+            if not (getattr(self, name) >= 0).all():
+                raise ValueError(
+                    f"{name} = {getattr(self, name).min():g} is outside the valid range, which starts at 0"
+                )
+        bodies = len(self.names)
+        if not ((self.point_body >= 0) & (self.point_body < bodies)).all():
+            raise ValueError(f"point_body is outside the valid range 0 to {bodies - 1}")
+        if not ((self.face_body >= GROUND) & (self.face_body < bodies) & (self.face_body != self.point_body)).all():
+            raise ValueError(f"face_body is another body, 0 to {bodies - 1}, or {GROUND} for the ground")
+        if not np.allclose(np.hypot(*self.normal.T), 1.0):
+            raise ValueError("normal holds a vector that is not of unit length")
+        for name in ("settled", "release"):
+            values = getattr(self, name)
+            if values is not None:
+                values = np.reshape(
+                    np.asarray(values, dtype=float), (-1, bodies, 3) if name == "release" else (bodies, 3)
+                )
+                object.__setattr__(self, name, tuple(values) if name == "release" else _frozen(values))
+
+    @cached_property
+    def weight(self) -> Array:
+        """Sum of MuJoCo's inverse weights of the two bodies of each contact [1/kg], shape (m,)."""
+        inverse = planar_weight(self.mass)
+        return _frozen(inverse[self.point_body] + np.where(self.face_body < 0, 0.0, inverse[self.face_body]))
+
+    @cached_property
+    def point_names(self) -> tuple[str, ...]:
+        """Name of each contact point: its group and its number in it."""
+        numbers: Counter[str] = Counter()
+        names = []
+        for group in self.group:
+            names.append(f"{group}_{numbers[group]}")
+            numbers[group] += 1
+        return tuple(names)
+
+    @cached_property
+    def face_names(self) -> tuple[str, ...]:
+        """Name of the face that each point meets: its group, with a number where the points of a group meet several."""
+        found: dict[tuple[object, ...], str] = {}
+        names = []
+        for group, body, face, normal in zip(self.group, self.face_body, self.face, self.normal, strict=True):
+            mark = (group, int(body), *face.tolist(), *normal.tolist())
+            number = sum(known[0] == group for known in found)
+            names.append(found.setdefault(mark, f"{group}_face_{number}" if number else group))
+        return tuple(names)
+
+    @cached_property
+    def masses(self) -> Array:
+        """Generalised masses: m, m, I of each body, shape (3 n,)."""
+        return _frozen(np.column_stack([self.mass, self.mass, self.inertia]).ravel())
+
+    @cached_property
+    def _points(self) -> Points:
+        """The contacts for the compiled functions, before it is known which of them bear the weight."""
+        of_face = np.where(self.face_body[:, None] < 0, 0.0, self.rest[self.face_body])
+        return Points(
+            body=self.point_body,
+            at=self.point,
+            face_body=self.face_body,
+            face_at=self.face,
+            normal=self.normal,
+            between=_frozen(self.rest[self.point_body] + self.point - of_face - self.face),
+            k=self.k,
+            c=self.c,
+            friction=self.friction,
+            weight=self.weight,
+            held=_frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
+            bears=np.zeros(len(self.k), dtype=np.bool_),
+        )
+
+    @cached_property
+    def points(self) -> Points:
+        """The contacts for the compiled functions."""
+        return self._points._replace(bears=gaps(self._points, _one(self.at_rest))[0] < 0)
+
+    @cached_property
+    def at_rest(self) -> Array:
+        """Pose of the bodies at rest under their weight, shape (n, 3)."""
+        return settle(self) if self.settled is None else self.settled
+
+    @cached_property
+    def started(self) -> tuple[Array, Array]:
+        """Pose and velocity at the release, shape (n, 3) each."""
+        return (self.at_rest, np.zeros_like(self.at_rest)) if self.release is None else self.release
+
+    @cached_property
+    def rest_energies(self) -> Array:
+        """Kinetic, potential and elastic energy of the scene at rest [J], shape (3,)."""
+        rest = _one(self.at_rest)
+        return energies(self._points, self.masses, rest, np.zeros_like(rest))[0]
+
+    def energy(self, pose: Array, velocity: Array) -> Array:
+        """Energy above the scene at rest [J], shape (steps,), for poses and velocities of shape (steps, n, 3)."""
+        flat = (len(pose), -1)
+        parts = energies(self.points, self.masses, np.reshape(pose, flat), np.reshape(velocity, flat))
+        total: Array = parts.sum(axis=1) - self.rest_energies.sum()
+        return total
+
+    @cached_property
+    def release_energy(self) -> float:
+        """Energy at the release above the scene at rest [J]."""
+        pose, velocity = self.started
+        return float(self.energy(np.array([pose]), np.array([velocity]))[0])
+
+    @cached_property
+    def highest_frequency(self) -> float:
+        """The highest natural frequency with every contact closed and free to slide [rad/s].
+
+        No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
+        """
+        rates = self._jacobian(np.zeros(3 * len(self.names))) / np.sqrt(self.masses)
+        return math.sqrt(float(np.linalg.eigvalsh((rates.T * self.k) @ rates)[-1]))
+
+    @cached_property
+    def rocking_frequency(self) -> float:
+        """The largest p = sqrt(m g R / (I + m R^2)) of the bodies, R from the centroid to the farthest point
+        [rad/s]."""
+        R = np.array([np.hypot(*corners.T).max() for corners in self.outlines])
+        return math.sqrt(float(np.max(self.mass * GRAVITY * R / (self.inertia + self.mass * R**2))))
+
+    @cached_property
+    def key(self) -> str:
+        """A digest of all that has to be compiled: everything but what is set anew for every run.
+
+        Springs and dashpots are set with each step, the release with each run, and titles and facts move nothing.
+        """
+        set_anew = {"k", "c", "settled", "release", "duration", "motion", "title", "facts"}
+        digest = hashlib.sha256()
+        for name in (one.name for one in fields(self) if one.name not in set_anew):
+            parts = getattr(self, name) if name == "outlines" else (getattr(self, name),)
+            digest.update(b"".join(p.tobytes() if isinstance(p, np.ndarray) else repr(p).encode() for p in parts))
+        return digest.hexdigest()
+
+    def _jacobian(self, pose: Array) -> Array:
+        """Rates of the gaps for unit velocities at a pose, shape (m, 3 n)."""
+        frame, columns, none = frame_of(pose), np.eye(len(pose)), np.zeros_like(pose)
+        return np.array([[gap(self._points, i, frame, v, none)[1] for v in columns] for i in range(len(self.k))])
+
+
+def _one(pose: Array) -> Array:
+    """A pose as a history of one step, shape (1, 3 n)."""
+    return np.array(pose, dtype=float).reshape(1, -1)
+
+
+def _frozen(values: ArrayLike) -> Array:
+    made = np.array(values)
+    made.setflags(write=False)
+    return made
+
+
+def settle(scene: Scene, iterations: int = 200) -> Array:
+    """The pose in which the springs of the contacts carry the weight, without friction, shape (n, 3).
+
+    Newton's method on the potential energy. Where nothing holds a direction, the bodies stay where they are.
+
+    Raises:
+        ValueError: if no such pose is found near the undeformed one.
+    """
+    weight = np.zeros_like(scene.masses)
+    weight[1::3] = -GRAVITY * scene.masses[1::3]
+    pose = np.zeros_like(weight)
+    closed = np.ones(len(scene.k), dtype=bool)
+    for _ in range(iterations):
+        rates = scene._jacobian(pose)
+        depth = -gaps(scene._points, _one(pose))[0]
+        force = np.where(closed, scene.k * depth, 0.0)
+        residual = weight + rates.T @ force
+        if np.abs(residual).max() < 1e-9 * np.abs(weight).max() and (closed == (depth > 0)).all():
+            return pose.reshape(-1, 3)
+        stiffness = (rates.T * np.where(closed, scene.k, 0.0)) @ rates
+        pose = pose + np.linalg.lstsq(stiffness, residual, rcond=1e-12)[0]
+        closed = gaps(scene._points, _one(pose))[0] < 0
+    raise ValueError(f"the bodies {', '.join(scene.names)} do not stand on their contacts without friction")
+
+
+def lowered(scene: Scene, pose: Array) -> Array:
+    """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3).
+
+    The bodies keep their rotations and their horizontal positions. Only contacts with level ground count.
+    """
+    level = (scene.face_body == GROUND) & (scene.normal[:, 1] > 1 - 1e-12)
+    depth, k = -gaps(scene._points, _one(pose))[0][level], scene.k[level]
+    order = np.argsort(-depth, kind="stable")  # the deepest points are loaded first
+    depth, k = depth[order], k[order]
+    # sum k_i max(0, depth_i - z) = m g for the points down to the i-th
+    levels = (np.cumsum(k * depth) - GRAVITY * scene.mass.sum()) / np.cumsum(k)
+    z = levels[np.flatnonzero(levels >= np.append(depth[1:], -np.inf))[0]]
+    return pose + np.array([0.0, z, 0.0])

@@ -1,0 +1,94 @@
+"""Touches: when a contact closes, and how the step is fitted to it.
+
+A step in which a point would touch, to second order in time, ends half a short step after the touch. The touch is then
+the start of the leapfrog window in which the new contact first acts. Ending the step at the touch itself would apply
+half a step of force too much. A touch that is too faint to matter is ignored.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import jitable
+from ..problem.quantities import Array, Flags
+from .kinematics import Points, depth, gap
+from .pace import Pace
+
+FADED = 0.01
+"""A touch is met with a short step where ignoring it would misplace more than this share of accuracy x energy [-]."""
+
+
+@jitable
+def closure_changed(points: Points, frame: Array, closed: Flags) -> bool:
+    """Whether a contact has opened or closed since `closed` was last brought up to date, which is done here."""
+    changed = False
+    for i in range(len(points.k)):
+        now = depth(points, i, frame) > 0
+        if now != closed[i]:
+            closed[i] = now
+            changed = True
+    return changed
+
+
+@jitable
+def predict(
+    points: Points, frame: Array, v: Array, a: Array, h: float, longest: float, least: float, touch: Array
+) -> float:
+    """Find the touches of a step that matter, and return the time until the first one [s], or infinity.
+
+    A touch that is ignored is noticed up to a step h too late. It then misplaces k (v h)^2 / 4 in the spring and c h
+    v^2 in the dashpot.
+
+    Args:
+        points: the contacts.
+        frame, v, a: pose, velocity and acceleration now.
+        h: the step within which touches count [s].
+        longest: the step by which a touch would be noticed too late [s].
+        least: energy that may be misplaced [J].
+        touch: where the time until the touch [s] and the closing speed [m/s] of each contact are written, shape (m, 2).
+            The time is infinite where a contact is closed, does not touch, or touches too faintly.
+    """
+    first = math.inf
+    for i in range(len(points.k)):
+        touch[i, 0] = math.inf
+        g, g1, g2 = gap(points, i, frame, v, a)
+        if g < 0 or g + h * (g1 + 0.5 * h * g2) > 0:
+            continue
+        closing = math.sqrt(max(0.0, g1 * g1 - 2 * g * g2))
+        if (0.25 * points.k[i] * longest**2 + points.c[i] * longest) * closing**2 > least:
+            touch[i, 0], touch[i, 1] = 2 * g / (closing - g1), closing
+            first = min(first, touch[i, 0])
+    return first
+
+
+@jitable
+def hardest(touch: Array, latest: float) -> float:
+    """Of the touches up to a time, the time of the one with the highest closing speed [s]."""
+    when, fastest = 0.0, -1.0
+    for i in range(len(touch)):
+        if touch[i, 0] <= latest and touch[i, 1] > fastest:
+            when, fastest = touch[i, 0], touch[i, 1]
+    return when
+
+
+@jitable
+def step_to_touch(
+    points: Points, frame: Array, v: Array, a: Array, now: float, h: float, energy: float, pace: Pace, touch: Array
+) -> float:
+    """Length of a step that ends half a short step after the touch that falls within it, or zero if none does [s].
+
+    Of several touches in one short window, the hardest is the start of the window.
+
+    Args:
+        points: the contacts.
+        frame, v, a: pose, velocity and acceleration now.
+        now: the step that is about to be made [s].
+        h: the length of step that the pace allows [s].
+        energy: twice the kinetic energy that an impact is measured by [J].
+        pace: the limits of the steps.
+        touch: room for the touches, shape (m, 2).
+    """
+    first = predict(points, frame, v, a, now, h, FADED * pace.accuracy * energy, touch)
+    if first == math.inf:
+        return 0.0
+    return hardest(touch, first + 0.5 * pace.short) + 0.5 * pace.short

@@ -1,0 +1,111 @@
+"""The scene of a wall: a case and its contacts as one body on a base, with a side stop where the case has one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..problem.block import Block
+from ..problem.case import Case
+from ..problem.interface import Contacts
+from ..problem.quantities import Array
+from .scene import GROUND, Scene, lowered
+
+FREE_FRICTION = 1.0
+"""Friction coefficient of the edges of a wall without a side stop on two lines [-]. On a bed of n lines it is n/2 times
+that, because an edge carries so much less. It holds any wall in free rocking, whose base is pushed with at most
+(3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of its load. It is no larger, because two edges that both stick while the
+wall turns over do work against each other. With mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a third too much."""
+HELD_FRICTION = 30.0
+"""Friction coefficient of the outer edge of a wall with a side stop [-]. This edge must not slip when the side impact
+pushes the hardly loaded base. On the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on
+nothing changes (`scripts/friction.py`). The inner edge takes as much of it as SELF_WORK allows."""
+SELF_WORK = 1e-4
+"""Most work that two sticking edges may do against each other in an impact, over the energy of a release at alpha/2."""
+
+
+def inner_friction(wall: Block, contacts: Contacts) -> float:
+    """Friction coefficient of the inner edge of a wall with a side stop [-], 1 to HELD_FRICTION.
+
+    While both edges are loaded, up to the uplift rotation theta_u, they slide against each other by b theta_u^2. This
+    takes the energy mu m g b theta_u^2. A release at alpha/2 has about (3/8) m g b alpha. On a stiff base the share is
+    negligible, and the inner edge has to hold where a soft side stop lets the wall lean on it. On a soft base the wall
+    never leans on it.
+    """
+    allowed = SELF_WORK * 0.375 * wall.alpha / contacts.uplift_rotation(wall) ** 2
+    return min(max(allowed, FREE_FRICTION), HELD_FRICTION)
+
+
+def base_friction(case: Case, contacts: Contacts) -> Array:
+    """Friction coefficients of the lines of the base [-], shape (points,).
+
+    Friction acts at the two edges alone. A bed of which every line sticks would lock the rotation that shears it.
+    """
+    points = contacts.base.points
+    friction = np.zeros(points)
+    if case.side_stop:
+        friction[0], friction[-1] = inner_friction(case.block, contacts), HELD_FRICTION
+    else:
+        friction[0] = friction[-1] = FREE_FRICTION * points / 2
+    return friction
+
+
+def wall_scene(case: Case, contacts: Contacts) -> Scene:
+    """The scene of a case on its contacts.
+
+    The wall is released tilted about its toe, on a base that is compressed until it carries the weight. A wall set down
+    on undeformed springs would fall by m g / k and bounce. It would lose in its base an energy of the order of what an
+    impact is measured by, 1 % of the release energy on the paper's wall.
+
+    The body is `wall`. The groups of contacts are `base`, from the inner to the outer edge, and `side`, from the bottom
+    to the top.
+
+    Raises:
+        ValueError: if the contacts do not fit the case.
+    """
+    wall = case.block
+    contacts.require_fit(wall, side_stop=case.side_stop)
+    base, b, h = contacts.base, wall.b, wall.h
+    places = [(x, -h) for x in base.positions]
+    faces, normals, groups = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, ["base"] * base.points
+    k, c, friction = base.stiffness, base.damping, base_friction(case, contacts)
+    facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
+    if case.side_stop:
+        side = contacts.side
+        assert side is not None
+        places += [(-b, z) for z in side.positions]
+        faces, normals = faces + [(-b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
+        groups += ["side"] * side.points
+        k, c = np.concatenate([k, side.stiffness]), np.concatenate([c, side.damping])
+        friction = np.concatenate([friction, np.zeros(side.points)])
+        facts |= {"k_n_side": side.k_n, "xi_side": side.xi}
+    facts |= {"reference_frequency": base.frequency, "law": contacts.law}
+    count = len(places)
+    scene = Scene(
+        names=("wall",),
+        mass=np.array([wall.mass]),
+        inertia=np.array([wall.inertia]),
+        rest=np.array([[0.0, h]]),
+        outlines=(np.array([(-b, -h), (b, -h), (b, h), (-b, h)]),),
+        length=wall.length,
+        point_body=np.zeros(count, dtype=np.int64),
+        point=np.array(places),
+        face_body=np.full(count, GROUND),
+        face=np.array(faces),
+        normal=np.array(normals),
+        k=k,
+        c=c,
+        friction=friction,
+        group=tuple(groups),
+        settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]),
+        duration=case.duration,
+        motion=case.motion,
+        title=(
+            f"A masonry wall, {2 * b:g} m thick, {2 * h:g} m high, {wall.length:g} m long, {wall.density:g} kg/m3, "
+            f"rocking {'against a side stop' if case.side_stop else 'on both edges'}"
+        ),
+        facts=facts,
+    )
+    tilted = lowered(scene, wall.pose(np.array([case.theta0])))
+    return replace(scene, release=(tilted, case.omega0 * wall.turning(case.theta0, case.direction)[None]))

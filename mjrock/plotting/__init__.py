@@ -1,0 +1,33 @@
+"""Pictures: functions that draw on an Axes and return it. The only package that imports matplotlib."""
+
+from .accuracy import convergence, work_precision
+from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
+from .histories import comparison, energy, grid, rotation
+from .laws import damping_curves, obtained, parity, residuals, sensitivity
+from .style import STYLES, Drawing, panels, save, single
+
+__all__ = [
+    "MODES",
+    "STYLES",
+    "Drawing",
+    "comparison",
+    "convergence",
+    "damping_curves",
+    "distributions",
+    "energy",
+    "fragility",
+    "grid",
+    "incremental",
+    "mode_legend",
+    "obtained",
+    "overturning_map",
+    "pairs",
+    "panels",
+    "parity",
+    "residuals",
+    "rotation",
+    "save",
+    "sensitivity",
+    "single",
+    "work_precision",
+]

@@ -1,0 +1,102 @@
+"""Pictures of earthquake studies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import ArrayLike
+
+from ..study.fragility import Fragility
+from .style import STYLES
+
+MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
+"""How a wall takes a pulse, and colours that a black-and-white print still tells apart."""
+
+
+def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: ArrayLike) -> Axes:
+    """Overturning spectrum of a pulse: `mode` (an index into MODES) over frequency and amplitude, shape (n_a, n_f)."""
+    colours = ListedColormap(list(MODES.values()))
+    ax.pcolormesh(frequency, amplitude, mode, cmap=colours, vmin=-0.5, vmax=len(MODES) - 0.5, rasterized=True)
+    ax.set_xlabel(r"frequency $\omega_p/p$ [-]")
+    ax.set_ylabel(r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
+    return ax
+
+
+def mode_legend(figure: Figure) -> None:
+    """What the colours of `overturning_map` stand for, below the figure."""
+    handles = [Patch(facecolor=colour, edgecolor="0.4", linewidth=0.5, label=name) for name, colour in MODES.items()]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9)
+
+
+def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, top: float = 1.2) -> Axes:
+    """Incremental dynamic analysis: peak rotation against intensity, a line a motion, with its 16, 50, 84 % fractiles.
+
+    `peaks` are multiples of alpha, shape (motions, intensities); infinity stands for overturning, drawn at `top`.
+    """
+    levels, values = np.asarray(intensity, dtype=float), np.asarray(peaks, dtype=float)
+    shown = np.minimum(values, top)
+    ax.plot(levels, shown.T, color="0.75", linewidth=0.6)
+    fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
+    for line, style, label in zip(fractiles, (":", "-", "--"), ("16 %", "median", "84 %"), strict=True):
+        ax.plot(levels, line, color="#12406b", linewidth=1.8, linestyle=style, label=label)
+    ax.set_ylim(0, 1.03 * top)
+    ax.axhline(1, color="0.3", linewidth=0.6)
+    ax.set_xlim(0, levels.max())
+    ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
+    ax.set_xlabel("peak ground acceleration [g]")
+    ax.set_ylabel(r"peak rotation $\theta_{max}/\alpha$ [-]")
+    return ax
+
+
+def fragility(ax: Axes, fit: Fragility, levels: ArrayLike, shares: ArrayLike, solver: str, marker: str) -> Axes:
+    """A fragility curve with its 90 % band, and the share overturned at each level."""
+    style = STYLES.get(solver, {})
+    colour = style.get("color", "C0")
+    points = np.asarray(levels, dtype=float)
+    x = np.linspace(0.02 * points.max(), points.max(), 300)
+    low, high = fit.band(x)
+    ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
+    ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8)
+    label = f"{style.get('label', solver)}: {fit.median:.2f} g, {fit.dispersion:.2f}"
+    ax.plot(points, shares, marker=marker, linestyle="", color=colour, markersize=5, label=label)
+    ax.set_xlim(0, points.max())
+    ax.set_ylim(-0.02, 1.02)
+    ax.set_xlabel("peak ground acceleration [g]")
+    ax.set_ylabel("share of walls overturned [-]")
+    return ax
+
+
+def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-3, most: float = 1.0) -> Axes:
+    """Share of runs whose peak rotation stays below a value, a line a solver; overturned runs lie beyond `most`."""
+    for solver, values in samples.items():
+        style = {k: v for k, v in STYLES.get(solver, {"label": solver}).items() if k != "linestyle"}
+        ordered = np.sort(np.clip(np.asarray(values, dtype=float), least, 10 * most))
+        ax.step(ordered, np.arange(1, len(ordered) + 1) / len(ordered), where="post", **style)
+    ax.set_xscale("log")
+    ax.set_xlim(least, most)
+    ax.set_ylim(0, 1)
+    ax.set_xlabel(r"peak rotation $\theta_{max}/\alpha$ [-]")
+    ax.set_ylabel("share of runs below it [-]")
+    return ax
+
+
+def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[float, float]) -> Axes:
+    """Peak rotations of the same cases in two ways, on logarithmic axes; what falls lies on the upper edge.
+
+    `values` are multiples of alpha, shape (n, 2).
+    """
+    low, high = limits
+    a, b = np.clip(np.asarray(values, dtype=float), low, high).T
+    ax.plot([low, high], [low, high], color="0.6", linewidth=0.8)
+    ax.loglog(a, b, linestyle="", marker="o", markersize=3.5, markeredgewidth=0, alpha=0.55, color="#12406b")
+    ax.set_xlim(0.8 * low, 1.25 * high)
+    ax.set_ylim(0.8 * low, 1.25 * high)
+    ax.set_aspect("equal")
+    ax.set_xlabel(rf"$\theta_{{max}}/\alpha$, {names[0]} [-]")
+    ax.set_ylabel(rf"$\theta_{{max}}/\alpha$, {names[1]} [-]")
+    return ax

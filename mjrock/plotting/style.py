@@ -1,0 +1,52 @@
+"""How the lines of the solvers look, and how figures are laid out and saved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..result.response import Response
+
+STYLES: dict[str, dict[str, Any]] = {
+    "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
+    "MuJoCo": {"label": "MuJoCo", "color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
+    "compliant": {"label": "contact law, SciPy", "color": "#12406b", "linestyle": ":", "linewidth": 1.5, "zorder": 3},
+}
+"""Lines that a black-and-white print still tells apart."""
+
+Drawing = Callable[[Axes], Axes]
+"""What a panel needs."""
+
+
+def style_of(response: Response) -> dict[str, Any]:
+    """The line style of the solver of a response."""
+    return STYLES.get(response.solver, {"label": response.solver})
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes)."""
+    figure.savefig(path, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
+    return path
+
+
+def single(draw: Callable[[Axes], Axes], size: tuple[float, float] = (5.2, 3.6)) -> Figure:
+    """A figure with one Axes, drawn by `draw`."""
+    figure = Figure(figsize=size, layout="constrained")
+    draw(figure.subplots())
+    return figure
+
+
+def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
+    """Several drawings, each on an Axes of its own under its title."""
+    rows = -(-len(drawings) // columns)
+    figure = Figure(figsize=(4.4 * columns, 3.4 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
+        draw(ax).set_title(title, fontsize=10)
+    for ax in axes.flat[len(drawings) :]:
+        ax.set_visible(False)
+    return figure

@@ -1,0 +1,158 @@
+"""Two responses to one case, side by side: the motion, and the energy lost at each impact."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..problem.quantities import Array
+from .response import Outcome, Response
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What distinguishes `candidate` from `reference`. Rebounds are counted from 1; NaN where one has fewer.
+
+    Args:
+        reference, candidate: the responses.
+        rms: root mean square of the difference of theta/alpha over the time that both cover [-].
+    """
+
+    reference: Response
+    candidate: Response
+    rms: float
+
+    @property
+    def restitution(self) -> Array:
+        """|e| per rebound, reference and candidate [-], shape (n, 2)."""
+        return _columns(self.reference.restitution, self.candidate.restitution)
+
+    @property
+    def energy_loss(self) -> Array:
+        """Energy lost per impact, reference and candidate [J], shape (n, 2)."""
+        return _columns(*([i.energy_loss for i in r.impacts] for r in (self.reference, self.candidate)))
+
+    @property
+    def energy_share(self) -> Array:
+        """`energy_loss` as a share of the energy of release [-], shape (n, 2)."""
+        released = self.reference.case.release_energy
+        return self.energy_loss / (released if released > 0 else math.nan)
+
+    @property
+    def impact_times(self) -> Array:
+        """Times of the impacts [s], shape (n, 2)."""
+        return _columns(*([i.t for i in r.impacts] for r in (self.reference, self.candidate)))
+
+    @property
+    def rebound_peaks(self) -> Array:
+        """Rotation maxima after each impact as shares of alpha [-], shape (n, 2)."""
+        alpha = self.reference.case.block.alpha
+        skip = 0 if self.reference.case.released_outwards else 1
+        return _columns(*(r.peaks[skip:] / alpha for r in (self.reference, self.candidate)))
+
+    @property
+    def first_rebound_peak(self) -> tuple[float, float]:
+        """The first rotation maximum after an impact as a share of alpha, reference and candidate [-]."""
+        return _first(self.rebound_peaks)
+
+    @property
+    def first_impact_time(self) -> tuple[float, float]:
+        """Time of the first impact, reference and candidate [s]."""
+        return _first(self.impact_times)
+
+    @property
+    def outcomes(self) -> tuple[Outcome, Outcome]:
+        """How the reference and the candidate ended."""
+        return self.reference.outcome, self.candidate.outcome
+
+    def rows(self) -> list[dict[str, float]]:
+        """One row an impact, for a table or a CSV file; names carry their units."""
+        columns = {
+            "impact time": ("s", self.impact_times),
+            "restitution": ("-", self.restitution),
+            "rebound peak": ("theta/alpha", self.rebound_peaks),
+            "energy loss": ("J", self.energy_loss),
+            "energy loss share": ("of release", self.energy_share),
+        }
+        solvers = _labels(self.reference, self.candidate)
+        count = max(len(values) for _, values in columns.values())
+        return [
+            {"impact": i + 1}
+            | {
+                f"{name}, {solver} [{unit}]": float(values[i, j]) if i < len(values) else math.nan
+                for name, (unit, values) in columns.items()
+                for j, solver in enumerate(solvers)
+            }
+            for i in range(count)
+        ]
+
+    def csv(self) -> str:
+        """The rows as CSV text."""
+        rows = self.rows()
+        if not rows:
+            return "impact\n"
+        text = io.StringIO()
+        writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+        return text.getvalue()
+
+    def table(self, most: int = 6) -> str:
+        """The first `most` impacts and the totals as text, for a terminal."""
+        labels = _labels(self.reference, self.candidate)
+        columns = (
+            ("time [s]", self.impact_times, "10.4f"),
+            ("restitution [-]", self.restitution, "10.4f"),
+            ("peak [theta/alpha]", self.rebound_peaks, "10.5f"),
+            ("energy loss [J]", self.energy_loss, "10.2f"),
+            ("loss / release", self.energy_share, "10.2%"),
+        )
+        pair = " ".join(f"{label[:10]:>10}" for label in labels)
+        lines = [
+            f"{'':>6} |" + "|".join(f"{name:^21}" for name, _, _ in columns),
+            f"{'impact':>6} |" + "|".join([pair] * len(columns)),
+        ]
+        for i in range(min(most, max(len(values) for _, values, _ in columns))):
+            row = [(values[i] if i < len(values) else (math.nan,) * 2, form) for _, values, form in columns]
+            cells = (" ".join(f"{'-':>10}" if math.isnan(v) else f"{v:{form}}" for v in pair) for pair, form in row)
+            lines.append(f"{i + 1:>6} |" + "|".join(cells))
+        lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
+        for label, response in zip(labels, (self.reference, self.candidate), strict=True):
+            lines.append(f"{label}: {response.message}")
+        return "\n".join(lines)
+
+
+def compare(reference: Response, candidate: Response) -> Comparison:
+    """Set two responses to the same case side by side.
+
+    The difference is taken at the reference's samples, the candidate interpolated linearly, over the time both cover.
+
+    Raises:
+        ValueError: if the responses answer different cases.
+    """
+    if reference.case != candidate.case:
+        raise ValueError(f"the responses answer different cases: {reference.case} and {candidate.case}")
+    common = reference.t <= min(reference.t[-1], candidate.t[-1]) * (1 + 1e-12)
+    difference = np.interp(reference.t[common], candidate.t, candidate.theta) - reference.theta[common]
+    rms = float(np.sqrt(np.mean(difference**2))) / reference.case.block.alpha
+    return Comparison(reference, candidate, rms)
+
+
+def _columns(left: Array | list[float], right: Array | list[float]) -> Array:
+    table = np.full((max(len(left), len(right)), 2), np.nan)
+    table[: len(left), 0], table[: len(right), 1] = left, right
+    return table
+
+
+def _first(table: Array) -> tuple[float, float]:
+    return (float(table[0, 0]), float(table[0, 1])) if len(table) else (math.nan, math.nan)
+
+
+def _labels(reference: Response, candidate: Response) -> tuple[str, str]:
+    if reference.solver == candidate.solver:
+        return f"{reference.solver} 1", f"{candidate.solver} 2"
+    return reference.solver, candidate.solver

@@ -1,0 +1,73 @@
+"""The energy ledger of a run: where its energy is, what took energy from it, and what does not add up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..problem.quantities import Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ledger:
+    """Energies [J] over time, each of shape (n,).
+
+    Args:
+        t: times [s].
+        kinetic: kinetic energy of all bodies.
+        potential: of their weight, above the undeformed contacts.
+        elastic: in the springs of the contacts.
+        dashpots: work that the dashpots have taken since the release, by group of contacts: "base" and "side" of a
+            wall.
+        friction: work that friction has taken since the release.
+        ground: work that the ground motion has put in, as seen from the base.
+    """
+
+    t: Array
+    kinetic: Array
+    potential: Array
+    elastic: Array
+    dashpots: Mapping[str, Array]
+    friction: Array
+    ground: Array
+
+    @property
+    def held(self) -> Array:
+        """Kinetic, potential and elastic energy [J], shape (n,)."""
+        return self.kinetic + self.potential + self.elastic
+
+    @property
+    def residual(self) -> Array:
+        """Energy that is there or was taken, less the energy at the release and the work of the ground [J], shape (n,).
+
+        It is zero for an exact integration. A positive residual is energy that nothing has put in.
+        """
+        gone = sum(self.dashpots.values(), self.friction) - self.ground
+        residual: Array = self.held - self.held[0] + gone
+        return residual
+
+    def at(self, t: Array) -> Ledger:
+        """The ledger at other times, interpolated."""
+
+        def then(account: Array) -> Array:
+            return np.interp(t, self.t, account)
+
+        return Ledger(
+            t,
+            then(self.kinetic),
+            then(self.potential),
+            then(self.elastic),
+            {group: then(account) for group, account in self.dashpots.items()},
+            then(self.friction),
+            then(self.ground),
+        )
+
+    def __repr__(self) -> str:
+        taken = ", ".join(f"{group} dashpots {account[-1]:.4g}" for group, account in self.dashpots.items())
+        return (
+            f"<Ledger over {self.t[-1]:.4g} s [J]: at the end held {self.held[-1]:.4g}, taken by {taken}, "
+            f"friction {self.friction[-1]:.4g}, put in by the ground {self.ground[-1]:.4g}, "
+            f"largest residual {np.abs(self.residual).max():.3g}>"
+        )

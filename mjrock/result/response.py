@@ -1,0 +1,146 @@
+"""What a solver returns: the motion, its impacts and rotation peaks, and how it ended."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..problem.case import Case
+from ..problem.quantities import Array
+from .history import Impact, peak_energies, restitution_of
+from .ledger import Ledger
+
+State = tuple[Array, Array]
+"""Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3)."""
+
+
+class Outcome(enum.Enum):
+    """How a run ended."""
+
+    AT_REST = "at rest"
+    OVERTURNED = "overturned"
+    TIME_ENDED = "time ended"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Response:
+    """The motion that a solver found.
+
+    Two responses are equal if they have the same case, solver, samples, impacts and outcome.
+
+    Args:
+        case: what was asked.
+        solver: which solver answered.
+        t: times [s], shape (n,).
+        theta: rotation [rad], shape (n,).
+        omega: angular velocity [rad/s], shape (n,).
+        impacts: the impacts in order.
+        peaks: rotation maxima |theta| [rad], the release first, shape (m,).
+        outcome: how the run ended.
+        message: the same in words, for the user.
+        compliant: energy [J], shape (n,), and pose, shape (n, bodies, 3), where contacts are compliant. None for the
+            rigid wall of rocking theory, whose energy and pose follow from its rotation.
+        ledger: every part of the energy, or None where none was asked for.
+        stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s]. MuJoCo adds the deepest
+            penetration of each group of contacts, such as `deepest_base`, and the `base_displacement` at the end [m].
+        end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
+    """
+
+    case: Case
+    solver: str
+    t: Array
+    theta: Array
+    omega: Array
+    impacts: tuple[Impact, ...]
+    peaks: Array
+    outcome: Outcome
+    message: str
+    compliant: tuple[Array, Array] | None = None
+    ledger: Ledger | None = None
+    stats: dict[str, Any] = field(default_factory=dict)
+    end: State | None = None
+
+    @cached_property
+    def energy(self) -> Array:
+        """Kinetic, potential and, where contacts are compliant, elastic energy above the wall at rest [J], shape
+        (n,)."""
+        if self.compliant is not None:
+            return self.compliant[0]
+        wall = self.case.block
+        energy: Array = wall.potential_energy(self.theta) + 0.5 * wall.toe_inertia * self.omega**2
+        return energy
+
+    @cached_property
+    def pose(self) -> Array:
+        """Displacement x, z of each centroid from rest [m] and its rotation theta [rad], shape (n, bodies, 3).
+
+        x points away from the side stop, z upwards. A wall is one body.
+        """
+        return self.case.block.pose(self.theta)[:, None] if self.compliant is None else self.compliant[1]
+
+    @property
+    def energy_residual(self) -> Array | None:
+        """Closure error of the energy ledger [J], shape (n,), or None where none was asked for."""
+        return None if self.ledger is None else self.ledger.residual
+
+    @property
+    def restitution(self) -> Array:
+        """|e| of each rebound, from successive peaks [-], shape (m - 1,).
+
+        e_n = sqrt(V_(n+1) / V_n), with V the potential energy of the rigid wall at a rotation peak, or its whole energy
+        at the release. Every solver is measured with this one rule. It is exact for a rigid wall, and it does not count
+        the energy that a compliant base stores under a pivoting wall as a loss. On a shaken base the ground does work
+        between two peaks. There |e| is that of the impacts, shape (len(impacts),).
+        """
+        if self.case.motion is not None:
+            return np.array([impact.restitution for impact in self.impacts])
+        return restitution_of(peak_energies(self.case, self.peaks))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Response):
+            return NotImplemented
+        same = ("case", "solver", "impacts", "outcome")
+        samples = ("t", "theta", "omega", "peaks", "energy", "pose")
+        return all(getattr(self, name) == getattr(other, name) for name in same) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in samples
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        largest = float(np.abs(self.theta).max()) / self.case.block.alpha
+        return (
+            f"<Response of {self.solver}: {len(self.t)} samples over {self.t[-1]:.4g} s, {len(self.impacts)} impacts, "
+            f"largest rotation {largest:.3g} alpha, {self.outcome.value}>"
+        )
+
+
+def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:
+    """How a run on compliant contacts ended, and the same in words.
+
+    The wall is at rest when its energy above the settled wall no longer lifts an edge off the base. It has overturned
+    when it lies on its face or ends beyond alpha, where its weight no longer brings it back.
+    """
+    if abs(theta[-1]) > case.block.alpha:
+        outcome = Outcome.OVERTURNED
+    elif energy[-1] < uplift_energy:
+        outcome = Outcome.AT_REST
+    else:
+        outcome = Outcome.TIME_ENDED
+    return outcome, describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+
+
+def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
+    """The ending in words."""
+    share = abs(theta_end) / case.block.alpha
+    match outcome:
+        case Outcome.AT_REST:
+            return f"The wall came to rest; last looked at {t_end:.4g} s."
+        case Outcome.OVERTURNED:
+            return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
+        case Outcome.TIME_ENDED:
+            return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."

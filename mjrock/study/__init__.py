@@ -1,0 +1,1 @@
+"""Many answers: campaigns and their store, fragility, and the calibration of damping laws."""

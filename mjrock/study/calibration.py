@@ -1,0 +1,157 @@
+"""Calibration of a damping law in the engine: the flowchart of the paper's Figure 2.
+
+For each combination of wall, stiffness and release, and for each restitution that is asked for, a search finds the
+damping ratio whose simulation is closest to the analytical response (`mjrock.study.match`): first two-sided for the
+base, then one-sided for the side with the damping of the base presumed. The matched pairs are regressed on the
+dimensionless groups of `mjrock.problem.forms` (`mjrock.study.regression`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..problem.damping import HIGHEST, LEAST, DampingLaw
+from ..problem.forms import BedLaw, CornerLaw, Form, Groups, SideLaw
+from ..problem.restitution import Restitution
+from .campaign import completed
+from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
+from .regression import Regression, regress
+from .task import VERSION, Row
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a calibration matches.
+
+    Args:
+        base_count, side_count: combinations for the base and for the side.
+        losses: base losses -ln e_2s in multiples of Eq. 2's; e is varied independently of the slenderness.
+        side_losses: the same, for which the side is matched.
+        sides: restitutions |e_side| asked of the side.
+        seed: of the combinations.
+    """
+
+    base_count: int = 160
+    side_count: int = 240
+    losses: tuple[float, ...] = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0)
+    side_losses: tuple[float, ...] = (0.8, 1.0, 1.25)
+    sides: tuple[float, ...] = (0.2, 0.3, 0.4, 0.5, 0.6)
+    seed: int = 1
+
+    def base_tasks(self, points: int, **options: Any) -> list[Match]:
+        """Two-sided matches; `options` are those of `Match`."""
+        return [
+            Match(one, Restitution(_housner(one) ** share, -0.5), points, **options)
+            for one in combinations(self.base_count, self.seed)
+            for share in self.losses
+        ]
+
+    def side_tasks(self, points: int, base: Form, **options: Any) -> list[Match]:
+        """One-sided matches, presuming the damping of the base that `base` predicts; `options` are those of `Match`.
+
+        The losses of the base are varied where they can be; elsewhere they are those of Eq. 2.
+        """
+        tasks = []
+        for i, one in enumerate(combinations(self.side_count, self.seed + 1)):
+            e_base = _housner(one) ** self.side_losses[i % len(self.side_losses)]
+            if not LEAST < _base_damping(one, Restitution(e_base, -0.5), base) < HIGHEST:
+                e_base = _housner(one)
+            for side in self.sides:
+                e = Restitution(e_base, -side)
+                tasks.append(Match(one, e, points, presumed_damping(one, e, base), **options))
+        return tasks
+
+
+def _housner(one: Combination) -> float:
+    return Restitution.from_geometry(one.wall.alpha).base
+
+
+def _base_damping(one: Combination, e: Restitution, base: Form) -> float:
+    groups = Groups.of(one.wall, e, one.k_base, one.k_side, one.amplitude)
+    return float(base.xi(groups, groups.base_loss))
+
+
+def presumed_damping(one: Combination, e: Restitution, base: Form) -> float:
+    """The damping ratio of the base that a one-sided match presumes [-], to six digits."""
+    return float(f"{min(max(_base_damping(one, e, base), LEAST), HIGHEST):.6g}")
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A fitted law and what it was fitted to.
+
+    Args:
+        law: the law.
+        base, side: its regressions.
+        base_tasks, base_rows: every search for the base, reached or not.
+        side_tasks, side_rows: the same for the side.
+    """
+
+    law: DampingLaw
+    base: Regression
+    side: Regression
+    base_tasks: list[Match]
+    base_rows: list[Row]
+    side_tasks: list[Match]
+    side_rows: list[Row]
+
+
+def calibrate(
+    name: str,
+    store: str | Path,
+    *,
+    points: int = 2,
+    plan: Plan | None = None,
+    measure: str = "restitution",
+    **options: Any,
+) -> Calibration:
+    """Calibrate a law for one contact layout: base two-sided, then side one-sided.
+
+    Args:
+        name: the name of the law.
+        store: the campaign's file, from which a killed calibration carries on.
+        points: contact lines a face; 2 are fitted with `CornerLaw`, more with `BedLaw`.
+        plan: what is matched, `Plan()` by default.
+        measure: see `Match`.
+        options: `executor` and `workers` of `campaign`, `accuracy` of `Match`.
+
+    Raises:
+        ValueError, OSError, RuntimeError: as `completed` and `regress`.
+    """
+    plan = plan or Plan()
+    accuracy = options.pop("accuracy", 1e-4)
+    base_tasks = plan.base_tasks(points, measure=measure, accuracy=accuracy)
+    base_rows = completed(base_tasks, store, **options)
+    base = regress(CornerLaw if points == 2 else BedLaw, base_tasks, base_rows)
+    side_tasks = plan.side_tasks(points, base.form, measure=measure, accuracy=accuracy)
+    side_rows = completed(side_tasks, store, **options)
+    side = regress(SideLaw, side_tasks, side_rows)
+    law = DampingLaw(
+        name=name,
+        source=f"mjrock.calibration over Table 1 of the paper, {points} contact lines a face, {VERSION}; "
+        "scripts/calibrate.py makes it",
+        base=base.form,
+        side=side.form,
+        R_range=R_RANGE,
+        slenderness_range=SLENDERNESS_RANGE,
+        k_n_range=K_N_RANGE,
+        side_range=(min(plan.sides), max(plan.sides)),
+        points=points,
+        scalable=True,
+        runs=(len(base.xi), len(side.xi)),
+        errors={"base": base.errors, "side": side.errors},
+    )
+    return Calibration(law, base, side, base_tasks, base_rows, side_tasks, side_rows)
+
+
+def sweep(start: Combination, count: int = 5) -> list[tuple[str, Combination]]:
+    """Combinations that differ from `start` in one parameter, which goes through its range of Table 1."""
+    swept: list[tuple[str, Combination]] = []
+    ranges = {"R": R_RANGE, "slenderness": SLENDERNESS_RANGE, "k_base": K_N_RANGE, "k_side": K_N_RANGE}
+    for name, (low, high) in (ranges | {"amplitude": AMPLITUDE_RANGE}).items():
+        swept += [(name, replace(start, **{name: float(value)})) for value in np.geomspace(low, high, count)]
+    return swept

@@ -1,0 +1,74 @@
+"""Every combination of some axes, as the tasks of a campaign."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from .task import Row
+
+
+class Grid(Sequence[Any]):
+    """Every combination of the axes, made only when it is asked for, with the axes as labels.
+
+    Args:
+        build: makes the task of a point, `build(slenderness=7, scale=0.5)`.
+        axes: the values of each axis; the last one varies fastest.
+    """
+
+    def __init__(self, build: Callable[..., Any], **axes: Iterable[object]) -> None:
+        self.build = build
+        self.axes = {name: list(values) for name, values in axes.items()}
+        for name, values in self.axes.items():
+            if not values:
+                raise ValueError(f"the axis {name} has no values")
+
+    def __len__(self) -> int:
+        """How many points there are."""
+        return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
+
+    def __iter__(self) -> Iterator[Any]:
+        """The tasks in order; a point whose values `build` refuses becomes a task that fails with what it said."""
+        for i in range(len(self)):
+            try:
+                yield self[i]
+            except ValueError as error:
+                yield Refused(str(error), self._labels(self._point(i)))
+
+    def __getitem__(self, index: Any) -> Any:
+        """The task of one point, or a list of them for a slice."""
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        point = self._point(range(len(self))[index])
+        try:
+            task = self.build(**point)
+        except ValueError as error:
+            shown = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
+            raise ValueError(f"{error} (at {shown})") from error
+        return replace(task, labels=self._labels(point) | dict(task.labels))
+
+    def _point(self, index: int) -> dict[str, Any]:
+        places = np.unravel_index(index, [len(values) for values in self.axes.values()])
+        return {name: values[int(i)] for (name, values), i in zip(self.axes.items(), places, strict=True)}
+
+    @staticmethod
+    def _labels(point: Mapping[str, object]) -> dict[str, object]:
+        return {n: v if isinstance(v, str | int | float) else getattr(v, "name", repr(v)) for n, v in point.items()}
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A point of a grid that its builder refused."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ()
+
+    complaint: str
+    labels: Mapping[str, object]
+
+    def __call__(self, history: Path | None = None) -> Row:
+        """Fail with the complaint."""
+        raise ValueError(self.complaint)

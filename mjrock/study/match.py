@@ -1,0 +1,275 @@
+"""Matches of damping to restitution in the engine: the search loop of the paper's Figure 2.
+
+For a wall, its interfaces and a restitution that is asked for, a search finds the damping ratio whose simulation is
+closest to the analytical response: two-sided for the base (`Match` without `xi_base`), one-sided for the side with the
+damping of the base presumed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from ..engine.simulation import simulate
+from ..problem.block import Block
+from ..problem.case import Case
+from ..problem.damping import DENSITY, HIGHEST, LEAST
+from ..problem.forms import Groups
+from ..problem.interface import Contacts
+from ..problem.quantities import require_within
+from ..problem.restitution import Restitution
+from ..result.compare import compare
+from ..result.response import Response
+from ..theory.analytical import solve_analytical
+from .task import Row
+
+R_RANGE, SLENDERNESS_RANGE, AMPLITUDE_RANGE, K_N_RANGE = (1.4, 2.8), (4.0, 15.0), (0.3, 0.8), (0.5e8, 30e8)
+"""Table 1: half diagonal [m], h/b [-], theta_0/alpha [-], interface stiffness of base and of side [N/m3]."""
+BASE_BOUNDS, SIDE_BOUNDS = (LEAST, HIGHEST), (1e-4, HIGHEST)
+"""Damping ratios that are searched [-]."""
+SCAN = 3.0
+"""Ratio of neighbouring damping ratios while the search goes down for a bracket [-]."""
+XI_TOLERANCE = 1e-3
+"""Relative tolerance of a matched damping ratio [-]."""
+E_TOLERANCE = 5e-3
+"""Relative difference to the restitution asked for at which a search has missed it [-]."""
+MARGIN = 0.03
+"""Share of the reachable range, at either end, in which any damping ratio gives the same restitution [-]."""
+MEASURES = ("restitution", "rms")
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A wall and its interfaces, as Table 1 lists them.
+
+    Args:
+        R: half diagonal [m].
+        slenderness: h/b [-].
+        k_base, k_side: interface stiffness [N/m3].
+        amplitude: theta_0/alpha of the release [-].
+    """
+
+    R: float = 2.1
+    slenderness: float = 7.0
+    k_base: float = 5e8
+    k_side: float = 5e8
+    amplitude: float = 0.5
+
+    @property
+    def wall(self) -> Block:
+        """The wall, 1 m long, of 2000 kg/m3."""
+        return Block.from_slenderness(self.slenderness, self.R, density=DENSITY)
+
+
+REFERENCE = Combination()
+"""The reference values of Table 1."""
+
+
+def combinations(count: int, seed: int) -> list[Combination]:
+    """Combinations that fill Table 1 evenly (a Latin hypercube), stiffnesses on a logarithmic scale.
+
+    Each parameter takes `count` values, one in each of `count` equal strata of its range. Two seeds share no
+    combination.
+    """
+    ranges = np.array([R_RANGE, SLENDERNESS_RANGE, np.log(K_N_RANGE), np.log(K_N_RANGE), AMPLITUDE_RANGE])
+    rng = np.random.default_rng(seed)
+    strata = rng.permuted(np.tile(np.arange(count), (len(ranges), 1)), axis=1).T
+    shares = (strata + rng.random(strata.shape)) / count
+    made = []
+    for R, slenderness, k_base, k_side, amplitude in (ranges[:, 0] + shares * np.ptp(ranges, axis=1)).tolist():
+        made.append(Combination(R, slenderness, math.exp(k_base), math.exp(k_side), amplitude))
+    return made
+
+
+@dataclass(frozen=True)
+class Match:
+    """A task of a campaign: the damping ratio that reproduces one restitution on one combination.
+
+    Args:
+        combination: the wall and its interfaces.
+        e: what is asked for: `e.base` two-sided, `e.lumped` one-sided.
+        points: contact lines a face.
+        xi_base: None to match the base two-sided; the damping ratio of the base to match the side one-sided.
+        measure: "restitution", |e| of the first rebound, matched to the digit on the branch of high damping; or "rms",
+            the root mean square difference of theta over three quarters of a period, minimised, as in the paper.
+        accuracy: what the fitted steps aim at, see `simulate`.
+    """
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ("reached", "xi", "found", "lowest", "highest", "rms", "runs")
+
+    combination: Combination
+    e: Restitution
+    points: int = 2
+    xi_base: float | None = None
+    measure: str = "restitution"
+    accuracy: float = 1e-4
+
+    def __post_init__(self) -> None:
+        if self.measure not in MEASURES:
+            raise ValueError(f"measure = {self.measure!r} is none of {', '.join(MEASURES)}")
+        if self.xi_base is not None:
+            require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0)
+
+    @property
+    def target(self) -> float:
+        """The restitution of the rebound that is asked for, |e| [-]."""
+        return self.e.base if self.xi_base is None else abs(self.e.lumped)
+
+    @property
+    def labels(self) -> Mapping[str, object]:
+        """What is matched on what."""
+        one = self.combination
+        return {
+            "match": "base" if self.xi_base is None else "side",
+            "points": self.points,
+            "measure": self.measure,
+            **{name.name: getattr(one, name.name) for name in fields(one)},
+            "e_base": self.e.base,
+            "e_side": self.e.side,
+            "xi_base": self.xi_base,
+        }
+
+    @property
+    def groups(self) -> Groups:
+        """The dimensionless groups that the damping ratio is regressed on."""
+        one = self.combination
+        return Groups.of(one.wall, self.e, one.k_base, one.k_side, one.amplitude)
+
+    @property
+    def loss(self) -> float:
+        """The loss -ln|e| of the impact that is matched [-]."""
+        return -math.log(self.e.base if self.xi_base is None else abs(self.e.side))
+
+    def respond(self, xi: float, quarters: float = 3.0) -> Response:
+        """The simulation with damping ratio `xi` over `quarters` of the period of the release."""
+        one, wall = self.combination, self.combination.wall
+        if self.xi_base is None:
+            contacts = Contacts.from_damping(wall, k_base=one.k_base, xi_base=xi, points=self.points)
+        else:
+            contacts = Contacts.from_damping(
+                wall, k_base=one.k_base, xi_base=self.xi_base, k_side=one.k_side, xi_side=xi, points=self.points
+            )
+        return simulate(self._case(quarters), contacts, accuracy=self.accuracy)
+
+    def _case(self, quarters: float) -> Case:
+        wall = self.combination.wall
+        quarter = math.acosh(1 / (1 - self.combination.amplitude)) / wall.p
+        theta0 = self.combination.amplitude * wall.alpha
+        return Case(wall, theta0, quarters * quarter, side_stop=self.xi_base is not None)
+
+    def restitution(self, xi: float) -> float:
+        """|e| of the first rebound with damping ratio `xi`; 0 where the wall does not rock again."""
+        for quarters in (3.0, 6.0):  # a wall on a soft bed rocks slower than a rigid one
+            response = self.respond(xi, quarters)
+            if len(response.restitution):
+                return float(response.restitution[0])
+        return 0.0
+
+    def difference(self, xi: float) -> float:
+        """Root mean square difference of theta to the analytical response, in multiples of alpha [-]."""
+        return compare(solve_analytical(self._case(3.0), self.e), self.respond(xi)).rms
+
+    def __call__(self, history: Path | None = None) -> Row:
+        """Search, and return the columns."""
+        bounds = BASE_BOUNDS if self.xi_base is None else SIDE_BOUNDS
+        if self.measure == "rms":
+            found = least_difference(self.difference, bounds)
+            return found.row | {"found": self.restitution(found.xi), "rms": found.value}
+        return highest_branch(self.restitution, self.target, bounds, whole=self.xi_base is None).row
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search found.
+
+    Args:
+        reached: whether the target is met inside the bounds.
+        xi: the damping ratio [-], the closest one where it is not.
+        value: what is measured there.
+        lowest, highest: the range of the measure on the branch that was searched.
+        runs: how many simulations it took.
+    """
+
+    reached: bool
+    xi: float
+    value: float
+    lowest: float
+    highest: float
+    runs: int
+
+    @property
+    def row(self) -> Row:
+        """As columns of a campaign."""
+        return {
+            "reached": int(self.reached),
+            "xi": self.xi,
+            "found": self.value,
+            "lowest": self.lowest,
+            "highest": self.highest,
+            "rms": None,
+            "runs": self.runs,
+        }
+
+
+def highest_branch(
+    measure: Callable[[float], float], target: float, bounds: tuple[float, float], *, whole: bool = True
+) -> Found:
+    """The highest damping ratio at which `measure`, a restitution, is `target`.
+
+    Several damping ratios can give one restitution: little damping lets the wall bounce, and a bounce may cost as much
+    as a dashpot. The search starts at the upper bound and goes down while the restitution rises; where it has begun to
+    fall again the branch of high damping has ended, and what lies below is not looked at. Without `whole` it stops
+    looking where the target is passed, and `highest` is what it has seen.
+    """
+    known: dict[float, float] = {}
+
+    def at(log_xi: float) -> float:
+        if log_xi not in known:
+            known[log_xi] = measure(math.exp(log_xi))
+        return known[log_xi]
+
+    low, high = (math.log(bound) for bound in bounds)
+    grid = np.linspace(high, low, 1 + math.ceil((high - low) / math.log(SCAN))).tolist()
+    bottom = top = grid[0]
+    for here in grid[1:]:
+        if at(here) < at(top) and at(top) > at(bottom):
+            break  # the branch has ended
+        if at(here) < at(bottom):
+            bottom = here  # overdamped: a little less damping loses more
+        top = here
+        if at(bottom) < target <= at(top) and not whole:
+            break
+    lowest, highest = at(bottom), at(top)
+    if not lowest < target <= highest:
+        best = top if target > highest else bottom
+        return Found(False, math.exp(best), at(best), lowest, highest, len(known))
+    best = float(brentq(lambda log_xi: at(log_xi) - target, top, bottom, xtol=XI_TOLERANCE))
+    reached = abs(at(best) / target - 1) < E_TOLERANCE  # a wall that no longer rocks drops to 0 from one xi to the next
+    return Found(reached, math.exp(best), at(best), lowest, highest, len(known))
+
+
+def least_difference(measure: Callable[[float], float], bounds: tuple[float, float]) -> Found:
+    """The damping ratio at which `measure`, a difference, is least; not reached where that is at a bound."""
+    known: dict[float, float] = {}
+
+    def at(log_xi: float) -> float:
+        known[log_xi] = measure(math.exp(log_xi))
+        return known[log_xi]
+
+    low, high = (math.log(bound) for bound in bounds)
+    grid = np.linspace(high, low, 1 + math.ceil((high - low) / math.log(SCAN))).tolist()
+    values = [at(here) for here in grid]
+    i = int(np.argmin(values))
+    best = grid[i]
+    inside = 0 < i < len(grid) - 1
+    if inside:
+        found = minimize_scalar(at, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
+        best = min(known, key=lambda log_xi: known[log_xi])
+        inside = bool(found.success)
+    return Found(inside, math.exp(best), known[best], min(values), max(values), len(known))

@@ -1,0 +1,1 @@
+"""Classical rocking theory. This package knows no stiffness and no MuJoCo."""

@@ -1,0 +1,133 @@
+"""Free rocking: Eq. 1 over a base at rest, from one event to the next, by SciPy.
+
+    theta'' = -p^2 sin(s alpha - theta),
+
+s = +1 or -1 the side to which the wall rocks. An arc ends where the wall turns (omega = 0), meets the upright position
+(theta = 0), lies on its face, or where the time is over. It is split where the wall turns, so that each of these events
+is crossed once, from a state that is clearly on one side of it.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ..problem.case import Case
+from ..problem.quantities import ON_ITS_FACE, Array
+from .rocking import Rocking
+
+
+class Event(enum.Enum):
+    """How an arc ended."""
+
+    PEAK = "omega = 0"
+    IMPACT = "theta = 0"
+    FALL = "on its face"
+    TIME = "the time is over"
+
+
+State = tuple[float, float, float]
+"""Time [s], rotation [rad], angular velocity [rad/s]."""
+
+
+def _terminal(event: Callable[[float, Array], float], direction: float) -> Callable[[float, Array], float]:
+    event.terminal = True  # type: ignore[attr-defined]
+    event.direction = direction  # type: ignore[attr-defined]
+    return event
+
+
+class Arcs:
+    """Arcs over a base at rest (scipy, DOP853)."""
+
+    def __init__(self, case: Case, rtol: float, atol: float) -> None:
+        self.alpha, self.p2, self.end = case.block.alpha, case.block.p**2, case.duration
+        self.rtol, self.atol = rtol, atol
+        self.evaluations = 0
+        self.known: list[tuple[float, float, Callable[[Array], Array]]] = []
+
+    def advance(self, state: State, s: float) -> tuple[State, Event]:
+        """Follow the wall from `state` to the next event.
+
+        Raises:
+            RuntimeError: if the integration fails.
+        """
+
+        def rocking(t: float, y: Array) -> tuple[float, float]:
+            return y[1], -s * self.p2 * math.sin(self.alpha - s * y[0])
+
+        turns = s * state[2] > 0
+        arc = solve_ivp(
+            rocking,
+            (state[0], self.end),
+            state[1:],
+            method="DOP853",
+            events=(
+                _terminal((lambda t, y: s * y[1]) if turns else (lambda t, y: s * y[0]), -1),
+                _terminal(lambda t, y: s * y[0] - ON_ITS_FACE, 1),
+            ),
+            dense_output=True,
+            rtol=self.rtol,
+            atol=self.atol,
+        )
+        if arc.status < 0:
+            raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
+        self.evaluations += arc.nfev
+        t, theta, omega = float(arc.t[-1]), *map(float, arc.y[:, -1])
+        self.known.append((state[0], t, arc.sol))
+        if arc.t_events[1].size:
+            return (t, theta, omega), Event.FALL
+        if not arc.t_events[0].size:
+            return (t, theta, omega), Event.TIME
+        return ((t, theta, 0.0), Event.PEAK) if turns else ((t, 0.0, omega), Event.IMPACT)
+
+    def sample(self, t: Array) -> tuple[Array, Array]:
+        """Rotation and velocity at any times. They are zero between the arcs."""
+        theta, omega = np.zeros_like(t), np.zeros_like(t)
+        for start, end, solution in self.known:
+            within = (t >= start) & (t <= end)
+            if within.any():
+                theta[within], omega[within] = solution(t[within])
+        return theta, omega
+
+
+def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) -> Rocking:
+    """Rocking over a base at rest.
+
+    Args:
+        case: the wall and its release.
+        e: restitution of an impact [-], negative where the wall leaves to the side that it came from.
+        least: an impact that leaves less energy than this leaves the wall at rest [J].
+        rtol, atol: tolerances of the integration, on rotation [rad] and velocity [rad/s].
+
+    Raises:
+        RuntimeError: if the integration fails.
+    """
+    arcs = Arcs(case, rtol, atol)
+    state, s, event = (0.0, case.theta0, case.omega0), case.direction, Event.TIME
+    impacts: list[tuple[float, float, float]] = []
+    peaks: list[float] = []
+    at_rest = case.release_energy == 0
+    while state[0] < case.duration and not at_rest and event is not Event.FALL:
+        state, event = arcs.advance(state, s)
+        if event is Event.PEAK:
+            peaks.append(abs(state[1]))
+        elif event is Event.IMPACT:
+            before, after = state[2], e * state[2]
+            impacts.append((state[0], before, after))
+            at_rest = 0.5 * case.block.toe_inertia * after**2 <= least
+            s, state = math.copysign(1.0, after), (state[0], 0.0, after)
+    return Rocking(
+        impacts=np.reshape(impacts, (-1, 3)),
+        peaks=np.array(peaks),
+        t=state[0],
+        theta=0.0 if at_rest else state[1],
+        fell=event is Event.FALL,
+        at_rest=at_rest,
+        sample=arcs.sample,
+        arcs=len(arcs.known),
+        evaluations=arcs.evaluations,
+    )

@@ -1,0 +1,34 @@
+"""What rocking theory finds: the impacts, the peaks, how the motion ends, and its samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..problem.quantities import Array
+
+
+@dataclass(frozen=True)
+class Rocking:
+    """A motion of a rigid wall from impact to impact.
+
+    Args:
+        impacts: time [s] and angular velocity before and after [rad/s] of each impact, shape (m, 3).
+        peaks: rotation maxima |theta| [rad] after the release.
+        t, theta: time and rotation at the end [s, rad].
+        fell: whether the wall lies on its face.
+        at_rest: whether the wall rests upright.
+        sample: rotation [rad] and angular velocity [rad/s] at increasing times [s].
+        arcs: how many arcs, or steps, the motion is made of.
+        evaluations: evaluations of Eq. 1.
+    """
+
+    impacts: Array
+    peaks: Array
+    t: float
+    theta: float
+    fell: bool
+    at_rest: bool
+    sample: Callable[[Array], tuple[Array, Array]]
+    arcs: int
+    evaluations: int

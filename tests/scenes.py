@@ -1,0 +1,42 @@
+"""Scenes that several tests use."""
+
+import numpy as np
+
+import mjrock as mr
+
+
+def two_blocks(k_n=5e8, friction=0.7, xi=0.049, *, motion=None, duration=1.0, width=0.6, height=2.1):
+    """Two equal blocks one on the other, 1 m long, of 2000 kg/m3, with two lines a joint.
+
+    The damping ratio refers to the rocking of what stands on a joint about the middle of that joint. The blocks start
+    at rest.
+    """
+    b, h = width / 2, height / 2
+    mass = 2000.0 * width * height
+    inertia = mass * (width**2 + height**2) / 12
+    k = k_n * b * np.ones(4)
+    c = np.empty(4)
+    for joint, above in ((slice(0, 2), 2), (slice(2, 4), 1)):
+        half = above * h
+        about_base = above * mass * (width**2 + (2 * half) ** 2) / 12 + above * mass * half**2
+        c[joint] = 2 * xi / np.sqrt(k[joint].sum() * b**2 / about_base) * k[joint]
+    outline = np.array([(-b, -h), (b, -h), (b, h), (-b, h)])
+    return mr.Scene(
+        names=("lower", "upper"),
+        mass=[mass, mass],
+        inertia=[inertia, inertia],
+        rest=[(0, h), (0, 3 * h)],
+        outlines=(outline, outline),
+        length=1.0,
+        point_body=[0, 0, 1, 1],
+        point=[(-b, -h), (b, -h), (-b, -h), (b, -h)],
+        face_body=[-1, -1, 0, 0],
+        face=[(0, 0), (0, 0), (0, h), (0, h)],
+        normal=[(0, 1)] * 4,
+        k=k,
+        c=c,
+        friction=[friction] * 4,
+        group=("foot", "foot", "middle", "middle"),
+        motion=motion,
+        duration=duration,
+    )

@@ -1,0 +1,168 @@
+"""The one place of the kinematics, against corners written out, finite differences, and MuJoCo."""
+
+import math
+
+import mujoco
+import numpy as np
+import pytest
+from scenes import two_blocks
+
+import mjrock as mr
+from mjrock.engine.kinematics import along, energies, frame_of, gap, gaps
+from mjrock.engine.scene import settle
+from paper import K_N
+
+
+def poses(rng, count, bodies):
+    """Random poses of some bodies, and velocities and accelerations."""
+    return rng.normal(0, [0.01, 0.01, 0.1] * bodies, (count, 3 * bodies)), *rng.normal(0, 1, (2, count, 3 * bodies))
+
+
+@pytest.mark.parametrize("points", [2, 9])
+@pytest.mark.parametrize("share", [0.0, 1e-6, 1e-3, 0.5, 0.999, -0.5])
+def test_the_released_wall_is_carried_by_its_springs(wall, points, share):
+    contacts = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.05, points=points)
+    scene = mr.wall_scene(mr.Case(wall, share * wall.alpha, 1.0, side_stop=False), contacts)
+    pose, velocity = scene.started
+    forces = -scene.k * np.minimum(gaps(scene.points, pose), 0)
+    # rounding leaves some eps h of a gap, which is a small difference of lengths like h, and k times that of the force
+    assert forces.sum() == pytest.approx(wall.weight, abs=10 * np.finfo(float).eps * wall.h * scene.k.sum())
+    assert not velocity.any()
+
+
+def test_the_toe_stays_where_it_is(wall, contacts):
+    for theta in (0.05, -0.05):
+        scene = mr.wall_scene(mr.Case(wall, theta, 1.0, side_stop=False), contacts)
+        toe = math.copysign(wall.b, theta)
+        x, _, _ = scene.started[0][0]
+        assert x + toe * math.cos(theta) - wall.h * math.sin(theta) == pytest.approx(toe, abs=1e-15)
+
+
+def test_release_velocity_turns_about_the_toe(wall, contacts):
+    dt = 1e-6
+    now, later = (
+        mr.wall_scene(mr.Case(wall, theta, 1.0, omega0=0.2), contacts).started for theta in (0.05, 0.05 + 0.2 * dt)
+    )
+    np.testing.assert_allclose((later[0] - now[0]) / dt, now[1], rtol=1e-5)
+
+
+def test_gaps_are_those_of_the_corners(wall, contacts):
+    scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
+    pose = np.array([[0.02, -0.001, 0.1]])
+    c, s = math.cos(0.1), math.sin(0.1)
+    heights = [wall.h - 0.001 - x * s - wall.h * c for x in (-wall.b, wall.b)]
+    distances = [0.02 - wall.b * c + z * s + wall.b for z in (-wall.h, wall.h)]
+    np.testing.assert_allclose(gaps(scene.points, pose)[0], heights + distances, rtol=1e-13)
+
+
+def test_rates_are_derivatives_also_of_a_face_that_turns():
+    """Gap, rate and curvature of points on moving faces, along q + v t + a t^2/2, by central differences."""
+    scene = two_blocks()
+    rng = np.random.default_rng(5)
+    t = 1e-4
+    for q, v, a in zip(*poses(rng, 20, 2), strict=True):
+        for i in range(len(scene.k)):
+            before, after = (gap(scene.points, i, frame_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
+            now = gap(scene.points, i, frame_of(q), v, a)
+            assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
+            assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2], abs=1e-5)
+            assert gap(scene.points, i, frame_of(q), 2 * v, a)[1] == pytest.approx(2 * now[1])
+
+
+def test_slip_is_the_relative_velocity_where_friction_acts():
+    """Of the two material points that are halfway between the point and the face, by central differences."""
+    scene = two_blocks()
+    rng = np.random.default_rng(6)
+
+    def world(q, body, local):
+        x, z, theta = q[3 * body : 3 * body + 3]
+        c, s = math.cos(theta), math.sin(theta)
+        return scene.rest[body] + [x + local[0] * c + local[1] * s, z - local[0] * s + local[1] * c]
+
+    def local_to(q, body, place):
+        x, z, theta = q[3 * body : 3 * body + 3]
+        c, s = math.cos(theta), math.sin(theta)
+        dx, dz = place - scene.rest[body] - [x, z]
+        return np.array([dx * c - dz * s, dx * s + dz * c])
+
+    t = 1e-5
+    for q, v, _ in zip(*poses(rng, 20, 2), strict=True):
+        for i in range(len(scene.k)):
+            g = gap(scene.points, i, frame_of(q), v, v)[0]
+            face = scene.face_body[i]
+            turn = q[3 * face + 2] if face >= 0 else 0.0
+            nx, nz = scene.normal[i]
+            n = np.array([nx * math.cos(turn) + nz * math.sin(turn), nz * math.cos(turn) - nx * math.sin(turn)])
+            place = world(q, scene.point_body[i], scene.point[i]) - 0.5 * g * n
+            relative = np.zeros(2)
+            for body, sign in ((scene.point_body[i], 1), (face, -1)):
+                if body >= 0:
+                    own = local_to(q, body, place)
+                    relative += sign * (world(q + t * v, body, own) - world(q - t * v, body, own)) / (2 * t)
+            assert along(scene.points, i, frame_of(q), v)[1] == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
+
+
+def test_gaps_and_slip_are_those_of_the_engine():
+    """MuJoCo's own distances and tangential velocities, for a point on a body and on a face that moves."""
+    from mjrock.engine.model import engine_of
+
+    scene = two_blocks()
+    rng = np.random.default_rng(7)
+    seen = set()
+    with engine_of(scene) as engine:
+        model, data = engine.model, engine.data
+        for q, v, _ in zip(*poses(rng, 60, 2), strict=True):
+            q *= 0.02
+            q[1::3] -= 3e-4
+            data.qpos[:], data.qvel[:] = q, v
+            mujoco.mj_forward(model, data)
+            jacobian = np.reshape(data.efc_J, (data.nefc, model.nv))
+            closed = np.flatnonzero(gaps(scene.points, q[None])[0] < 0)
+            assert data.ncon == len(closed)
+            for contact in data.contact:
+                i = next(
+                    i for i in range(model.npair) if {model.pair_geom1[i], model.pair_geom2[i]} == set(contact.geom)
+                )
+                seen.add(i)
+                g, rate, _ = gap(scene.points, i, frame_of(q), v, v)
+                assert contact.dist == pytest.approx(g, abs=1e-12)
+                row = contact.efc_address
+                assert jacobian[row] @ v == pytest.approx(rate, rel=1e-5, abs=1e-5)
+                slips = jacobian[row + 1 : row + contact.dim] @ v
+                assert np.hypot(*slips) == pytest.approx(abs(along(scene.points, i, frame_of(q), v)[1]), abs=1e-5)
+    assert seen == set(range(len(scene.k)))
+
+
+def test_energy_is_none_at_rest_and_the_rigid_one_at_release(wall, contacts):
+    at_rest = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
+    assert at_rest.release_energy == pytest.approx(0, abs=1e-9)
+    case = mr.Case(wall, 0.5 * wall.alpha, 1.0)
+    # one corner instead of two carries the wall: m g (m g / 4 k) less, k that of one corner
+    less = wall.weight**2 / (4 * contacts.base.stiffness[0])
+    assert mr.wall_scene(case, contacts).release_energy == pytest.approx(case.release_energy - less, rel=1e-10)
+
+
+def test_energies_of_bodies_that_move():
+    scene = two_blocks()
+    q, v, _ = poses(np.random.default_rng(8), 5, 2)
+    found = energies(scene.points, scene.masses, q, v)
+    np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.masses))
+    np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.mass))
+    np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.points, q), 0) ** 2 @ scene.k)
+
+
+@pytest.mark.parametrize("side_stop", [True, False])
+def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
+    scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0, side_stop=side_stop), contacts)
+    assert scene.highest_frequency == pytest.approx(contacts.highest_frequency(wall, side_stop=side_stop), rel=1e-12)
+    assert scene.rocking_frequency == pytest.approx(wall.p, rel=1e-12)
+
+
+def test_a_scene_settles_under_its_weight(wall, contacts):
+    scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
+    np.testing.assert_allclose(settle(scene), scene.at_rest, atol=1e-15)
+    assert list(scene.points.bears) == [True, True, False, False]
+    blocks = two_blocks()
+    force = -blocks.k * np.minimum(gaps(blocks.points, blocks.at_rest.reshape(1, -1))[0], 0)
+    weights = mr.GRAVITY * blocks.mass
+    np.testing.assert_allclose([force[2:].sum(), force[:2].sum()], [weights[1], weights.sum()], rtol=1e-9)
