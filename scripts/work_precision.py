@@ -27,9 +27,9 @@ import cli
 import mjrock as mr
 from mjrock import plotting
 from mjrock.engine.contact import WITHIN
-from mjrock.engine.mjcf import RADIUS
 from mjrock.engine.model import Engine
-from mjrock.engine.stepping import StepError, fixed_steps
+from mjrock.engine.stepping import fixed_steps
+from mjrock.engine.steps import StepError
 from mjrock.result.history import peak_energies, restitution_of, rocking_history
 from mjrock.result.response import Response
 from paper import FIGURE_3, K_N
@@ -134,7 +134,7 @@ def free_wall(h: float) -> Solve:
         key = root.find("keyframe/key")
         assert key is not None
         across, up, theta = map(float, key.get("qpos", "").split())
-        up += wall.h + RADIUS * wall.h
+        up += wall.h + mr.wall_scene(case, contacts).radius
         pose = (across, 0.0, up, math.cos(theta / 2), 0.0, math.sin(theta / 2), 0.0)
         key.set("qpos", " ".join(map(repr, pose)))
         key.set("qvel", "0 0 0 0 0 0")

@@ -1,13 +1,14 @@
 import dataclasses
 import math
 import re
+from collections import OrderedDict
 
 import mujoco
 import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine import simulation, stepping
+from mjrock.engine import model, simulation
 from mjrock.engine.model import Engine
 from mjrock.engine.wall import HELD_FRICTION, inner_friction
 from paper import K_N
@@ -40,11 +41,12 @@ def test_output_step_thins_the_samples_and_nothing_else(one_sided, contacts):
 
 
 def test_thinning_goes_on_across_chunks(one_sided, contacts, monkeypatch):
-    whole = mr.simulate(one_sided, contacts, 1e-3, output_step=7e-3)
-    monkeypatch.setattr(stepping, "CHUNK", 100)
-    chunked = mr.simulate(one_sided, contacts, 1e-3, output_step=7e-3)
-    np.testing.assert_array_equal(chunked.t, whole.t)
-    np.testing.assert_array_equal(chunked.theta, whole.theta)
+    options = ({"timestep": 1e-3, "output_step": 7e-3}, {})
+    whole = [mr.simulate(one_sided, contacts, **chosen) for chosen in options]
+    monkeypatch.setattr(model, "CHUNK", 100)
+    monkeypatch.setattr(model, "_idle", OrderedDict())
+    for chosen, once in zip(options, whole, strict=True):
+        assert mr.simulate(one_sided, contacts, **chosen) == once
 
 
 def test_velocities_are_synchronised_with_rotations(two_sided, contacts):

@@ -20,7 +20,7 @@ from .contact import row
 from .ground import Ground, mean_acceleration
 from .kinematics import Points, along, energies, gap, spring_energy, take_frame
 from .scene import Scene
-from .stepping import Steps
+from .steps import Steps
 
 
 def ground_work(scene: Scene, steps: Steps) -> Array:
@@ -163,7 +163,7 @@ def _contact_work(
             dashpots[n, number[i]] += drag * rate * width[n] if law > 0 else given
             if points.friction[i] > 0:
                 held = impratio * inertia[i]
-                stopping = -held * along(points, i, frame, after[n])[1] / step
+                stopping = -held * along(points, i, frame, after[n])[2] / step
                 pressing, dragging = cone_force(law, stopping, held, inertia[i], points.friction[i])
                 lift = pressing - max(law, 0.0)  # what a sliding cone presses on top of the law
-                friction[n] -= (dragging * along(points, i, frame, middle)[1] + lift * rate) * width[n]
+                friction[n] -= (dragging * along(points, i, frame, middle)[2] + lift * rate) * width[n]

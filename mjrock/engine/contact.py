@@ -134,7 +134,7 @@ def set_rows(
 
     A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate
     of 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its
-    inertia leaves: a load F creeps at F h / inertia. MuJoCo has one impratio for all contacts. It is the largest with
+    inertia leaves: a load F creeps at F h / held. MuJoCo has one impratio for all contacts. It is the largest with
     which no friction row has more inertia than it should.
 
     Args:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..problem.quantities import GRAVITY, Array, Flags, Integers
+from ..problem.quantities import GRAVITY, Array, Integers
 
 
 class Points(NamedTuple):
@@ -33,7 +33,8 @@ class Points(NamedTuple):
         friction: coefficient of friction [-], zero for none, shape (m,).
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (m,).
         held: inertia that the friction row should have [kg], zero for no friction, shape (m,).
-        bears: whether the point is pressed while the scene is at rest, shape (m,).
+        radius: radius of the spheres that MuJoCo has for the points [m].
+        bears: penetration of the point while the scene is at rest [m], zero where it is open, shape (m,).
     """
 
     body: Integers
@@ -47,7 +48,8 @@ class Points(NamedTuple):
     friction: Array
     weight: Array
     held: Array
-    bears: Flags
+    radius: float
+    bears: Array
 
 
 @jitable
@@ -140,23 +142,23 @@ def depth(points: Points, i: int, frame: Array) -> float:
 
 
 @jitable
-def along(points: Points, i: int, frame: Array, v: Array) -> tuple[float, float]:
-    """Position of point i along its face from the origin of the face [m], and the slip of the two bodies there [m/s].
+def along(points: Points, i: int, frame: Array, v: Array) -> tuple[float, float, float]:
+    """Position of point i along its face from the origin of the face [m], its rate, and the slip of the bodies [m/s].
 
-    The slip is taken where MuJoCo lets friction act: halfway between the point and the face.
+    The slip is taken where MuJoCo lets friction act: halfway between the surface of the sphere and the face.
     """
     x, z, vx, vz, _, _ = carried(frame, v, v, points.body[i], points.at[i, 0], points.at[i, 1])
     nx, nz = direction(points, i, frame)
     rx, rz = points.between[i, 0] + x, points.between[i, 1] + z
     turn, face = v[3 * points.body[i] + 2], points.face_body[i]
-    if face >= 0:
-        fx, fz, fvx, fvz, _, _ = carried(frame, v, v, face, points.face_at[i, 0], points.face_at[i, 1])
-        rx, rz, vx, vz = rx - fx, rz - fz, vx - fvx, vz - fvz
-    half = 0.5 * (nx * rx + nz * rz)
-    slip = nz * vx - nx * vz - turn * half
-    if face >= 0:
-        slip -= v[3 * face + 2] * half  # the velocity of the other face at the same place
-    return nz * rx - nx * rz, slip
+    if face < 0:
+        rate = nz * vx - nx * vz
+        return nz * rx - nx * rz, rate, rate - turn * (0.5 * (nx * rx + nz * rz) + points.radius)
+    fx, fz, fvx, fvz, _, _ = carried(frame, v, v, face, points.face_at[i, 0], points.face_at[i, 1])
+    rx, rz, vx, vz = rx - fx, rz - fz, vx - fvx, vz - fvz
+    across, out, w = nz * vx - nx * vz, nx * rx + nz * rz, v[3 * face + 2]
+    below = 0.5 * out + points.radius
+    return nz * rx - nx * rz, across - w * out, across - turn * below - w * (out - below)
 
 
 @jitable

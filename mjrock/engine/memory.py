@@ -82,7 +82,23 @@ def functions() -> tuple[Any, Any]:
     Raises:
         RuntimeError: if the library is not found, or is not the one of the bindings.
     """
-    folder = Path(mujoco.__file__).parent
+    path = library_file(Path(mujoco.__file__).parent)
+    library = ctypes.CDLL(str(path))
+    library.mj_versionString.restype = ctypes.c_char_p
+    version = library.mj_versionString().decode()
+    if version != mujoco.mj_versionString():
+        raise RuntimeError(f"{path} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
+    for function in (library.mj_step, library.mj_forward):
+        function.argtypes, function.restype = (ctypes.c_void_p, ctypes.c_void_p), None
+    return library.mj_step, library.mj_forward
+
+
+def library_file(folder: Path) -> Path:
+    """MuJoCo's library in the folder of its Python package.
+
+    Raises:
+        RuntimeError: if there is none, or more than one.
+    """
     pattern = LIBRARIES.get(sys.platform, LIBRARIES["linux"])
     found = sorted(folder.glob(pattern))
     if len(found) != 1:
@@ -90,14 +106,7 @@ def functions() -> tuple[Any, Any]:
             f"{len(found)} files match {pattern} in {folder}, where the library of MuJoCo {mujoco.__version__} is "
             "expected; reinstall mujoco"
         )
-    library = ctypes.CDLL(str(found[0]))
-    library.mj_versionString.restype = ctypes.c_char_p
-    version = library.mj_versionString().decode()
-    if version != mujoco.mj_versionString():
-        raise RuntimeError(f"{found[0]} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
-    for function in (library.mj_step, library.mj_forward):
-        function.argtypes, function.restype = (ctypes.c_void_p, ctypes.c_void_p), None
-    return library.mj_step, library.mj_forward
+    return found[0]
 
 
 def _options(model: mujoco.MjModel) -> Array:

@@ -20,10 +20,6 @@ from ..problem.quantities import GRAVITY, Array
 from .contact import set_rows
 from .scene import GROUND, Scene
 
-RADIUS = 1e-6
-"""Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
-surface, which is why it is tiny."""
-
 HEAD = """\
 <mujoco model="rocking wall">
   <!-- {title}; made by mjrock {version}.
@@ -127,7 +123,7 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> Rows:
 
 def _world(scene: Scene) -> Iterator[str]:
     """The faces of the ground, and each body with its faces and its contact points."""
-    radius = RADIUS * max(float(np.abs(outline).max()) for outline in scene.outlines)
+    radius = scene.radius
     faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
     for name in sorted(faces, key=faces.__getitem__):
         if scene.face_body[faces[name]] == GROUND:
@@ -177,7 +173,7 @@ def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
 
 def _plate(scene: Scene, i: int, radius: float) -> dict[str, object]:
     """The face of a body as a plate that is wider than any slip and thicker than any penetration."""
-    extent = max(float(np.abs(outline).max()) for outline in scene.outlines)
+    extent = scene.extent
     x, z = scene.face[i]
     nx, nz = scene.normal[i]
     at = (x - (extent + radius) * nx, 0.0, z - (extent + radius) * nz)

@@ -18,8 +18,11 @@ from .contact import planar_weight
 from .memory import Memory
 from .mjcf import Rows, pair_rows, scene_mjcf
 from .scene import Scene
+from .steps import Record
 from .wall import wall_scene
 
+CHUNK = 4_000
+"""Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""
 KEPT = 16
 """Scenes whose compiled models are kept for the next run."""
 
@@ -30,11 +33,12 @@ class SimulationError(RuntimeError):
 
 @dataclass(frozen=True)
 class Engine:
-    """A compiled model, its data, and their memory."""
+    """A compiled model, its data, their memory, and room for a chunk of steps."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
     memory: Memory
+    room: Record
 
     @classmethod
     def compile(cls, scene: Scene) -> Engine:
@@ -59,7 +63,7 @@ class Engine:
         if tuple(model.pair(i).name for i in range(model.npair)) != scene.point_names:
             raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")
         data = mujoco.MjData(model)
-        return cls(model, data, Memory.of(model, data))
+        return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv))
 
     def follow(self, timestep: float, rows: Rows) -> None:
         """Set the step and the rows of all contacts."""

@@ -8,7 +8,7 @@ The lengths follow from the contacts, the rocking and an error estimate:
 * between the two, a step is halved when the acceleration changed by too much in it, h |da| more than
   CHANGE accuracy |v|, and doubled after two steps in a row that changed by less than a quarter of that. |.| weighs with
   the masses, and |v| is the speed at which the bodies arrived at their last touch;
-* a loaded contact stays loaded: no step moves a closed point by more than the share STAYS of its penetration through
+* a loaded contact stays loaded: no step moves a loaded point by more than the share STAYS of its penetration through
   the velocities alone.
 """
 
@@ -38,18 +38,20 @@ LONG = 0.6
 CHANGE = 1.5
 """Largest accepted (change of acceleration x step), as a multiple of accuracy x speed."""
 STAYS = 0.1
-"""Largest accepted movement of a closed point in a step by the velocities alone, as a share of its penetration [-]. A
+"""Largest accepted movement of a loaded point in a step by the velocities alone, as a share of its penetration [-]. A
 point of a wall that turns at omega is moved by h^2/2 omega^2 times the height of the centroid. On a stiff base this
 lifts a toe that its weight presses in by micrometres, and friction at the toe is lost with it."""
+LOADED = 0.5
+"""A point counts as loaded from this share of its penetration at rest on [-]: an edge may lift off as it likes."""
 SMOOTH = 1.5
 """omega h below which a step resolves the contacts and takes Newmark's beta = 1/12 (stable below 2.45). A longer step
 takes a beta above 1/4, which is stable at every step. The closed contacts hardly move then."""
-RINGING = (1.0, 0.1)
+RINGING_BORNE, RINGING_OPEN = 0.1, 1.0
 """Extra dashpot h k r of a contact in a step that does not resolve it, with beta = (1 + r^2)/4 [-]: of a contact that
-is open while the scene is at rest, and of one that bears its weight. beta above 1/4 alone would let what is left of a
-vibration ring on from step to step. Where weight is borne, the dashpot takes a third of its energy in a step, and next
-to nothing of the rocking. A contact that is open at rest, such as a side stop, carries only what has just hit it. What
-is too faint to be met with a short step has to die there, and not to be thrown back with more energy."""
+bears weight at rest, and of one that is open at rest. beta above 1/4 alone would let what is left of a vibration ring
+on from step to step. Where weight is borne, the dashpot takes a third of the energy of the vibration in a step, and
+next to nothing of the rocking. A contact that is open at rest, such as a side stop, carries only what has just hit it.
+What is too faint to be met with a short step has to die there, and not to be thrown back with more energy."""
 
 
 class Pace(NamedTuple):
@@ -81,7 +83,7 @@ class Pace(NamedTuple):
         longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
         if scene.motion is not None:
             longest = min(longest, scene.motion.dt)
-        ringing = np.array(RINGING)[scene.points.bears.astype(int)]
+        ringing = np.where(scene.points.bears > 0, RINGING_BORNE, RINGING_OPEN)
         return cls(
             short,
             max(short, longest),
@@ -116,11 +118,11 @@ def resolves(pace: Pace, h: float) -> int:
 def while_loaded(points: Points, frame: Array, v: Array, none: Array, h: float, short: float) -> float:
     """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
 
-    h^2/2 |g2| <= STAYS |g| for every closed point, g its gap and g2 the second rate of the gap without accelerations.
+    h^2/2 |g2| <= STAYS |g| for every loaded point, g its gap and g2 the second rate of the gap without accelerations.
     """
     for i in range(len(points.k)):
         g, _, g2 = gap(points, i, frame, v, none)
-        if g < 0 and 0.5 * h * h * abs(g2) > -STAYS * g:
+        if -g > LOADED * points.bears[i] > 0 and 0.5 * h * h * abs(g2) > -STAYS * g:
             h = math.sqrt(-2 * STAYS * g / abs(g2))
     return max(h, short)
 

@@ -24,9 +24,12 @@ from .kinematics import Points, energies, frame_of, gap, gaps
 
 GROUND = -1
 """The face of a contact that belongs to no body."""
+RADIUS = 1e-6
+"""Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
+surface, which is why it is tiny."""
 HELD_MASSES = 1e3
 """Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
-a h / HELD_MASSES."""
+a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
 SHAPES: dict[str, tuple[str | int, ...]] = {
     "mass": ("bodies",),
     "inertia": ("bodies",),
@@ -136,6 +139,16 @@ class Scene:
         return _frozen(inverse[self.point_body] + np.where(self.face_body < 0, 0.0, inverse[self.face_body]))
 
     @cached_property
+    def extent(self) -> float:
+        """The largest coordinate of a vertex from the centroid of its body [m]."""
+        return max(float(np.abs(outline).max()) for outline in self.outlines)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the spheres that stand for the contact points in MuJoCo [m]."""
+        return RADIUS * self.extent
+
+    @cached_property
     def point_names(self) -> tuple[str, ...]:
         """Name of each contact point: its group and its number in it."""
         numbers: Counter[str] = Counter()
@@ -177,13 +190,14 @@ class Scene:
             friction=self.friction,
             weight=self.weight,
             held=_frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
-            bears=np.zeros(len(self.k), dtype=np.bool_),
+            radius=self.radius,
+            bears=np.zeros(len(self.k)),
         )
 
     @cached_property
     def points(self) -> Points:
         """The contacts for the compiled functions."""
-        return self._points._replace(bears=gaps(self._points, _one(self.at_rest))[0] < 0)
+        return self._points._replace(bears=np.maximum(-gaps(self._points, _one(self.at_rest))[0], 0))
 
     @cached_property
     def at_rest(self) -> Array:

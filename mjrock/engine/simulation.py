@@ -26,7 +26,8 @@ from .mjcf import pair_rows
 from .model import SimulationError, engine_of
 from .pace import SMOOTH, short_step
 from .scene import Scene
-from .stepping import StepError, Steps, fitted_steps, fixed_steps
+from .stepping import fitted_steps, fixed_steps
+from .steps import StepError, Steps
 from .wall import wall_scene
 
 ENERGY_GAIN = 1e-3
@@ -121,7 +122,7 @@ class _Run:
                 "mujoco": mujoco.__version__,
             }
             | {
-                f"deepest_{name}": max(0.0, *deepest[np.array(scene.group) == name])
+                f"deepest_{name}": float(max(0.0, *deepest[np.array(scene.group) == name]))
                 for name in dict.fromkeys(scene.group)
             }
             | stats,

@@ -1,11 +1,13 @@
-"""Sticking: a sticking edge stays where it stuck, although steps are long.
+"""Sticking: a sticking edge stays where it stuck, although steps are long and friction is a dashpot.
 
-A friction row of MuJoCo stops the slip that a point has in the geometry at the start of a step, half a step early. In a
-step h a wall that turns about its toe therefore drags the toe inwards, by h/2 times the integral of
-omega^2 (b cos(theta) - h_c sin(theta)) dt with h_c the height of the centroid: some micrometres in a fall. On a stiff
-base this presses the wall against its side stop, and later rebounds meet the stop out of true. So each sticking joint
-remembers where its deepest point stuck, and after each step the body above it is shifted back by what the point has
-drifted. The shifts are micrometres, and their work is of second order in them.
+Two things move an edge that friction holds. A friction row of MuJoCo stops the slip that a point has in the geometry at
+the start of a step. In a step h a wall that turns at omega about its toe moves the toe by a term that the row does not
+see, h^2 omega^2 / 2 times the horizontal distance of the toe from the centroid. And the row, which is a dashpot,
+creeps. In a fall this adds up to some micrometres, and in an impact it may be as much. On a stiff base this presses the
+wall against its side stop, and later rebounds meet the stop out of true. So each joint remembers where its deepest
+sticking point stuck. After a step, the body that stands on the joint is shifted back by what this point has drifted,
+unless the
+shift would press a contact that bears nothing at rest: a side stop. Such a shift would put energy into its spring.
 """
 
 from __future__ import annotations
@@ -39,7 +41,7 @@ class Joints(NamedTuple):
     @classmethod
     def of_scene(cls, scene: Scene) -> Joints:
         """The joints of a scene in which every body stands on one other body or on the ground; else none."""
-        rough = (scene.friction > 0) & scene.points.bears
+        rough = (scene.friction > 0) & (scene.points.bears > 0)
         below = {
             int(body): set(scene.face_body[rough & (scene.point_body == body)]) for body in scene.point_body[rough]
         }
@@ -83,8 +85,28 @@ def sticks(
     dashpot, inertia = row(points.k[i], points.c[i], h, points.weight[i], beta, ringing)
     acceleration = (gap(points, i, frame, after, after)[1] - rate) / h
     pressing = -(points.k[i] * g + dashpot * rate + inertia * acceleration)
-    dragging = impratio * inertia * along(points, i, frame, after)[1] / h
+    dragging = impratio * inertia * along(points, i, frame, after)[2] / h
     return pressing > 0 and abs(dragging) <= points.friction[i] * pressing
+
+
+@jitable
+def deepest(points: Points, joints: Joints, j: int, frame: Array, sticking: Flags) -> int:
+    """The deepest sticking point of a joint, -1 where none sticks."""
+    found, most = -1, 0.0
+    for i in range(len(points.k)):
+        if joints.of[i] == j and sticking[i] and depth(points, i, frame) > most:
+            found, most = i, depth(points, i, frame)
+    return found
+
+
+@jitable
+def presses(points: Points, body: int, frame: Array) -> bool:
+    """Whether a contact of a body is closed that bears nothing while the scene is at rest."""
+    for i in range(len(points.k)):
+        own = points.body[i] == body or points.face_body[i] == body
+        if own and points.bears[i] == 0 and depth(points, i, frame) > 0:
+            return True
+    return False
 
 
 @jitable
@@ -98,19 +120,16 @@ def put_back(points: Points, joints: Joints, q: Array, frame: Array, sticking: F
         sticking: whether each contact stuck in the step, shape (m,).
     """
     for j in range(len(joints.body)):
-        deepest, most = -1, 0.0
-        for i in range(len(points.k)):
-            if joints.of[i] == j and sticking[i] and depth(points, i, frame) > most:
-                deepest, most = i, depth(points, i, frame)
-        if deepest < 0:
-            joints.stuck[j] = -1
+        i, body = deepest(points, joints, j, frame, sticking), joints.body[j]
+        if i < 0 or joints.stuck[j] != i:
+            joints.stuck[j] = i
+            if i >= 0:
+                joints.anchor[j] = along(points, i, frame, q)[0]
             continue
-        here = along(points, deepest, frame, q)[0]
-        if joints.stuck[j] != deepest:
-            joints.stuck[j], joints.anchor[j] = deepest, here
-            continue
-        drift, body = here - joints.anchor[j], joints.body[j]
-        nx, nz = direction(points, deepest, frame)
-        q[3 * body] -= drift * nz
-        q[3 * body + 1] += drift * nx
-        frame[body, 0], frame[body, 1] = q[3 * body], q[3 * body + 1]
+        drift = along(points, i, frame, q)[0] - joints.anchor[j]
+        nx, nz = direction(points, i, frame)
+        frame[body, 0], frame[body, 1] = q[3 * body] - drift * nz, q[3 * body + 1] + drift * nx
+        if presses(points, body, frame):
+            frame[body, 0], frame[body, 1] = q[3 * body], q[3 * body + 1]
+        else:
+            q[3 * body], q[3 * body + 1] = frame[body, 0], frame[body, 1]

@@ -16,6 +16,9 @@ from .pace import Pace
 
 FADED = 0.01
 """A touch is met with a short step where ignoring it would misplace more than this share of accuracy x energy [-]."""
+ABRUPT = 0.1
+"""Change of velocity in a step, over the speed at the last touch, beyond which no touch is predicted from it [-]. How a
+strong dashpot stops a body within a step or two says nothing of the next step."""
 
 
 @jitable

@@ -1,0 +1,270 @@
+"""The compiled loops around the engine's steps: of one length, and fitted to the motion.
+
+A step that fits the motion is made in four moves: predict (which contacts will touch), change the step, let the engine
+step, judge (how long the next may be). The rules are in modules of their own: `pace` (how long), `touches` (when),
+`sticking` (where), `ground` (the force of the moving base). The loops call `mj_step` by its address and change
+timestep, rows, friction and velocities in the memory of the engine.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled, jitable
+from ..problem.quantities import ON_ITS_FACE, Array, Flags
+from .contact import set_rows
+from .ground import Ground, push
+from .kinematics import Points, frame_of, take_frame
+from .memory import IMPRATIO, TIMESTEP, Memory
+from .pace import Pace, judged, resolves, while_loaded
+from .steps import Record
+from .sticking import Joints, put_back, sticks
+from .touches import ABRUPT, closure_changed, step_to_touch
+
+
+class State(NamedTuple):
+    """What one step hands to the next.
+
+    Args:
+        acceleration: in the last step, shape (3 n,).
+        rate: its rate, from the last two steps, shape (3 n,).
+        velocity_now, acceleration_now: room for the values at the time of the pose, shape (3 n,).
+        none: zeros, shape (3 n,).
+        frame: frame of the pose, shape (n, 4).
+        closed: which contacts are closed, shape (m,).
+        sticking: which contacts stuck in the last step, shape (m,).
+        touch: room for the touches of a step, shape (m, 2).
+    """
+
+    acceleration: Array
+    rate: Array
+    velocity_now: Array
+    acceleration_now: Array
+    none: Array
+    frame: Array
+    closed: Flags
+    sticking: Flags
+    touch: Array
+
+    @classmethod
+    def of(cls, memory: Memory, contacts: int) -> State:
+        """The state at the release."""
+        n = len(memory.pose)
+        return cls(
+            acceleration=np.array(memory.acceleration),
+            rate=np.zeros(n),
+            velocity_now=np.zeros(n),
+            acceleration_now=np.zeros(n),
+            none=np.zeros(n),
+            frame=frame_of(memory.pose),
+            closed=np.zeros(contacts, dtype=np.bool_),
+            sticking=np.zeros(contacts, dtype=np.bool_),
+            touch=np.zeros((contacts, 2)),
+        )
+
+
+class Clock(NamedTuple):
+    """Where a run of fitted steps is.
+
+    Args:
+        t: time of the next pose [s].
+        h: length of step that the pace allows [s].
+        last: length of the last step [s].
+        energy: twice the kinetic energy at the last touch [J], by which changes are measured.
+        calm: how many steps in a row changed little.
+        fresh: whether no rate of the acceleration is known: after a touch, and at the release.
+        abrupt: whether the last step changed the velocity so much that it says nothing of the next.
+        touches: how many touches have been met.
+        ended: whether the run is over.
+    """
+
+    t: float
+    h: float
+    last: float
+    energy: float
+    calm: int
+    fresh: bool
+    abrupt: bool
+    touches: int
+    ended: bool
+
+
+@jitable
+def copied(values: Array, to: Array) -> None:
+    """Copy values into another array."""
+    for j in range(len(values)):
+        to[j] = values[j]
+
+
+@jitable
+def kinetic(masses: Array, v: Array) -> float:
+    """Twice the kinetic energy [J], or the same norm of any other rate."""
+    total = 0.0
+    for j in range(len(v)):
+        total += masses[j] * v[j] * v[j]
+    return total
+
+
+@jitable
+def fallen(q: Array) -> bool:
+    """Whether a body lies on its face. A NaN counts."""
+    for j in range(2, len(q), 3):  # noqa: SIM110, numba knows no any()
+        if not abs(q[j]) <= ON_ITS_FACE:
+            return True
+    return False
+
+
+@jitable
+def present(memory: Memory, state: State, last: float) -> None:
+    """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
+    for j in range(len(state.rate)):
+        state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * last
+        state.velocity_now[j] = memory.velocity[j] + 0.5 * last * state.acceleration_now[j]
+
+
+@jitable
+def change_step(memory: Memory, points: Points, pace: Pace, state: State, now: float, last: float) -> None:
+    """Set timestep, rows and friction for a step of another length.
+
+    The velocity lies half a step before the pose. It moves to half a new step before it, with the acceleration in
+    between.
+    """
+    late, lag = 0.5 * (now - last), last - 0.25 * (last + now)
+    for j in range(len(state.rate)):
+        memory.velocity[j] -= late * (state.acceleration[j] + lag * state.rate[j])
+    kind = resolves(pace, now)
+    memory.options[TIMESTEP] = now
+    memory.options[IMPRATIO] = set_rows(
+        points.k,
+        points.c,
+        points.weight,
+        points.held,
+        now,
+        pace.beta[kind],
+        pace.ringing[kind],
+        memory.solref,
+        memory.solimp,
+        memory.solreffriction,
+    )
+
+
+@jitable
+def look_again(memory: Memory, ground: Ground, masses: Array, state: State, t: float, short: float) -> None:
+    """Take the acceleration from the engine where a contact has opened or closed unforeseen in a long step."""
+    push(ground, masses, t, short, memory.applied)
+    memory.forward(memory.model, memory.data)
+    copied(memory.acceleration, state.acceleration_now)
+
+
+@jitable
+def change_of_acceleration(memory: Memory, masses: Array, state: State, last: float, now: float, fresh: bool) -> float:
+    """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
+    change = 0.0
+    for j in range(len(masses)):
+        difference = memory.acceleration[j] - state.acceleration[j]
+        change += masses[j] * difference * difference
+        state.rate[j] = 0.0 if fresh else difference / last
+        state.acceleration[j] = memory.acceleration[j]
+    return now * now * change
+
+
+@jitable
+def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: State, record: Record, n: int) -> None:
+    """Take the frame of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
+    h = record.h[n]
+    kind = resolves(pace, h)
+    for i in range(len(points.k)):
+        if joints.of[i] >= 0:
+            state.sticking[i] = sticks(
+                points,
+                i,
+                state.frame,
+                record.before[n],
+                record.after[n],
+                h,
+                pace.beta[kind, i],
+                pace.ringing[kind, i],
+                memory.options[IMPRATIO],
+            )
+    take_frame(memory.pose, state.frame)
+    put_back(points, joints, memory.pose, state.frame, state.sticking)
+
+
+@jitable
+def make_step(memory: Memory, ground: Ground, masses: Array, record: Record, n: int, t: float, h: float) -> None:
+    """Let the engine make a step, and record it as step n."""
+    push(ground, masses, t, h, memory.applied)
+    record.t[n], record.h[n] = t, h
+    copied(memory.pose, record.pose[n])
+    copied(memory.velocity, record.before[n])
+    memory.step(memory.model, memory.data)
+    copied(memory.velocity, record.after[n])
+
+
+@compiled
+def fitted_loop(
+    memory: Memory,
+    points: Points,
+    masses: Array,
+    ground: Ground,
+    pace: Pace,
+    joints: Joints,
+    state: State,
+    clock: Clock,
+    record: Record,
+    duration: float,
+) -> tuple[Clock, int]:
+    """Steps that fit the motion until the record is full or the run is over; the clock, and how many they were."""
+    t, h, last, energy, calm, fresh, abrupt, touches, ended = clock
+    n = 0
+    while n < len(record.t) and not ended:
+        present(memory, state, last)
+        if closure_changed(points, state.frame, state.closed) and last > pace.short and not fresh:
+            look_again(memory, ground, masses, state, t, pace.short)
+            h, calm, fresh = pace.short, 0, True
+
+        # predict
+        v, a = state.velocity_now, state.acceleration_now
+        now = while_loaded(points, state.frame, v, state.none, h, pace.short)
+        to_touch = 0.0 if abrupt else step_to_touch(points, state.frame, v, a, now, h, energy, pace, state.touch)
+        if to_touch > 0:
+            now = to_touch
+
+        # step
+        if now != last:
+            change_step(memory, points, pace, state, now, last)
+        make_step(memory, ground, masses, record, n, t, now)
+        ended = t >= duration or fallen(record.pose[n])
+        change = change_of_acceleration(memory, masses, state, last, now, fresh) / energy
+        abrupt = change > ABRUPT**2
+        hold(memory, points, pace, joints, state, record, n)
+
+        # judge
+        t, last = t + now, now
+        if to_touch > 0:
+            energy = max(kinetic(masses, memory.velocity), pace.least_energy)
+            touches += 1
+            h, calm, fresh = pace.short, 0, True
+        else:
+            h, calm = judged(pace, now, math.inf if fresh else change, calm)
+            fresh = False
+        n += 1
+    return Clock(t, h, last, energy, calm, fresh, abrupt, touches, ended), n
+
+
+@compiled
+def fixed_loop(
+    memory: Memory, masses: Array, ground: Ground, record: Record, first: int, h: float, last: int
+) -> tuple[bool, int]:
+    """Steps of one length from number `first` until the record is full, number `last`, or a body lies on its face.
+
+    Returns whether the run is over, and how many steps they were.
+    """
+    for n in range(len(record.t)):
+        make_step(memory, ground, masses, record, n, h * (first + n), h)
+        if first + n >= last or fallen(record.pose[n]):
+            return True, n + 1
+    return False, len(record.t)

@@ -1,0 +1,127 @@
+"""The compiled loops: they run as plain Python with the same results, are stored, and are made anew when they must
+be."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock import compiled
+
+PACKAGE = Path(mr.__file__).parent
+
+RUN = """
+import sys
+import numpy as np
+import mjrock as mr
+wall = mr.Block.from_size(0.6, 4.2)
+e = mr.Restitution.from_geometry(wall.alpha)
+contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.008)
+motion = mr.GroundMotion.sine(-2.6, 0.6, samples=40)
+rocking = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.7), contacts, ledger=True)
+shaken = mr.simulate(mr.Case(wall, 0.0, 0.5, motion=motion), contacts)
+fixed = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.1), contacts, 1e-3)
+theory = mr.solve_analytical(mr.Case(wall, 0.0, 3.0, motion=motion), e)
+np.savez(sys.argv[1], rocking=rocking.theta, ledger=rocking.energy_residual, shaken=shaken.theta, fixed=fixed.theta,
+         theory=theory.theta, impacts=theory.impacts, steps=[rocking.stats["steps"], shaken.stats["steps"]])
+"""
+
+
+def run(path, home=None, **environment):
+    """Run RUN in a process of its own, with the package copied to `home` if one is given; its stderr."""
+    setting = os.environ | environment
+    if home is not None:
+        setting["PYTHONPATH"] = str(home)
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, str(path)],
+        env=setting,
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=path.parent,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stderr
+
+
+def same(left, right):
+    """Whether two files hold the same arrays, to rounding: the compiler may order additions otherwise."""
+    with np.load(left) as a, np.load(right) as b:
+        for name in a.files:
+            np.testing.assert_allclose(a[name], b[name], rtol=1e-9, atol=1e-9 * np.abs(a[name]).max())
+
+
+def test_plain_python_gives_the_same(tmp_path):
+    assert "compiling" not in run(tmp_path / "plain.npz", NUMBA_DISABLE_JIT="1")
+    run(tmp_path / "compiled.npz")
+    same(tmp_path / "plain.npz", tmp_path / "compiled.npz")
+
+
+def test_without_numba_there_is_one_line_and_the_same_result(tmp_path):
+    """As on a Python for which numba has no wheel: a module of its name that cannot be imported."""
+    (tmp_path / "numba").mkdir()
+    (tmp_path / "numba" / "__init__.py").write_text("raise ImportError('no wheel')")
+    said = run(tmp_path / "without.npz", home=tmp_path)
+    assert said.splitlines() == [
+        "mjrock: numba is not installed; the loops run as plain Python, some fifty times slower"
+    ]
+    run(tmp_path / "compiled.npz")
+    same(tmp_path / "without.npz", tmp_path / "compiled.npz")
+
+
+@pytest.mark.slow
+def test_stored_once_and_made_anew_when_a_source_changes(tmp_path):
+    """The first run says that it compiles, the second does not; a change in a file that the loop only calls is seen."""
+    copy = tmp_path / "mjrock"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    line = "mjrock: compiling the loops, which takes some seconds and happens once"
+    assert run(tmp_path / "a.npz", home=tmp_path).splitlines() == [line]
+    assert run(tmp_path / "b.npz", home=tmp_path) == ""
+    same(tmp_path / "a.npz", tmp_path / "b.npz")
+    pace = copy / "engine" / "pace.py"
+    pace.write_text(pace.read_text().replace("CHANGE = 1.5", "CHANGE = 0.5"))
+    assert run(tmp_path / "c.npz", home=tmp_path).splitlines() == [line]
+    with np.load(tmp_path / "a.npz") as a, np.load(tmp_path / "c.npz") as c:
+        assert c["steps"][0] > a["steps"][0]
+
+
+@pytest.mark.slow
+def test_a_read_only_installation_works(tmp_path):
+    """No folder can be written, neither the package's nor the user's: the loops are compiled in each process."""
+    copy = tmp_path / "site" / "mjrock"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    # a file where the folders would have to be made, which stops even the superuser
+    for folder in (copy, *(path for path in copy.iterdir() if path.is_dir() and path.name != "laws")):
+        (folder / "__pycache__").touch()
+    (tmp_path / "home").touch()
+    nowhere = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": str(tmp_path / "home"), "PYTHONDONTWRITEBYTECODE": "1"}
+    for name in ("a.npz", "b.npz"):
+        assert "compiling" in run(tmp_path / name, home=tmp_path / "site", **nowhere)
+    same(tmp_path / "a.npz", tmp_path / "b.npz")
+
+
+def test_a_cache_that_cannot_be_read_or_written_is_none(monkeypatch):
+    """A damaged file, a full disk: the loop is compiled and runs."""
+    if not hasattr(compiled, "_Cache"):
+        pytest.skip("without numba nothing is stored")
+    from numba.core.caching import FunctionCache
+
+    def broken(self, *key):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(FunctionCache, "load_overload", broken)
+    monkeypatch.setattr(FunctionCache, "save_overload", broken)
+    double = compiled.compiled(PROBE)
+    room = np.array([1.0, 2.0])
+    double(room)
+    assert list(room) == [2.0, 4.0]
+
+
+def PROBE(values):
+    for i in range(len(values)):
+        values[i] = 2 * values[i]
