@@ -35,8 +35,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     for step in steps:
         for mu, masses in tqdm(variants, desc=f"step {step:g} s", disable=None, leave=False):
             with mock.patch.object(wall, "HELD_FRICTION", mu), mock.patch.object(scene, "HELD_MASSES", masses):
+                wall.standing_wall.cache_clear()
                 runs = [mr.simulate(case, contacts, step) for case in (two_sided, one_sided)]
             rows.append([mu, masses, step * 1e3, *(f"{r:.4f}" for run in runs for r in run.restitution[:2])])
+    wall.standing_wall.cache_clear()
     header = ["mu [-]", "row inertia [m]", "step [ms]", "2s e_1", "2s e_2", "1s e_1", "1s e_2"]
     text = cli.table(header, rows)
     cli.write(out / "friction.txt", text + "\n")

@@ -31,6 +31,7 @@ WRITES = {
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "throughput": {"throughput.txt"},
+    "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
     | {"calibrated_residuals_side.png", "calibration.csv", "calibration.sqlite", "calibration.txt"},

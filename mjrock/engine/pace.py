@@ -35,7 +35,7 @@ DASHPOT = 12.0
 dashpot centred in the step is (c h / m)^2 / 12."""
 LONG = 0.6
 """(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
-CHANGE = 1.5
+CHANGE = 3.0
 """Largest accepted (change of acceleration x step), as a multiple of accuracy x speed."""
 STAYS = 0.1
 """Largest accepted movement of a loaded point in a step by the velocities alone, as a share of its penetration [-]. A

@@ -11,6 +11,7 @@ import hashlib
 import math
 from collections import Counter
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 
@@ -131,6 +132,19 @@ class Scene:
                     np.asarray(values, dtype=float), (-1, bodies, 3) if name == "release" else (bodies, 3)
                 )
                 object.__setattr__(self, name, tuple(values) if name == "release" else _frozen(values))
+
+    def released(self, pose: Array, velocity: Array, duration: float, motion: GroundMotion | None) -> Scene:
+        """This scene with another release, shape (n, 3) each, duration [s] and ground motion.
+
+        What follows from the scene at rest is found once and shared.
+        """
+        for name in ("points", "masses", "rest_energies", "highest_frequency", "rocking_frequency", "key"):
+            getattr(self, name)
+        made = copy(self)
+        made.__dict__.update(release=(pose, velocity), duration=duration, motion=motion)
+        for name in ("started", "release_energy"):
+            made.__dict__.pop(name, None)
+        return made
 
     @cached_property
     def weight(self) -> Array:

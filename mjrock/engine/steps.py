@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,7 @@ class Steps:
     kind: Integers
     touches: int = 0
 
-    @property
+    @cached_property
     def velocity(self) -> Array:
         """Velocities at the times of the poses, shape (steps, 3 n)."""
         velocity: Array = 0.5 * (self.before + self.after)

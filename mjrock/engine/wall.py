@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -37,15 +37,15 @@ def inner_friction(wall: Block, contacts: Contacts) -> float:
     return min(max(allowed, FREE_FRICTION), HELD_FRICTION)
 
 
-def base_friction(case: Case, contacts: Contacts) -> Array:
+def base_friction(wall: Block, contacts: Contacts, side_stop: bool) -> Array:
     """Friction coefficients of the lines of the base [-], shape (points,).
 
     Friction acts at the two edges alone. A bed of which every line sticks would lock the rotation that shears it.
     """
     points = contacts.base.points
     friction = np.zeros(points)
-    if case.side_stop:
-        friction[0], friction[-1] = inner_friction(case.block, contacts), HELD_FRICTION
+    if side_stop:
+        friction[0], friction[-1] = inner_friction(wall, contacts), HELD_FRICTION
     else:
         friction[0] = friction[-1] = FREE_FRICTION * points / 2
     return friction
@@ -64,14 +64,26 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
     Raises:
         ValueError: if the contacts do not fit the case.
     """
-    wall = case.block
-    contacts.require_fit(wall, side_stop=case.side_stop)
+    wall, scene = case.block, standing_wall(case.block, contacts, case.side_stop)
+    tilted = lowered(scene, wall.pose(np.array([case.theta0])))
+    velocity = case.omega0 * wall.turning(case.theta0, case.direction)[None]
+    return scene.released(tilted, velocity, case.duration, case.motion)
+
+
+@lru_cache(maxsize=64)
+def standing_wall(wall: Block, contacts: Contacts, side_stop: bool) -> Scene:
+    """The scene of a wall at rest, which all cases of one wall on the same contacts share.
+
+    Raises:
+        ValueError: if the contacts do not fit the wall.
+    """
+    contacts.require_fit(wall, side_stop=side_stop)
     base, b, h = contacts.base, wall.b, wall.h
     places = [(x, -h) for x in base.positions]
     faces, normals, groups = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, ["base"] * base.points
-    k, c, friction = base.stiffness, base.damping, base_friction(case, contacts)
+    k, c, friction = base.stiffness, base.damping, base_friction(wall, contacts, side_stop)
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
-    if case.side_stop:
+    if side_stop:
         side = contacts.side
         assert side is not None
         places += [(-b, z) for z in side.positions]
@@ -81,17 +93,16 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
         friction = np.concatenate([friction, np.zeros(side.points)])
         facts |= {"k_n_side": side.k_n, "xi_side": side.xi}
     facts |= {"reference_frequency": base.frequency, "law": contacts.law}
-    count = len(places)
-    scene = Scene(
+    return Scene(
         names=("wall",),
         mass=np.array([wall.mass]),
         inertia=np.array([wall.inertia]),
         rest=np.array([[0.0, h]]),
         outlines=(np.array([(-b, -h), (b, -h), (b, h), (-b, h)]),),
         length=wall.length,
-        point_body=np.zeros(count, dtype=np.int64),
+        point_body=np.zeros(len(places), dtype=np.int64),
         point=np.array(places),
-        face_body=np.full(count, GROUND),
+        face_body=np.full(len(places), GROUND),
         face=np.array(faces),
         normal=np.array(normals),
         k=k,
@@ -99,13 +110,9 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
         friction=friction,
         group=tuple(groups),
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]),
-        duration=case.duration,
-        motion=case.motion,
         title=(
             f"A masonry wall, {2 * b:g} m thick, {2 * h:g} m high, {wall.length:g} m long, {wall.density:g} kg/m3, "
-            f"rocking {'against a side stop' if case.side_stop else 'on both edges'}"
+            f"rocking {'against a side stop' if side_stop else 'on both edges'}"
         ),
         facts=facts,
     )
-    tilted = lowered(scene, wall.pose(np.array([case.theta0])))
-    return replace(scene, release=(tilted, case.omega0 * wall.turning(case.theta0, case.direction)[None]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
+from functools import cached_property
 
 from .block import Block
 from .motion import GroundMotion
@@ -49,7 +50,7 @@ class Case:
         if not (self.motion is None or isinstance(self.motion, GroundMotion)):
             raise ValueError(f"motion = {self.motion!r} is not a GroundMotion")
 
-    @property
+    @cached_property
     def release_energy(self) -> float:
         """Kinetic and potential energy of the rigid wall at release, above the wall at rest [J]."""
         return self.block.potential_energy(self.theta0) + 0.5 * self.block.toe_inertia * self.omega0**2

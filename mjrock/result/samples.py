@@ -9,40 +9,41 @@ from ..problem.quantities import Array
 
 
 @jitable
-def hermite(u: float, width: float, y0: float, v0: float, y1: float, v1: float) -> tuple[float, float]:
-    """Value and rate of the cubic that has the values y and the rates v at both ends.
+def cubic(width: float, y0: float, v0: float, y1: float, v1: float) -> tuple[float, float]:
+    """Coefficients of s^2 and s^3 of the cubic y0 + v0 s + ... that has the values y and the rates v at both ends.
 
     Args:
-        u: place between the ends, 0 to 1 [-].
-        width: distance of the ends.
+        width: distance of the ends; s goes from 0 to it.
         y0, v0, y1, v1: values and rates at the ends.
     """
-    turned, swept = y1 - y0, width
-    value = y0 + u * (swept * v0 + u * (3 * turned - swept * (2 * v0 + v1) + u * (swept * (v0 + v1) - 2 * turned)))
-    rate = v0 + u * (6 * turned / swept - 4 * v0 - 2 * v1 + u * (3 * (v0 + v1) - 6 * turned / swept))
-    return value, rate
+    slope = (y1 - y0) / width
+    return (3 * slope - 2 * v0 - v1) / width, (v0 + v1 - 2 * slope) / (width * width)
 
 
 def interpolated(t: Array, y: Array, v: Array, at: Array) -> tuple[Array, Array]:
     """Values and rates at increasing times, by cubic Hermite interpolation between the steps.
 
     Args:
-        t: times of the steps [s], increasing, shape (steps,).
+        t: times of the steps [s], shape (steps,). Two may be equal, where a rate jumps.
         y, v: values and rates at the steps, shape (steps, columns).
         at: times asked for [s], increasing and within those of the steps, shape (samples,).
     """
-    values, rates = np.empty((2, len(at), y.shape[1]))
+    values, rates = np.empty((len(at), y.shape[1])), np.empty((len(at), y.shape[1]))
     _interpolate(t, y, v, at, values, rates)
     return values, rates
 
 
 @compiled
 def _interpolate(t: Array, y: Array, v: Array, at: Array, values: Array, rates: Array) -> None:
-    i = 0
-    for k in range(len(at)):
-        while i < len(t) - 2 and t[i + 1] < at[k]:
-            i += 1
-        width = t[i + 1] - t[i]
-        u = (at[k] - t[i]) / width
-        for j in range(y.shape[1]):
-            values[k, j], rates[k, j] = hermite(u, width, y[i, j], v[i, j], y[i + 1, j], v[i + 1, j])
+    first = 0
+    for i in range(len(t) - 1):
+        width, end = t[i + 1] - t[i], first
+        while end < len(at) and (at[end] <= t[i + 1] or i == len(t) - 2):
+            end += 1
+        for j in range(y.shape[1] if end > first else 0):
+            c2, c3 = cubic(width, y[i, j], v[i, j], y[i + 1, j], v[i + 1, j]) if width > 0 else (0.0, 0.0)
+            for k in range(first, end):
+                s = at[k] - t[i]
+                values[k, j] = y[i, j] + s * (v[i, j] + s * (c2 + s * c3))
+                rates[k, j] = v[i, j] + s * (2 * c2 + 3 * s * c3)
+        first = end

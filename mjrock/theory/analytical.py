@@ -68,14 +68,13 @@ def solve_analytical(
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
     theta, omega = found.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
-    energies = 0.5 * wall.toe_inertia * found.impacts[:, 1:] ** 2
     return Response(
         case=case,
         solver="analytical",
         t=samples,
         theta=theta,
         omega=omega,
-        impacts=tuple(map(Impact._make, np.hstack([found.impacts, energies]).tolist())),
+        impacts=tuple(map(Impact._make, found.impacts.tolist())),
         peaks=np.append(released, found.peaks),
         outcome=outcome,
         message=describe(outcome, case, t_end, float(theta[-1])),

@@ -17,8 +17,8 @@ import numpy as np
 from ..compiled import compiled, jitable
 from ..problem.case import Case
 from ..problem.motion import GroundMotion
-from ..problem.quantities import GRAVITY, ON_ITS_FACE, Array
-from ..result.samples import hermite
+from ..problem.quantities import GRAVITY, ON_ITS_FACE, Array, Integers
+from ..result.samples import interpolated
 from .rocking import Rocking
 
 NYSTROEM = 50.0
@@ -29,7 +29,7 @@ SMALL = 0.05
 """Largest change of an angle in a step for which its sine and cosine are taken from series [rad]."""
 SINE, COSINE = (-1 / 6, 1 / 120, -1 / 5040), (-1 / 2, 1 / 24, -1 / 720, 1 / 40320)
 """Coefficients of these series."""
-CHUNK = 1024
+CHUNK = 4096
 """Room for knots, and for a quarter as many impacts and peaks, which is emptied when it is full."""
 
 
@@ -40,6 +40,7 @@ class Forcing(NamedTuple):
         alpha: angle of the diagonal to the vertical [rad].
         p2: square of the frequency parameter [1/s2].
         one_sided: whether a side stop keeps the rotation from becoming negative.
+        inertia: moment of inertia about the toe [kg m2].
         e: restitution of an impact [-].
         rest: an impact that leaves less angular velocity than this leaves the wall at rest [rad/s].
         shares: a_g / g at the samples [-].
@@ -51,6 +52,7 @@ class Forcing(NamedTuple):
     alpha: float
     p2: float
     one_sided: bool
+    inertia: float
     e: float
     rest: float
     shares: Array
@@ -76,7 +78,7 @@ class Room(NamedTuple):
 
     Args:
         knots: time [s], rotation [rad] and velocity [rad/s] before and after each step and each impact, shape (n, 3).
-        impacts: time [s], velocity before and after [rad/s] of each impact, shape (n, 3).
+        impacts: the numbers of each impact, as in `mjrock.result.history.Impact`, shape (n, 5).
         peaks: rotation maxima |theta| [rad], shape (n,).
         counts: how many of each there are, shape (3,).
     """
@@ -84,7 +86,18 @@ class Room(NamedTuple):
     knots: Array
     impacts: Array
     peaks: Array
-    counts: Array
+    counts: Integers
+
+    @classmethod
+    def empty(cls) -> Room:
+        """Room for CHUNK knots."""
+        few = CHUNK // 4
+        return cls(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64))
+
+    def filled(self) -> tuple[Array, Array, Array]:
+        """Copies of what has been found."""
+        knots, impacts, peaks = self.counts
+        return self.knots[:knots].copy(), self.impacts[:impacts].copy(), self.peaks[:peaks].copy()
 
 
 @jitable
@@ -186,6 +199,15 @@ def noted(room: Room, t: float, theta: float, omega: float) -> None:
     room.counts[0] += 1
 
 
+@jitable
+def met(room: Room, forcing: Forcing, t: float, omega: float) -> None:
+    """Write an impact."""
+    impact, after = room.impacts[room.counts[1]], forcing.e * omega
+    impact[0], impact[1], impact[2] = t, omega, after
+    impact[3], impact[4] = 0.5 * forcing.inertia * omega * omega, 0.5 * forcing.inertia * after * after
+    room.counts[1] += 1
+
+
 @compiled
 def forced_loop(forcing: Forcing, clock: Clock, room: Room) -> Clock:
     """Follow the wall until the room is nearly full, or until it lies on its face or the time is over."""
@@ -225,9 +247,7 @@ def forced_loop(forcing: Forcing, clock: Clock, room: Room) -> Clock:
         noted(room, t, theta, omega)
         fell = side * theta > ON_ITS_FACE
         if hit:
-            n = room.counts[1]
-            room.impacts[n, 0], room.impacts[n, 1], room.impacts[n, 2] = t, omega, forcing.e * omega
-            room.counts[1] += 1
+            met(room, forcing, t, omega)
             omega *= forcing.e
             at_rest = abs(omega) <= forcing.rest
             side = math.copysign(1.0, omega)
@@ -246,42 +266,30 @@ def rock_forced(case: Case, motion: GroundMotion, e: float, least: float, rtol: 
         rtol: sets the longest step, see NYSTROEM.
     """
     wall = case.block
-    longest = (NYSTROEM * rtol) ** 0.25 / wall.p
-    rest = math.sqrt(2 * least / wall.toe_inertia)
-    shares = motion.accel / GRAVITY
-    forcing = Forcing(wall.alpha, wall.p**2, case.side_stop, e, rest, shares, motion.dt, longest, case.duration)
-    still = case.release_energy == 0
-    clock = Clock(0.0, case.theta0, case.omega0, case.direction, still, False, False)
-    few = CHUNK // 4
-    room = Room(np.empty((CHUNK, 3)), np.empty((few, 3)), np.empty(few), np.zeros(3, dtype=np.int64))
-    found: list[tuple[Array, Array, Array]] = []
+    forcing = Forcing(
+        alpha=wall.alpha,
+        p2=wall.p**2,
+        one_sided=case.side_stop,
+        inertia=wall.toe_inertia,
+        e=e,
+        rest=math.sqrt(2 * least / wall.toe_inertia),
+        shares=motion.accel / GRAVITY,
+        dt=motion.dt,
+        longest=(NYSTROEM * rtol) ** 0.25 / wall.p,
+        duration=case.duration,
+    )
+    clock = Clock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
+    room, found = Room.empty(), []
     while not clock.ended:
         room.counts[:] = 0
         clock = forced_loop(forcing, clock, room)
-        knots, impacts, peaks = room.counts
-        found.append((room.knots[:knots].copy(), room.impacts[:impacts].copy(), room.peaks[:peaks].copy()))
-    knots, impacts, peaks = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        found.append(room.filled())
+    knots, impacts, peaks = found[0] if len(found) == 1 else map(np.concatenate, zip(*found, strict=True))
+    t, theta, omega = np.ascontiguousarray(knots.T)
 
-    def sample(t: Array) -> tuple[Array, Array]:
-        theta, omega = np.empty((2, len(t)))
-        _sample(knots, t, theta, omega)
-        return theta, omega
+    def sample(times: Array) -> tuple[Array, Array]:
+        rotations, velocities = interpolated(t, theta[:, None], omega[:, None], times)
+        return rotations[:, 0], velocities[:, 0]
 
-    return Rocking(
-        impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, len(knots) // 2, 3 * (len(knots) // 2)
-    )
-
-
-@compiled
-def _sample(knots: Array, t: Array, theta: Array, omega: Array) -> None:
-    """Rotation and velocity at increasing times, between the knots, of which two may lie at one time."""
-    i = 0
-    for k in range(len(t)):
-        while i < len(knots) - 2 and knots[i + 1, 0] < t[k]:
-            i += 1
-        width = knots[i + 1, 0] - knots[i, 0]
-        if width <= 0:
-            theta[k], omega[k] = knots[i + 1, 1], knots[i + 1, 2]
-            continue
-        u = min(max((t[k] - knots[i, 0]) / width, 0.0), 1.0)
-        theta[k], omega[k] = hermite(u, width, knots[i, 1], knots[i, 2], knots[i + 1, 1], knots[i + 1, 2])
+    steps = len(t) // 2
+    return Rocking(impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, steps, 3 * steps)

@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 
 from ..problem.case import Case
 from ..problem.quantities import ON_ITS_FACE, Array
+from ..result.history import Impact
 from .rocking import Rocking
 
 
@@ -108,7 +109,8 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
     """
     arcs = Arcs(case, rtol, atol)
     state, s, event = (0.0, case.theta0, case.omega0), case.direction, Event.TIME
-    impacts: list[tuple[float, float, float]] = []
+    impacts: list[Impact] = []
+    inertia = case.block.toe_inertia
     peaks: list[float] = []
     at_rest = case.release_energy == 0
     while state[0] < case.duration and not at_rest and event is not Event.FALL:
@@ -117,11 +119,11 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
             peaks.append(abs(state[1]))
         elif event is Event.IMPACT:
             before, after = state[2], e * state[2]
-            impacts.append((state[0], before, after))
-            at_rest = 0.5 * case.block.toe_inertia * after**2 <= least
+            impacts.append(Impact(state[0], before, after, 0.5 * inertia * before**2, 0.5 * inertia * after**2))
+            at_rest = impacts[-1].energy_after <= least
             s, state = math.copysign(1.0, after), (state[0], 0.0, after)
     return Rocking(
-        impacts=np.reshape(impacts, (-1, 3)),
+        impacts=np.reshape(np.array(impacts, dtype=float), (-1, 5)),
         peaks=np.array(peaks),
         t=state[0],
         theta=0.0 if at_rest else state[1],

@@ -13,7 +13,7 @@ class Rocking:
     """A motion of a rigid wall from impact to impact.
 
     Args:
-        impacts: time [s] and angular velocity before and after [rad/s] of each impact, shape (m, 3).
+        impacts: the numbers of each impact, as in `mjrock.result.history.Impact`, shape (m, 5).
         peaks: rotation maxima |theta| [rad] after the release.
         t, theta: time and rotation at the end [s, rad].
         fell: whether the wall lies on its face.
