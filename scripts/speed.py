@@ -121,9 +121,7 @@ class Version:
 
     def close(self) -> None:
         """End the process."""
-        assert self.process.stdin is not None
-        self.process.stdin.close()
-        self.process.wait()
+        self.process.communicate()
 
 
 def unpacked(revision: str, folder: Path) -> Path:

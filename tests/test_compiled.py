@@ -84,7 +84,7 @@ def test_stored_once_and_made_anew_when_a_source_changes(tmp_path):
     assert run(tmp_path / "b.npz", home=tmp_path) == ""
     same(tmp_path / "a.npz", tmp_path / "b.npz")
     pace = copy / "engine" / "pace.py"
-    pace.write_text(pace.read_text().replace("CHANGE = 1.5", "CHANGE = 0.5"))
+    pace.write_text(pace.read_text().replace("CHANGE = 2.0", "CHANGE = 0.5"))
     assert run(tmp_path / "c.npz", home=tmp_path).splitlines() == [line]
     with np.load(tmp_path / "a.npz") as a, np.load(tmp_path / "c.npz") as c:
         assert c["steps"][0] > a["steps"][0]

@@ -65,8 +65,9 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
             before, after = (gap(scene.points, i, frame_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
             now = gap(scene.points, i, frame_of(q), v, a)
             assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
-            assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2], abs=1e-5)
+            assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
             assert gap(scene.points, i, frame_of(q), 2 * v, a)[1] == pytest.approx(2 * now[1])
+            assert gap(scene.points, i, frame_of(q), a, v)[1] == pytest.approx(now[2])
 
 
 def test_slip_is_the_relative_velocity_where_friction_acts():
@@ -124,7 +125,7 @@ def test_gaps_and_slip_are_those_of_the_engine():
                     i for i in range(model.npair) if {model.pair_geom1[i], model.pair_geom2[i]} == set(contact.geom)
                 )
                 seen.add(i)
-                g, rate, _ = gap(scene.points, i, frame_of(q), v, v)
+                g, rate, _, _ = gap(scene.points, i, frame_of(q), v, v)
                 assert contact.dist == pytest.approx(g, abs=1e-12)
                 row = contact.efc_address
                 assert jacobian[row] @ v == pytest.approx(rate, rel=1e-9, abs=1e-9)

@@ -149,8 +149,7 @@ def _contact_work(
             if points.held[i] > 0:
                 impratio = min(impratio, points.held[i] / inertia[i])
         for i in range(m):
-            g, rate, _ = gap(points, i, frame, middle, middle)
-            curve = gap(points, i, frame, acceleration, middle)[1]
+            g, rate, curve, _ = gap(points, i, frame, middle, acceleration)
             given = spring_energy(points, i, seam) - spring_energy(points, i, next_seam)
             if g >= 0:
                 dashpots[n, number[i]] += given

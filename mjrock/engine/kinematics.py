@@ -71,7 +71,9 @@ def frame_of(q: Array) -> Array:
 
 @jitable
 def carried(frame: Array, v: Array, a: Array, body: int, x: float, z: float) -> tuple[float, ...]:
-    """Displacement, velocity and acceleration of the point (x, z) of a body, x before z each.
+    """Displacement, velocity, and acceleration in two parts of the point (x, z) of a body, x before z each.
+
+    The first part of the acceleration is linear in a, the second is what turning at a constant rate makes.
 
     Args:
         frame: the pose of all bodies.
@@ -89,8 +91,10 @@ def carried(frame: Array, v: Array, a: Array, body: int, x: float, z: float) -> 
         frame[body, 1] + moved_z,
         v[i] + w * from_z,
         v[i + 1] - w * from_x,
-        a[i] + turn * from_z - w * w * from_x,
-        a[i + 1] - turn * from_x - w * w * from_z,
+        a[i] + turn * from_z,
+        a[i + 1] - turn * from_x,
+        -w * w * from_x,
+        -w * w * from_z,
     )
 
 
@@ -105,25 +109,27 @@ def direction(points: Points, i: int, frame: Array) -> tuple[float, float]:
 
 
 @jitable
-def gap(points: Points, i: int, frame: Array, v: Array, a: Array) -> tuple[float, float, float]:
-    """Gap between point i and its face [m], its rate [m/s], and the rate of that [m/s2].
+def gap(points: Points, i: int, frame: Array, v: Array, a: Array) -> tuple[float, float, float, float]:
+    """Gap between point i and its face [m], its rate [m/s], and the rate of that in two parts [m/s2].
 
-    g = n . r with r from the origin of the face to the point and n the normal, which turns with the body of the face.
-    A negative gap is a penetration. The rate is linear in v.
+    The gap is n . r with r from the origin of the face to the point and n the normal, which turns with the body of the
+    face. A negative gap is a penetration. The rate is linear in v. The first part of its rate is linear in a, and the
+    same function of a as the rate is of v. The second part is what the velocities alone make.
     """
-    x, z, vx, vz, ax, az = carried(frame, v, a, points.body[i], points.at[i, 0], points.at[i, 1])
+    x, z, vx, vz, ax, az, cx, cz = carried(frame, v, a, points.body[i], points.at[i, 0], points.at[i, 1])
     nx, nz = direction(points, i, frame)
     rx, rz = points.between[i, 0] + x, points.between[i, 1] + z
     face = points.face_body[i]
     if face < 0:
-        return nx * rx + nz * rz, nx * vx + nz * vz, nx * ax + nz * az
-    fx, fz, fvx, fvz, fax, faz = carried(frame, v, a, face, points.face_at[i, 0], points.face_at[i, 1])
-    rx, rz, vx, vz, ax, az = rx - fx, rz - fz, vx - fvx, vz - fvz, ax - fax, az - faz
+        return nx * rx + nz * rz, nx * vx + nz * vz, nx * ax + nz * az, nx * cx + nz * cz
+    fx, fz, fvx, fvz, fax, faz, fcx, fcz = carried(frame, v, a, face, points.face_at[i, 0], points.face_at[i, 1])
+    rx, rz, vx, vz = rx - fx, rz - fz, vx - fvx, vz - fvz
+    ax, az, cx, cz = ax - fax, az - faz, cx - fcx, cz - fcz
     # the normal has the rate w (nz, -nx), and this has the rate turn (nz, -nx) - w^2 (nx, nz)
     w, turn = v[3 * face + 2], a[3 * face + 2]
-    along, out = nz * rx - nx * rz, nx * rx + nz * rz
-    rate = nx * vx + nz * vz + w * along
-    return out, rate, nx * ax + nz * az + 2 * w * (nz * vx - nx * vz) + turn * along - w * w * out
+    across, out = nz * rx - nx * rz, nx * rx + nz * rz
+    swept = nx * cx + nz * cz + 2 * w * (nz * vx - nx * vz) - w * w * out
+    return out, nx * vx + nz * vz + w * across, nx * ax + nz * az + turn * across, swept
 
 
 @jitable
@@ -147,14 +153,14 @@ def along(points: Points, i: int, frame: Array, v: Array) -> tuple[float, float,
 
     The slip is taken where MuJoCo lets friction act: halfway between the surface of the sphere and the face.
     """
-    x, z, vx, vz, _, _ = carried(frame, v, v, points.body[i], points.at[i, 0], points.at[i, 1])
+    x, z, vx, vz, _, _, _, _ = carried(frame, v, v, points.body[i], points.at[i, 0], points.at[i, 1])
     nx, nz = direction(points, i, frame)
     rx, rz = points.between[i, 0] + x, points.between[i, 1] + z
     turn, face = v[3 * points.body[i] + 2], points.face_body[i]
     if face < 0:
         rate = nz * vx - nx * vz
         return nz * rx - nx * rz, rate, rate - turn * (0.5 * (nx * rx + nz * rz) + points.radius)
-    fx, fz, fvx, fvz, _, _ = carried(frame, v, v, face, points.face_at[i, 0], points.face_at[i, 1])
+    fx, fz, fvx, fvz, _, _, _, _ = carried(frame, v, v, face, points.face_at[i, 0], points.face_at[i, 1])
     rx, rz, vx, vz = rx - fx, rz - fz, vx - fvx, vz - fvz
     across, out, w = nz * vx - nx * vz, nx * rx + nz * rz, v[3 * face + 2]
     below = 0.5 * out + points.radius

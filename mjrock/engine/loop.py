@@ -21,8 +21,8 @@ from .kinematics import Points, frame_of, take_frame
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .pace import Pace, judged, resolves, while_loaded
 from .steps import Record
-from .sticking import Joints, put_back, sticks
-from .touches import ABRUPT, closure_changed, step_to_touch
+from .sticking import Joints, deepest, put_back, sticks
+from .touches import ABRUPT, FADED, closure_changed, follow_contacts, step_to_touch
 
 
 class State(NamedTuple):
@@ -32,10 +32,9 @@ class State(NamedTuple):
         acceleration: in the last step, shape (3 n,).
         rate: its rate, from the last two steps, shape (3 n,).
         velocity_now, acceleration_now: room for the values at the time of the pose, shape (3 n,).
-        none: zeros, shape (3 n,).
-        frame: frame of the pose, shape (n, 4).
+        frame, next_frame: frames of the pose before and after the step, shape (n, 4).
+        motion: gap of each contact and its rates, see `touches.follow_contacts`, shape (m, 4).
         closed: which contacts are closed, shape (m,).
-        sticking: which contacts stuck in the last step, shape (m,).
         touch: room for the touches of a step, shape (m, 2).
     """
 
@@ -43,10 +42,10 @@ class State(NamedTuple):
     rate: Array
     velocity_now: Array
     acceleration_now: Array
-    none: Array
     frame: Array
+    next_frame: Array
+    motion: Array
     closed: Flags
-    sticking: Flags
     touch: Array
 
     @classmethod
@@ -58,10 +57,10 @@ class State(NamedTuple):
             rate=np.zeros(n),
             velocity_now=np.zeros(n),
             acceleration_now=np.zeros(n),
-            none=np.zeros(n),
             frame=frame_of(memory.pose),
+            next_frame=frame_of(memory.pose),
+            motion=np.zeros((contacts, 4)),
             closed=np.zeros(contacts, dtype=np.bool_),
-            sticking=np.zeros(contacts, dtype=np.bool_),
             touch=np.zeros((contacts, 2)),
         )
 
@@ -176,21 +175,24 @@ def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: Stat
     """Take the frame of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
     h = record.h[n]
     kind = resolves(pace, h)
-    for i in range(len(points.k)):
-        if joints.of[i] >= 0:
-            state.sticking[i] = sticks(
-                points,
-                i,
-                state.frame,
-                record.before[n],
-                record.after[n],
-                h,
-                pace.beta[kind, i],
-                pace.ringing[kind, i],
-                memory.options[IMPRATIO],
-            )
-    take_frame(memory.pose, state.frame)
-    put_back(points, joints, memory.pose, state.frame, state.sticking)
+    take_frame(memory.pose, state.next_frame)
+    for j in range(len(joints.body)):
+        i = deepest(points, joints, j, state.next_frame)
+        if i >= 0 and not sticks(
+            points,
+            i,
+            state.frame,
+            record.before[n],
+            record.after[n],
+            h,
+            pace.beta[kind, i],
+            pace.ringing[kind, i],
+            memory.options[IMPRATIO],
+        ):
+            i = -1
+        put_back(points, joints, j, i, memory.pose, state.next_frame)
+    for body in range(len(state.frame)):
+        copied(state.next_frame[body], state.frame[body])
 
 
 @jitable
@@ -222,14 +224,16 @@ def fitted_loop(
     n = 0
     while n < len(record.t) and not ended:
         present(memory, state, last)
-        if closure_changed(points, state.frame, state.closed) and last > pace.short and not fresh:
+        motion, v, a = state.motion, state.velocity_now, state.acceleration_now
+        follow_contacts(points, state.frame, v, a, motion)
+        if closure_changed(motion, state.closed) and last > pace.short and not fresh:
             look_again(memory, ground, masses, state, t, pace.short)
+            follow_contacts(points, state.frame, v, a, motion)
             h, calm, fresh = pace.short, 0, True
 
         # predict
-        v, a = state.velocity_now, state.acceleration_now
-        now = while_loaded(points, state.frame, v, state.none, h, pace.short)
-        to_touch = 0.0 if abrupt else step_to_touch(points, state.frame, v, a, now, h, energy, pace, state.touch)
+        now, least = while_loaded(points, motion, h, pace.short), FADED * pace.accuracy * energy
+        to_touch = 0.0 if abrupt else step_to_touch(points, motion, now, h, least, pace.short, state.touch)
         if to_touch > 0:
             now = to_touch
 

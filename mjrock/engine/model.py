@@ -21,7 +21,7 @@ from .scene import Scene
 from .steps import Record
 from .wall import wall_scene
 
-CHUNK = 4_000
+CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""
 KEPT = 16
 """Scenes whose compiled models are kept for the next run."""

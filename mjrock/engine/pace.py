@@ -22,7 +22,7 @@ import numpy as np
 from ..compiled import jitable
 from ..problem.quantities import Array
 from .contact import longest_step
-from .kinematics import Points, gap
+from .kinematics import Points
 from .scene import Scene
 
 SHORT = 24.0
@@ -35,7 +35,7 @@ DASHPOT = 12.0
 dashpot centred in the step is (c h / m)^2 / 12."""
 LONG = 0.6
 """(p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking."""
-CHANGE = 3.0
+CHANGE = 2.0
 """Largest accepted (change of acceleration x step), as a multiple of accuracy x speed."""
 STAYS = 0.1
 """Largest accepted movement of a loaded point in a step by the velocities alone, as a share of its penetration [-]. A
@@ -115,15 +115,16 @@ def resolves(pace: Pace, h: float) -> int:
 
 
 @jitable
-def while_loaded(points: Points, frame: Array, v: Array, none: Array, h: float, short: float) -> float:
+def while_loaded(points: Points, motion: Array, h: float, short: float) -> float:
     """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
 
-    h^2/2 |g2| <= STAYS |g| for every loaded point, g its gap and g2 the second rate of the gap without accelerations.
+    h^2/2 |g2| <= STAYS |g| for every loaded point, with g its gap and g2 what the velocities alone make of its second
+    rate, both from the `motion` of the contacts.
     """
     for i in range(len(points.k)):
-        g, _, g2 = gap(points, i, frame, v, none)
-        if -g > LOADED * points.bears[i] > 0 and 0.5 * h * h * abs(g2) > -STAYS * g:
-            h = math.sqrt(-2 * STAYS * g / abs(g2))
+        g, swept = motion[i, 0], motion[i, 3]
+        if -g > LOADED * points.bears[i] > 0 and 0.5 * h * h * abs(swept) > -STAYS * g:
+            h = math.sqrt(-2 * STAYS * g / abs(swept))
     return max(h, short)
 
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
-from ..problem.quantities import Array, Flags, Integers
+from ..problem.quantities import Array, Integers
 from .contact import row
 from .kinematics import Points, along, depth, direction, gap
 from .scene import Scene
@@ -79,7 +79,7 @@ def sticks(
 
     The friction row stops the slip with the force that this takes, as long as the force is within the cone.
     """
-    g, rate, _ = gap(points, i, frame, before, before)
+    g, rate, _, _ = gap(points, i, frame, before, before)
     if g >= 0:
         return False
     dashpot, inertia = row(points.k[i], points.c[i], h, points.weight[i], beta, ringing)
@@ -90,11 +90,11 @@ def sticks(
 
 
 @jitable
-def deepest(points: Points, joints: Joints, j: int, frame: Array, sticking: Flags) -> int:
-    """The deepest sticking point of a joint, -1 where none sticks."""
+def deepest(points: Points, joints: Joints, j: int, frame: Array) -> int:
+    """The deepest point of a joint, -1 where none is closed."""
     found, most = -1, 0.0
     for i in range(len(points.k)):
-        if joints.of[i] == j and sticking[i] and depth(points, i, frame) > most:
+        if joints.of[i] == j and depth(points, i, frame) > most:
             found, most = i, depth(points, i, frame)
     return found
 
@@ -110,26 +110,24 @@ def presses(points: Points, body: int, frame: Array) -> bool:
 
 
 @jitable
-def put_back(points: Points, joints: Joints, q: Array, frame: Array, sticking: Flags) -> None:
-    """Shift the bodies so that the deepest sticking point of each joint is where it stuck.
+def put_back(points: Points, joints: Joints, j: int, i: int, q: Array, frame: Array) -> None:
+    """Shift the body on joint j so that point i, the deepest of the joint and sticking, is where it stuck.
 
     Args:
         points: the contacts.
         joints: the joints, whose state is brought up to date.
+        j, i: the joint and the point, -1 where the deepest point does not stick.
         q, frame: the pose after the step and its frame, which are changed.
-        sticking: whether each contact stuck in the step, shape (m,).
     """
-    for j in range(len(joints.body)):
-        i, body = deepest(points, joints, j, frame, sticking), joints.body[j]
-        if i < 0 or joints.stuck[j] != i:
-            joints.stuck[j] = i
-            if i >= 0:
-                joints.anchor[j] = along(points, i, frame, q)[0]
-            continue
-        drift = along(points, i, frame, q)[0] - joints.anchor[j]
-        nx, nz = direction(points, i, frame)
-        frame[body, 0], frame[body, 1] = q[3 * body] - drift * nz, q[3 * body + 1] + drift * nx
-        if presses(points, body, frame):
-            frame[body, 0], frame[body, 1] = q[3 * body], q[3 * body + 1]
-        else:
-            q[3 * body], q[3 * body + 1] = frame[body, 0], frame[body, 1]
+    if i < 0 or joints.stuck[j] != i:
+        joints.stuck[j] = i
+        if i >= 0:
+            joints.anchor[j] = along(points, i, frame, q)[0]
+        return
+    drift, body = along(points, i, frame, q)[0] - joints.anchor[j], joints.body[j]
+    nx, nz = direction(points, i, frame)
+    frame[body, 0], frame[body, 1] = q[3 * body] - drift * nz, q[3 * body + 1] + drift * nx
+    if presses(points, body, frame):
+        frame[body, 0], frame[body, 1] = q[3 * body], q[3 * body + 1]
+    else:
+        q[3 * body], q[3 * body + 1] = frame[body, 0], frame[body, 1]

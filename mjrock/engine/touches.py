@@ -11,8 +11,7 @@ import math
 
 from ..compiled import jitable
 from ..problem.quantities import Array, Flags
-from .kinematics import Points, depth, gap
-from .pace import Pace
+from .kinematics import Points, gap
 
 FADED = 0.01
 """A touch is met with a short step where ignoring it would misplace more than this share of accuracy x energy [-]."""
@@ -22,11 +21,18 @@ strong dashpot stops a body within a step or two says nothing of the next step."
 
 
 @jitable
-def closure_changed(points: Points, frame: Array, closed: Flags) -> bool:
+def follow_contacts(points: Points, frame: Array, v: Array, a: Array, motion: Array) -> None:
+    """Write gap, rate, and both parts of the second rate of every contact, shape (m, 4), see `kinematics.gap`."""
+    for i in range(len(motion)):
+        motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3] = gap(points, i, frame, v, a)
+
+
+@jitable
+def closure_changed(motion: Array, closed: Flags) -> bool:
     """Whether a contact has opened or closed since `closed` was last brought up to date, which is done here."""
     changed = False
-    for i in range(len(points.k)):
-        now = depth(points, i, frame) > 0
+    for i in range(len(motion)):
+        now = motion[i, 0] < 0
         if now != closed[i]:
             closed[i] = now
             changed = True
@@ -34,19 +40,17 @@ def closure_changed(points: Points, frame: Array, closed: Flags) -> bool:
 
 
 @jitable
-def predict(
-    points: Points, frame: Array, v: Array, a: Array, h: float, longest: float, least: float, touch: Array
-) -> float:
+def predict(points: Points, motion: Array, now: float, h: float, least: float, touch: Array) -> float:
     """Find the touches of a step that matter, and return the time until the first one [s], or infinity.
 
-    A touch that is ignored is noticed up to a step h too late. It then misplaces k (v h)^2 / 4 in the spring and c h
-    v^2 in the dashpot.
+    A touch that is ignored is noticed up to a step h too late. It then misplaces k (v h)^2 / 4 in the spring and
+    c h v^2 in the dashpot.
 
     Args:
         points: the contacts.
-        frame, v, a: pose, velocity and acceleration now.
-        h: the step within which touches count [s].
-        longest: the step by which a touch would be noticed too late [s].
+        motion: their motion now.
+        now: the step within which touches count [s].
+        h: the step up to which a touch that is ignored would be noticed too late [s].
         least: energy that may be misplaced [J].
         touch: where the time until the touch [s] and the closing speed [m/s] of each contact are written, shape (m, 2).
             The time is infinite where a contact is closed, does not touch, or touches too faintly.
@@ -54,11 +58,11 @@ def predict(
     first = math.inf
     for i in range(len(points.k)):
         touch[i, 0] = math.inf
-        g, g1, g2 = gap(points, i, frame, v, a)
-        if g < 0 or g + h * (g1 + 0.5 * h * g2) > 0:
+        g, g1, g2 = motion[i, 0], motion[i, 1], motion[i, 2] + motion[i, 3]
+        if g < 0 or g + now * (g1 + 0.5 * now * g2) > 0:
             continue
         closing = math.sqrt(max(0.0, g1 * g1 - 2 * g * g2))
-        if (0.25 * points.k[i] * longest**2 + points.c[i] * longest) * closing**2 > least:
+        if (0.25 * points.k[i] * h + points.c[i]) * h * closing**2 > least:
             touch[i, 0], touch[i, 1] = 2 * g / (closing - g1), closing
             first = min(first, touch[i, 0])
     return first
@@ -76,7 +80,7 @@ def hardest(touch: Array, latest: float) -> float:
 
 @jitable
 def step_to_touch(
-    points: Points, frame: Array, v: Array, a: Array, now: float, h: float, energy: float, pace: Pace, touch: Array
+    points: Points, motion: Array, now: float, h: float, least: float, short: float, touch: Array
 ) -> float:
     """Length of a step that ends half a short step after the touch that falls within it, or zero if none does [s].
 
@@ -84,14 +88,14 @@ def step_to_touch(
 
     Args:
         points: the contacts.
-        frame, v, a: pose, velocity and acceleration now.
+        motion: their motion now.
         now: the step that is about to be made [s].
         h: the length of step that the pace allows [s].
-        energy: twice the kinetic energy that an impact is measured by [J].
-        pace: the limits of the steps.
+        least: energy that may be misplaced [J].
+        short: the short step [s].
         touch: room for the touches, shape (m, 2).
     """
-    first = predict(points, frame, v, a, now, h, FADED * pace.accuracy * energy, touch)
+    first = predict(points, motion, now, h, least, touch)
     if first == math.inf:
         return 0.0
-    return hardest(touch, first + 0.5 * pace.short) + 0.5 * pace.short
+    return hardest(touch, first + 0.5 * short) + 0.5 * short
