@@ -18,6 +18,7 @@ import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from unittest import mock
 
 import mujoco
 import numpy as np
@@ -26,6 +27,7 @@ from tqdm import tqdm
 import cli
 import mjrock as mr
 from mjrock import plotting
+from mjrock.engine import loop, stepping
 from mjrock.engine.contact import WITHIN
 from mjrock.engine.model import Engine
 from mjrock.engine.stepping import fixed_steps
@@ -59,6 +61,18 @@ def our_steps(**options: float) -> Solve:
 
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
         response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
+        return response, response.stats["wall_time"]
+
+    return solve
+
+
+def plain_steps(**options: float) -> Solve:
+    """`simulate` with its loop as plain Python, as it runs without numba."""
+
+    def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
+        plain = getattr(loop.fitted_loop, "py_func", loop.fitted_loop)
+        with mock.patch.object(stepping, "fitted_loop", plain):
+            response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
         return response, response.stats["wall_time"]
 
     return solve
@@ -230,6 +244,7 @@ def methods(quick: bool) -> dict[str, dict[str, Solve]]:
     knobs = (1e-3,) if quick else (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6)
     made: dict[str, dict[str, Solve]] = {
         "fitted steps": {f"accuracy {a:g}": our_steps(accuracy=a) for a in knobs},
+        "fitted, loop not compiled": {f"accuracy {a:g}": plain_steps(accuracy=a) for a in knobs[1:5:2] or knobs},
         **{
             f"fixed, {name}": {f"{h * 1e3:g} ms": our_steps(timestep=h, newmark_beta=beta) for h in ladder}
             for name, beta in (("beta 0", 0.0), ("beta 1/12", 1 / 12), ("beta 1/4", 0.25), ("beta 1", 1.0))
