@@ -9,7 +9,7 @@ from scenes import two_blocks
 
 import mjrock as mr
 from mjrock.engine.kinematics import along, energies, frame_of, gap, gaps
-from mjrock.engine.scene import settle
+from mjrock.engine.rest import settled
 from paper import K_N
 
 
@@ -161,7 +161,7 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    np.testing.assert_allclose(settle(scene), scene.at_rest, atol=1e-15)
+    np.testing.assert_allclose(settled(scene.points, scene.masses), scene.at_rest, atol=1e-15)
     np.testing.assert_allclose(scene.points.bears, wall.weight / scene.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
     force = -blocks.k * np.minimum(gaps(blocks.points, blocks.at_rest.reshape(1, -1))[0], 0)

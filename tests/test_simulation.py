@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine import model, simulation
+from mjrock.engine import model
+from mjrock.engine import run as engine_run
 from mjrock.engine.model import Engine
 from mjrock.engine.wall import HELD_FRICTION, inner_friction
 from paper import K_N
@@ -111,7 +112,7 @@ def test_energy_from_nowhere_is_an_error_that_names_a_sound_step(wall):
 
 def test_gain_from_peak_to_peak_is_what_counts():
     t = np.linspace(0, 4, 5)
-    gain, when = simulation.energy_gain(np.array([0.0, 2.0]), t, np.array([10.0, 14.0, 11.0, 8.0, 8.5]))
+    gain, when = engine_run.energy_gain(np.array([0.0, 2.0]), t, np.array([10.0, 14.0, 11.0, 8.0, 8.5]))
     assert (gain, when) == (1.0, 2.0)
 
 
@@ -234,8 +235,8 @@ def test_energy_from_nowhere_is_noticed_on_a_shaken_base(wall, contacts, monkeyp
     """What the ground puts in is accounted for; the twin forgets a tenth of it."""
     case = mr.Case(wall, 0.0, 3.0, motion=mr.GroundMotion.sine(-3.0, 1.2))
     mr.simulate(case, contacts)
-    work = simulation.ground_work
-    monkeypatch.setattr(simulation, "ground_work", lambda *run: 0.9 * work(*run))
+    work = engine_run.ground_work
+    monkeypatch.setattr(engine_run, "ground_work", lambda *run: 0.9 * work(*run))
     with pytest.raises(mr.SimulationError, match="appeared from nowhere"):
         mr.simulate(case, contacts)
 

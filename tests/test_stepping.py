@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine import simulation
+from mjrock.engine import run as engine_run
 from mjrock.engine.kinematics import gaps
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
@@ -102,16 +102,16 @@ def test_bad_output_step(one_sided, contacts, output_step):
 
 def test_a_run_that_makes_energy_is_repeated_finer(one_sided, contacts, monkeypatch):
     tried = []
-    honest = simulation.energy_gain
+    honest = engine_run.energy_gain
 
     def suspicious(times, t, energy):
         tried.append(len(t))
         return (1e9, 0.5) if len(tried) < 3 else honest(times, t, energy)
 
-    monkeypatch.setattr(simulation, "energy_gain", suspicious)
+    monkeypatch.setattr(engine_run, "energy_gain", suspicious)
     run = mr.simulate(one_sided, contacts)
     assert run.stats["accuracy"] == pytest.approx(1e-5)
     assert tried == sorted(tried)
-    monkeypatch.setattr(simulation, "energy_gain", lambda *_: (1e9, 0.5))
+    monkeypatch.setattr(engine_run, "energy_gain", lambda *_: (1e9, 0.5))
     with pytest.raises(mr.SimulationError, match=r"appeared from nowhere .* lower accuracy = 1e-05, or fix the step"):
         mr.simulate(one_sided, contacts)

@@ -56,7 +56,7 @@ def ledger(scene: Scene, steps: Steps) -> Ledger:
         steps.ringing,
         steps.kind,
         np.empty((3, len(scene.mass), 4)),
-        np.empty((2, len(scene.k))),
+        np.empty((len(scene.k), 2)),
         np.empty((2, len(scene.masses))),
         dashpots,
         friction,
@@ -100,6 +100,35 @@ def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: flo
     return pressing, math.copysign(mu * pressing, stopping)
 
 
+@jitable
+def take_rows(points: Points, h: float, beta: Array, ringing: Array, rows: Array) -> float:
+    """Write dashpot [N s/m] and inertia [kg] of every contact in a step, shape (m, 2), and return impratio [-]."""
+    impratio = math.inf
+    for i in range(len(points.k)):
+        rows[i, 0], rows[i, 1] = row(points.k[i], points.c[i], h, points.weight[i], beta[i], ringing[i])
+        if points.held[i] > 0:
+            impratio = min(impratio, points.held[i] / rows[i, 1])
+    return impratio
+
+
+@jitable
+def drag_of(
+    points: Points, i: int, dashpot: float, inertia: float, beta: float, h: float, rate: float, curve: float
+) -> tuple[float, float]:
+    """Force of the dashpot of contact i, centred or at the end of the step, and what Newmark's beta adds to its spring.
+
+    Args:
+        points: the contacts.
+        i: which contact.
+        dashpot, inertia: its row [N s/m, kg].
+        beta, h: Newmark's beta [-] and the step [s].
+        rate, curve: mean velocity of the contact in the step, and its acceleration [m/s, m/s2].
+    """
+    sprung = beta * h**2 * points.k[i] * curve
+    # the row acts on the velocity that the leapfrog keeps, half a step before the pose
+    return dashpot * (rate - 0.5 * h * curve) + inertia * curve - sprung, sprung
+
+
 @compiled
 def _contact_work(
     points: Points,
@@ -127,42 +156,32 @@ def _contact_work(
         h, width: lengths of the steps and of their windows [s], shape (steps,).
         pose, before, after, start: poses, velocities around them, and poses at the seams, shape (steps, 3 n).
         beta, ringing, kind: as in `Steps`.
-        frames, rows, rates: room for three frames, two numbers of each row, and two rates, (3, n, 4), (2, m), (2, 3 n).
+        frames, rows, rates: room for three frames, the rows and two rates, shapes (3, n, 4), (m, 2) and (2, 3 n).
         dashpots, friction: the work [J], shapes (steps, groups) and (steps,).
     """
-    m = len(points.k)
     frame, seam, next_seam = frames[0], frames[1], frames[2]
-    dashpot, inertia = rows[0], rows[1]
     middle, acceleration = rates[0], rates[1]
     for n in range(len(h)):
-        step = h[n]
         take_frame(pose[n], frame)
         take_frame(start[n], seam)
         take_frame(start[min(n + 1, len(h) - 1)], next_seam)
         for j in range(len(middle)):
             middle[j] = 0.5 * (before[n, j] + after[n, j])
-            acceleration[j] = (after[n, j] - before[n, j]) / step
-        impratio = math.inf
-        for i in range(m):
-            own_beta, own_ringing = beta[kind[n], i], ringing[kind[n], i]
-            dashpot[i], inertia[i] = row(points.k[i], points.c[i], step, points.weight[i], own_beta, own_ringing)
-            if points.held[i] > 0:
-                impratio = min(impratio, points.held[i] / inertia[i])
-        for i in range(m):
+            acceleration[j] = (after[n, j] - before[n, j]) / h[n]
+        impratio = take_rows(points, h[n], beta[kind[n]], ringing[kind[n]], rows)
+        for i in range(len(points.k)):
             g, rate, curve, _ = gap(points, i, frame, middle, acceleration)
             given = spring_energy(points, i, seam) - spring_energy(points, i, next_seam)
             if g >= 0:
                 dashpots[n, number[i]] += given
                 continue
-            sprung = beta[kind[n], i] * step**2 * points.k[i] * curve
-            # what the dashpot, centred or at the end of the step, exerts at the velocity that the leapfrog keeps
-            drag = dashpot[i] * (rate - 0.5 * step * curve) + inertia[i] * curve - sprung
+            inertia = rows[i, 1]
+            drag, sprung = drag_of(points, i, rows[i, 0], inertia, beta[kind[n], i], h[n], rate, curve)
             law = -(points.k[i] * g + drag + sprung)
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
             dashpots[n, number[i]] += drag * rate * width[n] if law > 0 else given
             if points.friction[i] > 0:
-                held = impratio * inertia[i]
-                stopping = -held * along(points, i, frame, after[n])[2] / step
-                pressing, dragging = cone_force(law, stopping, held, inertia[i], points.friction[i])
+                stopping = -impratio * inertia * along(points, i, frame, after[n])[2] / h[n]
+                pressing, dragging = cone_force(law, stopping, impratio * inertia, inertia, points.friction[i])
                 lift = pressing - max(law, 0.0)  # what a sliding cone presses on top of the law
                 friction[n] -= (dragging * along(points, i, frame, middle)[2] + lift * rate) * width[n]

@@ -21,7 +21,8 @@ from numpy.typing import ArrayLike
 from ..problem.motion import GroundMotion
 from ..problem.quantities import GRAVITY, Array, Integers
 from .contact import planar_weight
-from .kinematics import Points, energies, frame_of, gap, gaps
+from .kinematics import Points, energies, gaps
+from .rest import gap_rates, lowered, settled
 
 GROUND = -1
 """The face of a contact that belongs to no body."""
@@ -133,6 +134,10 @@ class Scene:
                 )
                 object.__setattr__(self, name, tuple(values) if name == "release" else _frozen(values))
 
+    def lowered(self, pose: Array) -> Array:
+        """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3)."""
+        return lowered(self._points, self.masses, pose)
+
     def released(self, pose: Array, velocity: Array, duration: float, motion: GroundMotion | None) -> Scene:
         """This scene with another release, shape (n, 3) each, duration [s] and ground motion.
 
@@ -216,7 +221,7 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, 3)."""
-        return settle(self) if self.settled is None else self.settled
+        return settled(self._points, self.masses) if self.settled is None else self.settled
 
     @cached_property
     def started(self) -> tuple[Array, Array]:
@@ -248,7 +253,7 @@ class Scene:
 
         No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
         """
-        rates = self._jacobian(np.zeros(3 * len(self.names))) / np.sqrt(self.masses)
+        rates = gap_rates(self._points, np.zeros(3 * len(self.names))) / np.sqrt(self.masses)
         return math.sqrt(float(np.linalg.eigvalsh((rates.T * self.k) @ rates)[-1]))
 
     @cached_property
@@ -271,11 +276,6 @@ class Scene:
             digest.update(b"".join(p.tobytes() if isinstance(p, np.ndarray) else repr(p).encode() for p in parts))
         return digest.hexdigest()
 
-    def _jacobian(self, pose: Array) -> Array:
-        """Rates of the gaps for unit velocities at a pose, shape (m, 3 n)."""
-        frame, columns, none = frame_of(pose), np.eye(len(pose)), np.zeros_like(pose)
-        return np.array([[gap(self._points, i, frame, v, none)[1] for v in columns] for i in range(len(self.k))])
-
 
 def _one(pose: Array) -> Array:
     """A pose as a history of one step, shape (1, 3 n)."""
@@ -286,43 +286,3 @@ def _frozen(values: ArrayLike) -> Array:
     made = np.array(values)
     made.setflags(write=False)
     return made
-
-
-def settle(scene: Scene, iterations: int = 200) -> Array:
-    """The pose in which the springs of the contacts carry the weight, without friction, shape (n, 3).
-
-    Newton's method on the potential energy. Where nothing holds a direction, the bodies stay where they are.
-
-    Raises:
-        ValueError: if no such pose is found near the undeformed one.
-    """
-    weight = np.zeros_like(scene.masses)
-    weight[1::3] = -GRAVITY * scene.masses[1::3]
-    pose = np.zeros_like(weight)
-    closed = np.ones(len(scene.k), dtype=bool)
-    for _ in range(iterations):
-        rates = scene._jacobian(pose)
-        depth = -gaps(scene._points, _one(pose))[0]
-        force = np.where(closed, scene.k * depth, 0.0)
-        residual = weight + rates.T @ force
-        if np.abs(residual).max() < 1e-9 * np.abs(weight).max() and (closed == (depth > 0)).all():
-            return pose.reshape(-1, 3)
-        stiffness = (rates.T * np.where(closed, scene.k, 0.0)) @ rates
-        pose = pose + np.linalg.lstsq(stiffness, residual, rcond=1e-12)[0]
-        closed = gaps(scene._points, _one(pose))[0] < 0
-    raise ValueError(f"the bodies {', '.join(scene.names)} do not stand on their contacts without friction")
-
-
-def lowered(scene: Scene, pose: Array) -> Array:
-    """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3).
-
-    The bodies keep their rotations and their horizontal positions. Only contacts with level ground count.
-    """
-    level = (scene.face_body == GROUND) & (scene.normal[:, 1] > 1 - 1e-12)
-    depth, k = -gaps(scene._points, _one(pose))[0][level], scene.k[level]
-    order = np.argsort(-depth, kind="stable")  # the deepest points are loaded first
-    depth, k = depth[order], k[order]
-    # sum k_i max(0, depth_i - z) = m g for the points down to the i-th
-    levels = (np.cumsum(k * depth) - GRAVITY * scene.mass.sum()) / np.cumsum(k)
-    z = levels[np.flatnonzero(levels >= np.append(depth[1:], -np.inf))[0]]
-    return pose + np.array([0.0, z, 0.0])

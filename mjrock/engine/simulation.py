@@ -2,36 +2,25 @@
 
 from __future__ import annotations
 
-import math
 import time
 import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from os import cpu_count
-from typing import Any
-
-import mujoco
-import numpy as np
 
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.interface import Contacts
-from ..problem.quantities import Array, require_within
-from ..result.history import rocking_history
-from ..result.response import Response, State, ending
-from ..result.samples import interpolated
-from .accounts import ground_work, ledger
-from .kinematics import gaps
+from ..problem.quantities import require_within
+from ..result.response import Response, State
 from .mjcf import pair_rows
 from .model import SimulationError, engine_of
 from .pace import SMOOTH, short_step
+from .run import Run, broken, sound_timestep
 from .scene import Scene
 from .stepping import fitted_steps, fixed_steps
-from .steps import StepError, Steps
+from .steps import StepError
 from .wall import wall_scene
-
-ENERGY_GAIN = 1e-3
-"""Most energy that may appear from nowhere, as a share of the energy of release [-]."""
 
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
@@ -43,102 +32,6 @@ def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> f
     frequency of the wall with every contact closed: about a hundred steps in the shortest contact period.
     """
     return sound_timestep(contacts.highest_frequency(wall, side_stop=side_stop))
-
-
-def sound_timestep(frequency: float) -> float:
-    """`automatic_timestep` for the highest frequency of the closed contacts [rad/s]."""
-    return 2 * math.sqrt(ENERGY_GAIN) / frequency
-
-
-def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, float]:
-    """The largest gain of energy from release to peak to peak to the end [J], and when it had happened [s].
-
-    Peaks are compared and not neighbouring samples, because a touch inside a step misplaces energy while the contact
-    lasts. What matters is whether the impact as a whole has lost or gained.
-    """
-    marks = np.concatenate([t[:1], peak_times, t[-1:]])
-    gains = np.diff(np.interp(marks, t, energy))
-    worst = int(gains.argmax())
-    return float(gains[worst]), float(marks[worst + 1])
-
-
-class _Run:
-    """One run of the engine, checked: its steps, its energy, its peaks and impacts.
-
-    Raises:
-        StepError: if energy appears from nowhere.
-    """
-
-    def __init__(self, case: Case, uplift: tuple[float, float], scene: Scene, steps: Steps, *, released: bool) -> None:
-        self.case, self.uplift, self.scene, self.steps = case, uplift, scene, steps
-        t, self.theta, self.omega = steps.t, steps.pose[:, 2], steps.velocity[:, 2]
-        self.energy = scene.energy(steps.pose, steps.velocity)
-        times, self.peaks, self.impacts = rocking_history(
-            case, t, self.theta, self.omega, self.energy, uplift, released=released
-        )
-
-        # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
-        standing = np.flatnonzero(np.abs(self.theta) <= case.block.alpha)
-        count = int(standing[-1]) + 1 if standing.size else 1
-        work = ground_work(scene, steps)[:count]
-        own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
-        gain, when = energy_gain(times[times <= t[count - 1]], t[:count], own)
-        scale = max(float(self.energy[0]) + float(np.abs(work).sum()), uplift[1])
-        if not gain <= ENERGY_GAIN * scale:
-            raise StepError(f"{gain:.3g} J, {gain / scale:.2%} of the energy there was, appeared from nowhere", when)
-
-    def response(self, spacing: float | None, stride: int, want_ledger: bool, stats: dict[str, Any]) -> Response:
-        """What was found: samples `spacing` apart, or every `stride`-th step where that is None; `stats` says how."""
-        case, steps, scene = self.case, self.steps, self.scene
-        if spacing is None:
-            end = steps.pose[-1], steps.velocity[-1]
-            t, pose, velocity = steps.t[::stride], steps.pose[::stride], steps.velocity[::stride]
-        else:
-            finish = min(float(steps.t[-1]), case.duration)
-            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
-            pose, velocity = interpolated(steps.t, steps.pose, steps.velocity, t)
-            end = pose[-1], velocity[-1]
-        outcome, message = ending(case, steps.t, self.theta, self.energy, self.uplift[1])
-        deepest = -gaps(scene.points, steps.pose).min(axis=0)
-        return Response(
-            case=case,
-            solver="MuJoCo",
-            t=t,
-            theta=pose[:, 2],
-            omega=velocity[:, 2],
-            impacts=self.impacts,
-            peaks=self.peaks,
-            outcome=outcome,
-            message=message,
-            compliant=(np.interp(t, steps.t, self.energy), pose.reshape(len(t), -1, 3)),
-            ledger=ledger(scene, steps).at(t) if want_ledger else None,
-            end=(end[0].reshape(-1, 3), end[1].reshape(-1, 3)),
-            stats={
-                "steps": len(steps.t),
-                "longest_timestep": float(steps.h.max()),
-                "sound_timestep": sound_timestep(scene.highest_frequency),
-                "touches": steps.touches,
-                "base_displacement": float(steps.pose[-1, 0] - case.block.pose(steps.pose[-1:, 2])[0, 0]),
-                "mujoco": mujoco.__version__,
-            }
-            | {
-                f"deepest_{name}": float(max(0.0, *deepest[np.array(scene.group) == name]))
-                for name in dict.fromkeys(scene.group)
-            }
-            | stats,
-        )
-
-
-def _broken(error: StepError, scene: Scene, h: float, accuracy: float | None) -> SimulationError:
-    """The error for the user: what happened and what to change."""
-    sound = sound_timestep(scene.highest_frequency)
-    if accuracy is not None:
-        advice = f"lower accuracy = {accuracy:g}, or fix the step: the largest sound one is {sound:.3g} s"
-    elif h > sound * (1 + 1e-9):
-        advice = f"the largest sound step is {sound:.3g} s"
-    else:
-        advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
-    return SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; {advice}")
 
 
 def simulate(
@@ -183,28 +76,7 @@ def simulate(
         if isinstance(answer, SimulationError):
             raise answer
         return answer
-    started = time.perf_counter()
-    scene, uplift = wall_scene(case, contacts), _uplift(case, contacts)
-    used = accuracy
-    while True:
-        h = short_step(scene, used)
-        try:
-            with engine_of(scene) as engine:
-                engine.follow(h, pair_rows(scene, h, newmark_beta))
-                engine.release(scene.started if start is None else start)
-                begun = time.perf_counter()
-                steps = fitted_steps(engine, scene, used)
-            stepping_time = time.perf_counter() - begun
-            run = _Run(case, uplift, scene, steps, released=start is None)
-            break
-        except StepError as error:
-            if used < 0.02 * accuracy:
-                raise _broken(error, scene, h, used) from None
-            used /= 10
-    settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
-    response = run.response(output_step or 1e-3, 1, ledger, settings)
-    response.stats["wall_time"] = time.perf_counter() - started
-    return response
+    return _simulate_fitted(case, contacts, accuracy, newmark_beta, output_step or 1e-3, ledger, start)
 
 
 def simulate_batch(
@@ -239,6 +111,40 @@ def simulate_batch(
     return _simulate_fixed(cases, contacts, timestep, newmark_beta, output_step, ledger, None)
 
 
+def _simulate_fitted(
+    case: Case,
+    contacts: Contacts,
+    accuracy: float,
+    newmark_beta: float,
+    output_step: float,
+    want_ledger: bool,
+    start: State | None,
+) -> Response:
+    """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
+    started = time.perf_counter()
+    scene, uplift = wall_scene(case, contacts), _uplift(case, contacts)
+    used = accuracy
+    while True:
+        h = short_step(scene, used)
+        try:
+            with engine_of(scene) as engine:
+                engine.follow(h, pair_rows(scene, h, newmark_beta))
+                engine.release(scene.started if start is None else start)
+                begun = time.perf_counter()
+                steps = fitted_steps(engine, scene, used)
+            stepping_time = time.perf_counter() - begun
+            run = Run(case, uplift, scene, steps, released=start is None)
+            break
+        except StepError as error:
+            if used < 0.02 * accuracy:
+                raise broken(error, scene, h, used) from None
+            used /= 10
+    settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
+    response = run.response(output_step, 1, want_ledger, settings)
+    response.stats["wall_time"] = time.perf_counter() - started
+    return response
+
+
 def _simulate_fixed(
     cases: Sequence[Case],
     contacts: Contacts,
@@ -265,9 +171,9 @@ def _simulate_fixed(
                 begun = time.perf_counter()
                 steps = fixed_steps(engine, scene, timestep, newmark_beta)
             stepping_time = time.perf_counter() - begun
-            run = _Run(case, uplift, scene, steps, released=start is None)
+            run = Run(case, uplift, scene, steps, released=start is None)
         except StepError as error:
-            return _broken(error, scene, timestep, None)
+            return broken(error, scene, timestep, None)
         settings = {
             "timestep": timestep,
             "accuracy": None,

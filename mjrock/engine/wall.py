@@ -10,7 +10,7 @@ from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.interface import Contacts
 from ..problem.quantities import Array
-from .scene import GROUND, Scene, lowered
+from .scene import GROUND, Scene
 
 FREE_FRICTION = 1.0
 """Friction coefficient of the edges of a wall without a side stop on two lines [-]. On a bed of n lines it is n/2 times
@@ -65,7 +65,7 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
         ValueError: if the contacts do not fit the case.
     """
     wall, scene = case.block, standing_wall(case.block, contacts, case.side_stop)
-    tilted = lowered(scene, wall.pose(np.array([case.theta0])))
+    tilted = scene.lowered(wall.pose(np.array([case.theta0])))
     velocity = case.omega0 * wall.turning(case.theta0, case.direction)[None]
     return scene.released(tilted, velocity, case.duration, case.motion)
 

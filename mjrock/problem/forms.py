@@ -18,18 +18,19 @@ from .restitution import Restitution
 
 @dataclass(frozen=True)
 class Groups:
-    """The numbers that the damping ratios of a wall on its interfaces can depend on; floats, or arrays of one shape.
+    """The dimensionless numbers that the damping ratios of a wall on its interfaces can depend on.
 
-    A rigid wall on unilateral springs and dashpots whose dashpots go with the reference frequency has no other: its
-    size and its density drop out where k_n / (density * g) and h/b are the same.
+    They are floats, or arrays of one shape. Two rigid walls of the same h/b and the same k_n / (density g) differ in
+    their scale alone, because the dashpots of both are proportional to the springs through the reference frequency.
+    Size and density therefore do not appear on their own.
 
     Args:
         slenderness: h/b [-].
         k_n: interface stiffness of the base [N/m3].
         softness: rotation at which an edge of the wall at rest decompresses, over alpha [-]. It is
             2 (h/b) density g / (k_n alpha), the share of the way to overturning in which the wall does not rock yet.
-        work: softness * 0.75 / (phi (2 - phi)), phi = theta_0/alpha of the release [-]: what the weight does on the
-            springs of the base, over the energy that arrives; the softness itself for a release at alpha/2.
+        work: softness * 0.75 / (phi (2 - phi)) with phi = theta_0/alpha of the release [-]: the work of the weight on
+            the springs of the base, over the energy that arrives. For a release at alpha/2 it is the softness itself.
         side_ratio: interface stiffness of the side over that of the base [-].
         housner: -ln e_2s of Eq. 2, the loss that conservation of angular momentum asks for [-].
         base_loss: -ln e_2s, what is asked for [-].
@@ -144,8 +145,8 @@ class CornerLaw:
 class BedLaw:
     """The base of a wall on a bed of many lines.
 
-    The lines close one after the other: an early one is damped while the wall still turns about a late one, so the loss
-    grows with the logarithm of the damping, and for small losses in proportion to it, as in the paper. With
+    The lines close one after the other. An early one is damped while the wall still turns about a late one. The loss
+    therefore grows with the logarithm of the damping, and for small losses in proportion to it, as in the paper. With
     L = -ln e_2s, L_H that of Eq. 2 and w = work:
 
         L = A ln(1 + xi / xi_0)        xi = xi_0 (e_2s^(-1/A) - 1)
@@ -178,10 +179,10 @@ class BedLaw:
 class SideLaw:
     """The side stop, once the base has the damping of its own law.
 
-    The top of the wall hits the stop like a mass on a spring and a dashpot, with the damping ratio
-    zeta = xi sqrt(2 k_side / k_base) (h/b)^1.5: the rocking frequency against the stop over that on the base. The base
-    takes little in the quick sequence base, side, base, so the stop has to lose nearly all of L = -ln|e_1s|, with
-    s = softness:
+    The top of the wall hits the stop like a mass on a spring and a dashpot. Its damping ratio is
+    zeta = xi sqrt(2 k_side / k_base) (h/b)^1.5, where the factor of xi is the rocking frequency against the stop over
+    that on the base. The base takes little energy in the quick sequence base, side, base, so that the stop has to lose
+    nearly all of L = -ln|e_1s|. With s = softness:
 
         xi = scale (h/b)^slenderness_exponent (k_side / k_base)^ratio_exponent L (1 + curvature L) (1 + softening s L)
         L = side_loss + base_share base_loss         -ln|e_1s| itself has base_share = 2

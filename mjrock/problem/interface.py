@@ -27,8 +27,8 @@ def _require_points(points: int) -> None:
 def contact_lines(face: float, points: int) -> tuple[Array, Array]:
     """Positions along a face of width `face` [m] from its centre [m], and the widths that are tributary to them [m].
 
-    The lines are evenly spaced from edge to edge, so the outer two have half the tributary width of the others:
-    two lines are the corners with half the face each, many approach a uniform bed.
+    The lines are evenly spaced from edge to edge, so that the outer two have half the tributary width of the others.
+    Two lines are the corners with half the face each. Many lines approach a uniform bed.
     """
     positions = np.linspace(-face / 2, face / 2, points)
     widths = np.full(points, face / (points - 1))
@@ -42,12 +42,12 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     omega = sqrt(K_rot / I_base): the wall rocking in full contact about the centre of its base, K_rot = sum k_i x_i^2
     over the contact points of the base and I_base = m (b^2 + h^2)/3 + m h^2. Base and side dashpots share it.
 
-    The paper prints xi as a fraction of critical damping and does not print the frequency; this reading is inferred.
-    Its evidence, on the paper's Figure 3 wall (xi_b = 5.3 %, targets e_2s = 0.970 and |e_1s| = 0.442): with this omega
-    `solve_compliant` returns 0.970 and 0.558 for two corner lines (30.1 rad/s), 0.977 and 0.485 for a bed of 32
-    (17.4 rad/s), whereas with the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost against the side:
-    0.983 and 0.920, 0.998 and 0.939. One frequency for both dashpots also explains why Eq. 6, for the side, contains
-    the stiffness of the base and not its own. `scripts/layouts.py` prints these figures.
+    The paper prints xi as a fraction of critical damping and does not print the frequency. This reading is inferred
+    from the magnitude of the loss. On the paper's Figure 3 wall (xi_b = 5.3 %, targets e_2s = 0.970 and |e_1s| =
+    0.442), `solve_compliant` returns with this omega 0.970 and 0.558 for two corner lines (30.1 rad/s), and 0.977 and
+    0.485 for a bed of 32 (17.4 rad/s). With the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost
+    against the
+    side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed. `scripts/layouts.py` prints these figures.
     """
     positions, widths = contact_lines(2 * wall.b, points)
     K_rot = float(np.sum(k_n * widths * wall.length * positions**2))

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from . import pulses
 from .quantities import GRAVITY, Array, require_within
-from .records import Record, parse_at2, parse_columns, parse_sac, text_lines
+from .records import Record, checked, parse_at2, parse_columns, parse_sac, read
+from .resampling import resample
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -43,7 +43,8 @@ class GroundMotion:
         ValueError: for a shape, a step or a value that cannot be.
 
     Warns:
-        UserWarning: for a peak beyond 3 g, which smells of another unit.
+        UserWarning: for a peak beyond 3 g, where the unit is probably another one. A motion from a file also warns for
+            a peak below 1e-3 g and for a residual velocity beyond 20 % of the peak velocity.
     """
 
     accel: Array
@@ -51,18 +52,8 @@ class GroundMotion:
     name: str = field(default="ground motion", compare=False)
 
     def __init__(self, accel: ArrayLike, dt: float, name: str = "ground motion") -> None:
-        values = np.array(accel, dtype=float)
-        if values.ndim != 1 or len(values) < 2:
-            raise ValueError(
-                f"accel has the shape {values.shape}; one row of at least 2 accelerations [m/s2] is needed"
-            )
-        bad = np.flatnonzero(~np.isfinite(values))
-        if bad.size:
-            raise ValueError(f"accel[{bad[0]}] = {values[bad[0]]} m/s2 is not finite")
-        values.setflags(write=False)
-        object.__setattr__(self, "accel", values)
-        object.__setattr__(self, "dt", require_within("time step dt", dt, 1e-5, 1.0, "s"))
-        object.__setattr__(self, "name", name)
+        for field_name, value in zip(("accel", "dt", "name"), (*checked(accel, dt), name), strict=True):
+            object.__setattr__(self, field_name, value)
         if self.peak > SUSPICIOUS:
             warnings.warn(
                 f"{name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2",
@@ -159,37 +150,22 @@ class GroundMotion:
     def resampled(self, dt: float) -> GroundMotion:
         """The motion at another time step `dt` [s], as long as before within half of it.
 
-        A finer step interpolates, and gives the same motion if it divides the old one. A coarser step samples what an
-        eighth-order Butterworth filter, run forwards and backwards, leaves of it: 0.7 of the new Nyquist frequency has
-        half the amplitude, the Nyquist frequency 0.3 %.
+        A finer step interpolates. A coarser step samples what a low-pass filter leaves, see
+        `mjrock.problem.resampling`.
 
         Raises:
             ValueError: for a step below 1e-5 s, beyond 1 s, or beyond the duration of the motion.
         """
         require_within("time step dt", dt, 1e-5, min(1.0, self.duration), "s")
-        accel, parts = self.accel, round(self.dt / dt)
-        if parts and math.isclose(parts * dt, self.dt):
-            dt, steps = self.dt / parts, parts * (len(accel) - 1)
-        else:
-            steps = round(self.duration / dt)
-        if dt > self.dt:
-            low_pass = scipy.signal.butter(8, 0.7 * self.dt / dt, output="sos")
-            pad = min(len(accel) - 1, math.ceil(10 * dt / self.dt))
-            accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=pad)
-        times = dt * np.arange(steps + 1)
-        return GroundMotion(np.interp(times, self._times, accel), dt, f"{self.name} at {dt:g} s")
+        return GroundMotion(*resample(self.accel, self.dt, dt), f"{self.name} at {dt:g} s")
 
     @classmethod
     def from_at2(cls, path: str | PathLike[str]) -> GroundMotion:
         """A record of the PEER NGA data base, in g, named after its file.
 
         Raises:
-            FileNotFoundError: if there is no such file.
-            ValueError: for a file that is no AT2 file, states another number of samples than it has, or holds
-                something that is not a finite number.
-
-        Warns:
-            UserWarning: for a peak below 1e-3 g or beyond 3 g, or a residual velocity beyond 20 % of the peak velocity.
+            OSError: if the file cannot be read.
+            ValueError: for another format, another number of samples than is stated, or what is no finite number.
         """
         return cls._from_file(path, parse_at2)
 
@@ -206,12 +182,9 @@ class GroundMotion:
             time_unit: "s" or "ms".
 
         Raises:
-            FileNotFoundError: if there is no such file.
-            ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step), or something
-                that is not two finite numbers a line.
-
-        Warns:
-            UserWarning: for a peak below 1e-3 g or beyond 3 g, or a residual velocity beyond 20 % of the peak velocity.
+            OSError: if the file cannot be read.
+            ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step), or what is
+                not two finite numbers a line.
         """
         return cls._from_file(path, lambda lines: parse_columns(lines, unit, time_unit))
 
@@ -220,27 +193,18 @@ class GroundMotion:
         """A record in the plain text of a SAC set, named after its file: a title, count and time step, cm/s2.
 
         Raises:
-            FileNotFoundError: if there is no such file.
-            ValueError: for a file of another format, one that states another number of samples than it has, or holds
-                something that is not a finite number.
-
-        Warns:
-            UserWarning: for a peak below 1e-3 g or beyond 3 g, or a residual velocity beyond 20 % of the peak velocity.
+            OSError: if the file cannot be read.
+            ValueError: for another format, another number of samples than is stated, or what is no finite number.
         """
         return cls._from_file(path, parse_sac)
 
     @classmethod
     def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> GroundMotion:
-        name = Path(path).stem
-        try:
-            motion = cls(*parse(text_lines(path)), name)
-        except ValueError as error:
-            raise ValueError(f"{path}: {error}") from error
+        motion = cls(*read(path, parse), name := Path(path).stem)
         peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
         if peak < FAINT:
-            warnings.warn(
-                f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?", stacklevel=3
-            )
+            share = peak / GRAVITY
+            warnings.warn(f"{name} peaks at {peak:g} m/s2 = {share:.3g} g only; is its unit right?", stacklevel=3)
         if abs(final) > DRIFT * fastest:
             warnings.warn(
                 f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "

@@ -6,16 +6,16 @@ Each parser takes the lines of a file and returns its accelerations [m/s2], shap
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from .quantities import GRAVITY
+from .quantities import GRAVITY, Array, require_within
 
-Record = tuple[NDArray[np.float64], float]
+Record = tuple[Array, float]
 
 UNITS = {"m/s2": 1.0, "cm/s2": 1e-2, "mm/s2": 1e-3, "g": GRAVITY, "ft/s2": 0.3048}
 TIME_UNITS = {"s": 1.0, "ms": 1e-3}
@@ -28,6 +28,35 @@ AT2_HEAD = re.compile(rf"npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}", re.IGNORECASE
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts", re.IGNORECASE)
 COMMENT = re.compile(r"\s*(#|%|//|$)")
 NUMBER = re.compile(r"\s*[-+]?(\.?\d|nan\b|inf\b)", re.IGNORECASE)
+
+
+def checked(accel: ArrayLike, dt: float) -> Record:
+    """Accelerations as an array that cannot be written to, and their time step [s].
+
+    Raises:
+        ValueError: unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
+    """
+    values = np.array(accel, dtype=float)
+    if values.ndim != 1 or len(values) < 2:
+        raise ValueError(f"accel has the shape {values.shape}; one row of at least 2 accelerations [m/s2] is needed")
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise ValueError(f"accel[{bad[0]}] = {values[bad[0]]} m/s2 is not finite")
+    values.setflags(write=False)
+    return values, require_within("time step dt", dt, 1e-5, 1.0, "s")
+
+
+def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Record:
+    """The record that a parser finds in a file.
+
+    Raises:
+        OSError: if the file cannot be read.
+        ValueError: with the name of the file, if it is not one of the format.
+    """
+    try:
+        return checked(*parse(text_lines(path)))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
 
 
 def text_lines(path: str | PathLike[str]) -> list[str]:
@@ -106,7 +135,7 @@ def _columns(line: str) -> list[str]:
     return line.split("," if "," in line else None)
 
 
-def _even_step(time: NDArray[np.float64], places: Sequence[int]) -> float:
+def _even_step(time: Array, places: Sequence[int]) -> float:
     lost = np.flatnonzero(~np.isfinite(time))
     if lost.size:
         raise ValueError(f"line {places[lost[0]]}: time {time[lost[0]]} s is not finite")
@@ -131,7 +160,7 @@ def _factor(name: str, unit: str, units: dict[str, float]) -> float:
     return units[unit]
 
 
-def _samples(lines: Sequence[str], header: int, count: int) -> NDArray[np.float64]:
+def _samples(lines: Sequence[str], header: int, count: int) -> Array:
     values = [x for place, line in enumerate(lines[header:], header + 1) for x in _numbers(line.split(), place)]
     if len(values) != count:
         raise ValueError(f"{len(values)} samples; the header states {count}")

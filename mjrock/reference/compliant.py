@@ -158,54 +158,9 @@ def solve_compliant(
     contacts.require_fit(wall, side_stop=case.side_stop)
     started = time.perf_counter()
     system = _Wall(case, contacts)
-
-    def switch(t: float, y: Array) -> float:
-        return system.edge_load(t, y) - (0.0 if held else CAUGHT * wall.weight)
-
-    def overturning(t: float, y: Array) -> float:
-        return abs(float(y[2])) - ON_ITS_FACE
-
-    switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.side_stop)
-
-    t, y = 0.0, system.released(case)
-    held = system.edge_load(t, y) > 0
     fine = min(output_step, 1e-3 / wall.p)  # peaks and impacts are read off the samples
-    output = np.linspace(0.0, case.duration, max(2, math.ceil(case.duration / fine) + 1))
-    states = [y[:, None]]
-    times = [np.zeros(1)]
-    evaluations = switches = 0
-    with tqdm(total=case.duration, desc="compliant", unit="s", delay=3, disable=None, leave=False) as bar:
-        for _ in range(SWITCHES):
-            if held:
-                y = system.caught(y)
-            switch.direction = -1 if held else 1  # type: ignore[attr-defined]
-            arc = solve_ivp(
-                system.held if held else system.free,
-                (t, case.duration),
-                y,
-                method="DOP853",
-                t_eval=output[output > t],
-                events=(switch, overturning),
-                rtol=rtol,
-                atol=atol,
-                max_step=min(10 * period, case.motion.dt if case.motion else math.inf),
-            )
-            if arc.status < 0:
-                raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
-            evaluations += arc.nfev
-            times.append(arc.t)
-            states.append(np.reshape(arc.y, (6, -1)))
-            if arc.status == 0 or arc.t_events[1].size:
-                break
-            bar.update(float(arc.t_events[0][0]) - t)
-            t, y = float(arc.t_events[0][0]), arc.y_events[0][0]
-            held = not held
-            switches += 1
-        else:
-            raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")
-    history = np.concatenate(states, axis=1).T
-    sampled = np.concatenate(times)
+    sampled, history, evaluations, switches = _integrated(system, case, fine, period, rtol, atol)
     theta, omega = history[:, 2], history[:, 5]
     energy = system.energy(history)
     uplift = contacts.uplift_rotation(wall), contacts.uplift_energy(wall)
@@ -231,3 +186,53 @@ def solve_compliant(
             "atol": atol,
         },
     )
+
+
+def _integrated(
+    system: _Wall, case: Case, fine: float, period: float, rtol: float, atol: float
+) -> tuple[Array, Array, int, int]:
+    """Times [s] and states at most `fine` apart, shape (n, 6), and how many evaluations and switches they took.
+
+    The integration is split where friction catches or releases the base.
+    """
+
+    def switch(t: float, y: Array) -> float:
+        return system.edge_load(t, y) - (0.0 if held else CAUGHT * system.wall.weight)
+
+    def overturning(t: float, y: Array) -> float:
+        return abs(float(y[2])) - ON_ITS_FACE
+
+    switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
+    t, y = 0.0, system.released(case)
+    held = system.edge_load(t, y) > 0
+    output = np.linspace(0.0, case.duration, max(2, math.ceil(case.duration / fine) + 1))
+    states, times = [y[:, None]], [np.zeros(1)]
+    evaluations = switches = 0
+    with tqdm(total=case.duration, desc="compliant", unit="s", delay=3, disable=None, leave=False) as bar:
+        while switches < SWITCHES:
+            if held:
+                y = system.caught(y)
+            switch.direction = -1 if held else 1  # type: ignore[attr-defined]
+            arc = solve_ivp(
+                system.held if held else system.free,
+                (t, case.duration),
+                y,
+                method="DOP853",
+                t_eval=output[output > t],
+                events=(switch, overturning),
+                rtol=rtol,
+                atol=atol,
+                max_step=min(10 * period, case.motion.dt if case.motion else math.inf),
+            )
+            if arc.status < 0:
+                raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
+            evaluations += arc.nfev
+            times.append(arc.t)
+            states.append(np.reshape(arc.y, (6, -1)))
+            if arc.status == 0 or arc.t_events[1].size:
+                return np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches
+            bar.update(float(arc.t_events[0][0]) - t)
+            t, y = float(arc.t_events[0][0]), arc.y_events[0][0]
+            held = not held
+            switches += 1
+    raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")

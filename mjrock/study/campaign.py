@@ -27,15 +27,15 @@ def campaign(
 ) -> Path:
     """Run every task that the store does not hold yet, and write a row for each.
 
-    Started again after it was killed, at whatever moment, it carries on with nothing lost and nothing done twice. A
-    task that fails is a row with its error. The order in which tasks finish shows in no row and no export.
+    Killing a campaign loses only the cases in progress. The same call carries on from there and does nothing twice. A
+    task that fails becomes a row with its error. The rows do not depend on the order in which tasks finish.
 
     Args:
         tasks: `Analysis` objects, a `Grid` of them, or an iterator; they are taken as they are needed.
         store: the SQLite file.
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
-            None stands for processes of this machine, which are replaced if they die; or for MuJoCo's own threads where
-            the tasks are fixed-step runs of one geometry and a measured first batch says that this is faster.
+            None stands for processes of this machine, which are replaced if they die. Fixed-step runs of one geometry
+            go to threads of this process instead, if a measured first batch says that this is faster.
         workers: how many processes, one for each processor by default; 1 runs in this process.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.

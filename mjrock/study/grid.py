@@ -13,7 +13,7 @@ from .task import Row
 
 
 class Grid(Sequence[Any]):
-    """Every combination of the axes, made only when it is asked for, with the axes as labels.
+    """Every combination of the axes as a task. Each is built only when it is asked for, and labelled with its axes.
 
     Args:
         build: makes the task of a point, `build(slenderness=7, scale=0.5)`.
@@ -32,7 +32,7 @@ class Grid(Sequence[Any]):
         return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
 
     def __iter__(self) -> Iterator[Any]:
-        """The tasks in order; a point whose values `build` refuses becomes a task that fails with what it said."""
+        """The tasks in order. A point whose values `build` refuses becomes a task that fails with the same message."""
         for i in range(len(self)):
             try:
                 yield self[i]

@@ -69,6 +69,12 @@ def well_matched(row: Mapping[str, Any]) -> bool:
     return bool(row["lowest"] + width <= row["found"] <= row["highest"] - width)
 
 
+def _folds(combinations: Sequence[Combination], folds: int) -> NDArray[np.int64]:
+    """The fold that each pair belongs to; those of one combination belong to the same, shape (n,)."""
+    place = {one: i for i, one in enumerate(dict.fromkeys(combinations))}
+    return np.array([place[one] % folds for one in combinations])
+
+
 def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int = 10) -> Regression:
     """Fit a form to the matches that were reached, by least squares on ln xi, robust (soft L1) beyond 10 %.
 
@@ -92,10 +98,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
     groups = Groups.stack([task.groups for task, _ in reached])
     loss = np.array([task.loss for task, _ in reached])
     xi = np.array([row["xi"] for _, row in reached])
-    members = list(dict.fromkeys(task.combination for task, _ in reached))
-    place = {member: i for i, member in enumerate(members)}
-    fold = np.array([place[task.combination] % folds for task, _ in reached])
-
+    fold = _folds([task.combination for task, _ in reached], folds)
     start = np.array(STARTS[form])
     bounds = BASE_BOUNDS if tasks[0].xi_base is None else SIDE_BOUNDS
     if form is PowerLaw:

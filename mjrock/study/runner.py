@@ -27,7 +27,7 @@ the progress bar moving."""
 START_UP = 2.5
 """Time that worker processes need to import what they use [s]."""
 DEATHS = 2
-"""Deaths of workers at which a task was in flight, after which it goes alone."""
+"""A task that was in progress at this many deaths of workers is run alone."""
 
 
 def processes(count: int) -> ProcessPoolExecutor:
@@ -37,7 +37,7 @@ def processes(count: int) -> ProcessPoolExecutor:
 
 
 def _await_worker(executor: Executor) -> None:
-    """Wait until a worker answers, so that a death at start-up is not taken for the work of a case."""
+    """Wait until a worker answers, so that a death at start-up is not blamed on a case."""
     try:
         executor.submit(os.getpid).result()
     except BrokenExecutor as error:
@@ -48,7 +48,7 @@ def _await_worker(executor: Executor) -> None:
 
 
 def _die_with_the_campaign() -> None:
-    """Let a worker end when its campaign is killed, instead of waiting for work for ever."""
+    """Make a worker end when its campaign is killed. It would wait for work for ever otherwise."""
 
     def watch() -> None:
         parent = multiprocessing.parent_process()
@@ -61,7 +61,7 @@ def _die_with_the_campaign() -> None:
 
 @dataclass
 class Job:
-    """A task on its way."""
+    """A task that is to be run, and how often a worker has died while it was in progress."""
 
     task: Task
     key: str
@@ -71,7 +71,7 @@ class Job:
 
 
 class Runner:
-    """What is known while a campaign runs."""
+    """A running campaign: its store, its counts, and where its tasks are."""
 
     bar: Any
 
@@ -120,10 +120,10 @@ class Runner:
             self.bar.update(self.skipped + self.finished - self.bar.n)
 
     def by_threads(self, pending: Iterator[Job], threads: int, total: int | None) -> Iterator[Job]:
-        """Run batches by MuJoCo's threads for as long as there are any and that is faster; return what is left.
+        """Run batches by threads while there are any and threads are faster; return the jobs that are left.
 
-        A batch tells how long its cases were stepped, which threads share, and how long they took besides, which they
-        do not. Processes would share both, once they have started.
+        Threads share the time that the engine takes for its steps. They do not share the time that Python takes. Each
+        batch measures both. Processes would share both, but they have to start first.
         """
         while job := next(pending, None):
             batch, mark = [job], geometry(job.task)
@@ -145,7 +145,7 @@ class Runner:
         return pending
 
     def take(self, pending: Iterator[Job], again: deque[Job], flying: Iterable[list[Job]]) -> list[Job]:
-        """The jobs of the next chunk, about CHUNK_SECONDS of work; those that went down with a worker go one by one."""
+        """The jobs of the next chunk, about CHUNK_SECONDS of work. Jobs that a dying worker had go one by one."""
         if any(jobs[0].deaths >= DEATHS for jobs in flying):
             return []
         if again:
@@ -156,9 +156,9 @@ class Runner:
     def across(self, pending: Iterator[Job], make: Callable[[], Any], width: int, *, own: bool) -> None:
         """Run jobs on an executor, with twice as many chunks in flight as it has workers.
 
-        Of our own processes, one that dies takes the others with it: they are replaced, and what was in flight is done
-        again, one task at a time. What was in flight at DEATHS of them goes alone, and if it dies alone that is its
-        result.
+        If one of our own processes dies, all of them are replaced. The tasks that were in progress are run again, one
+        at a time. A task that was in progress at DEATHS deaths runs alone. If its worker dies again, the row of the
+        task says so.
         """
         again: deque[Job] = deque()
         ended = False
@@ -196,7 +196,7 @@ class Runner:
                     raise
 
     def collect(self, future: Future[list[Row]], flying: dict[Future[list[Row]], list[Job]], again: deque[Job]) -> None:
-        """Write what a chunk has brought; a chunk that the executor could not carry out goes again, task by task."""
+        """Write the rows of a chunk. A chunk that the executor could not carry out runs again, task by task."""
         jobs = flying[future]
         try:
             rows = future.result()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 APPLICATION = 0x6D6A726B
 """SQLite's application_id of a campaign, "mjrk"."""
 FIXED = ("key", "position", "status", "error", "version", "seconds")
-"""Columns of every row; `position` is the place in the list that was asked, `seconds` the only one that is a timing."""
+"""Columns of every row. `position` is the place in the list of tasks. `seconds` is the only column that is a timing."""
 
 
 def fingerprint(*contents: object) -> str:
@@ -102,7 +102,7 @@ class Store:
             raise
 
     def _locked(self) -> sqlite3.Connection:
-        """A lock that the system takes back from a process that is killed."""
+        """A lock that the system releases when a process is killed."""
         try:
             lock = sqlite3.connect(self.path.with_name(self.path.name + ".lock"), timeout=0, isolation_level=None)
             lock.execute("BEGIN EXCLUSIVE")

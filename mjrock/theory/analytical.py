@@ -17,6 +17,7 @@ from ..result.history import Impact
 from ..result.response import Outcome, Response, describe
 from .forced import rock_forced
 from .free import rock_freely
+from .rocking import Rocking
 
 
 def solve_analytical(
@@ -30,9 +31,8 @@ def solve_analytical(
 ) -> Response:
     """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
 
-    Impacts that accumulate end the rocking: a rebound with less than `rest` of the energy of release leaves the wall at
-    rest. Under ground motion that share is of the energy that overturns the wall, and a wall at rest is lifted again
-    when |a_g| > g tan(alpha) towards a free side.
+    A rebound with less than `rest` of the energy of release leaves the wall at rest. Under ground motion that share is
+    of the energy that overturns the wall, and a wall at rest is lifted when |a_g| > g tan(alpha) towards a free side.
 
     Args:
         case: the wall, its release, its sides, its ground motion. With a side stop `e.lumped` rules and theta >= 0,
@@ -54,13 +54,8 @@ def solve_analytical(
     if case.side_stop and not -1 <= e.lumped < 0:
         raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
     started = time.perf_counter()
-    wall, restitution = case.block, e.lumped if case.side_stop else e.base
-    if case.motion is None:
-        found = rock_freely(case, restitution, rest * case.release_energy, rtol, atol)
-    else:
-        least = rest * float(wall.potential_energy(wall.alpha))
-        found = rock_forced(case, case.motion, restitution, least, rtol)
-    if found.fell or abs(found.theta) > wall.alpha:
+    found = _rocking(case, e, rtol, atol, rest)
+    if found.fell or abs(found.theta) > case.block.alpha:
         outcome = Outcome.OVERTURNED
     else:
         outcome = Outcome.AT_REST if found.at_rest else Outcome.TIME_ENDED
@@ -86,3 +81,12 @@ def solve_analytical(
             "atol": atol,
         },
     )
+
+
+def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> Rocking:
+    """The motion from impact to impact, free or forced."""
+    wall, restitution = case.block, e.lumped if case.side_stop else e.base
+    if case.motion is None:
+        return rock_freely(case, restitution, rest * case.release_energy, rtol, atol)
+    least = rest * float(wall.potential_energy(wall.alpha))
+    return rock_forced(case, case.motion, restitution, least, rtol)
