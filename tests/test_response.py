@@ -57,3 +57,35 @@ def test_a_release_that_is_not_quite_still_is_one_peak(two_sided, e):
         _, peaks, impacts = rocking_history(two_sided, exact.t, exact.theta, omega, exact.energy, (1e-4, 0))
         np.testing.assert_allclose(peaks, exact.peaks[: len(peaks)], rtol=1e-4)
         assert impacts[0].restitution == pytest.approx(e.base, rel=1e-3)
+
+
+def test_the_pose_is_that_of_the_wall(one_sided, contacts, e, wall):
+    """x, z, theta of the one body; a rigid wall turns about its toe, a compliant one sinks into its base."""
+    settled = wall.weight / contacts.base.stiffness.sum()
+    for run in (
+        mr.solve_analytical(one_sided, e),
+        mr.simulate(one_sided, contacts),
+        mr.simulate(one_sided, contacts, 1e-3),
+        mr.solve_compliant(one_sided, contacts),
+    ):
+        assert run.pose.shape == (len(run.t), 1, 3)
+        np.testing.assert_array_equal(run.pose[:, 0, 2], run.theta)
+        rigid = wall.pose(run.theta)
+        free = run.theta > 0.1 * wall.alpha
+        depth = 0.0 if run.solver == "analytical" else 2 * settled
+        np.testing.assert_allclose(run.pose[free, 0, 1], rigid[free, 1] - depth, atol=0.2 * settled)
+        np.testing.assert_allclose(run.pose[free, 0, 0], rigid[free, 0], atol=0.2 * settled)
+
+
+def test_a_response_prints_short_and_compares(one_sided, contacts, e):
+    first, again = (mr.simulate(one_sided, contacts) for _ in range(2))
+    theory = mr.solve_analytical(one_sided, e)
+    assert first == again
+    assert first != theory
+    assert first != mr.simulate(one_sided, contacts, accuracy=1e-2)
+    assert first != "a wall"
+    counts = f"3001 samples over 3 s, {len(first.impacts)} impacts"
+    assert repr(first) == f"<Response of MuJoCo: {counts}, largest rotation 0.5 alpha, at rest>"
+    assert len(repr(theory)) < 120
+    book = mr.simulate(one_sided, contacts, ledger=True).ledger
+    assert repr(book).startswith("<Ledger over 3 s [J]: at the end held -")

@@ -124,6 +124,9 @@ class Scene:
             raise ValueError(f"point_body is outside the valid range 0 to {bodies - 1}")
         if not ((self.face_body >= GROUND) & (self.face_body < bodies) & (self.face_body != self.point_body)).all():
             raise ValueError(f"face_body is another body, 0 to {bodies - 1}, or {GROUND} for the ground")
+        for name, number in Counter((*self.names, *dict.fromkeys(self.group))).items():
+            if number > 1:
+                raise ValueError(f"{name} names two things of the scene; bodies and groups need names of their own")
         if not np.allclose(np.hypot(*self.normal.T), 1.0):
             raise ValueError("normal holds a vector that is not of unit length")
         for name in ("settled", "release"):
