@@ -146,7 +146,8 @@ def test_energy_is_none_at_rest_and_the_rigid_one_at_release(wall, contacts):
 def test_energies_of_bodies_that_move():
     scene = two_blocks()
     q, v, _ = poses(np.random.default_rng(8), 5, 2)
-    found = energies(scene.points, scene.masses, q, v)
+    found, taken = energies(scene.points, scene.ties, scene.forces, scene.masses, q, v)
+    assert taken.shape == (5, 0)
     np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.masses))
     np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.mass))
     np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.points, q), 0) ** 2 @ scene.k)
@@ -161,7 +162,7 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    np.testing.assert_allclose(settled(scene.points, scene.masses), scene.at_rest, atol=1e-15)
+    np.testing.assert_allclose(settled(scene.points, scene.ties, scene.forces, scene.masses), scene.at_rest, atol=1e-15)
     np.testing.assert_allclose(scene.points.bears, wall.weight / scene.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
     force = -blocks.k * np.minimum(gaps(blocks.points, blocks.at_rest.reshape(1, -1))[0], 0)

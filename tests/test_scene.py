@@ -12,6 +12,7 @@ import mjrock as mr
 from mjrock.engine.ground import Ground, ground_velocity, mean_acceleration
 from mjrock.engine.mjcf import pair_rows, scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
+from mjrock.engine.pace import short_step
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.wall import wall_scene
 
@@ -155,7 +156,7 @@ def test_a_stack_at_rest_stays_at_rest():
     """Two blocks, ten seconds: nothing moves, and the steps grow long."""
     scene = two_blocks(duration=10.0)
     with engine_of(scene) as engine:
-        h = 1e-4
+        h = short_step(scene, 1e-3)
         engine.follow(h, pair_rows(scene, h, 0.25))
         engine.release(scene.started)
         steps = fitted_steps(engine, scene, 1e-3)

@@ -18,7 +18,7 @@ from ..problem.quantities import Array, Integers
 from ..result.ledger import Ledger
 from .contact import row
 from .ground import Ground, mean_acceleration
-from .kinematics import Points, along, energies, gap, spring_energy, take_frame
+from .kinematics import Points, along, gap, spring_energy, take_frame
 from .scene import Scene
 from .steps import Steps
 
@@ -39,7 +39,7 @@ def _ground_work(ground: Ground, t: Array, h: Array, width: Array, momentum: Arr
 def ledger(scene: Scene, steps: Steps) -> Ledger:
     """The ledger of a run."""
     start = steps.pose - 0.5 * steps.h[:, None] * steps.before
-    stored = energies(scene.points, scene.masses, start, steps.before)
+    stored, taken = scene.accounts(start, steps.before)
     groups = tuple(dict.fromkeys(scene.group))
     number = np.array([groups.index(name) for name in scene.group])
     dashpots, friction = np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t))
@@ -69,6 +69,7 @@ def ledger(scene: Scene, steps: Steps) -> Ledger:
         dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate(groups)},
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, steps)),
+        ties=dict(zip(scene.tie_names, taken.T, strict=True)),
     )
 
 

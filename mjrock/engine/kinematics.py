@@ -1,4 +1,5 @@
-"""Kinematics of rigid bodies in a plane: the gap between a point and a face, its rates, and the slip along the face.
+"""Kinematics of rigid bodies in a plane: gaps between points and faces, their rates, the slip along a face, lengths of
+ties.
 
 Poses and velocities of n bodies are flat arrays of 3 n numbers: for each body the displacement x, z of its centroid
 from rest [m] and its rotation theta from rest [rad]. x points away from the side stop of a wall, z upwards, and theta
@@ -50,6 +51,44 @@ class Points(NamedTuple):
     held: Array
     radius: float
     bears: Array
+
+
+class Ties(NamedTuple):
+    """Ties between points of two bodies, or of a body and the ground, as arrays for compiled functions.
+
+    Args:
+        body: the body that each tie holds, shape (t,).
+        at: position of the held point from the centroid of that body, at rest [m], shape (t, 2).
+        face_body: the body of the anchor, -1 for the ground, shape (t,).
+        face_at: the anchor from the centroid of its body, at rest, or from the origin of the world [m], shape (t, 2).
+        between: vector from the anchor to the held point, at rest [m], shape (t, 2).
+        k: stiffness [N/m], shape (t,).
+        reach: length up to which the tie is slack [m], shape (t,). It grows as the tie yields.
+        stretch: elongation at which the tie yields [m], infinite for one that does not, shape (t,).
+    """
+
+    body: Integers
+    at: Array
+    face_body: Integers
+    face_at: Array
+    between: Array
+    k: Array
+    reach: Array
+    stretch: Array
+
+
+class Forces(NamedTuple):
+    """Forces that keep size and direction and follow a point of a body, as arrays for compiled functions.
+
+    Args:
+        body: the body that each force acts on, shape (f,).
+        at: position of its point from the centroid of that body, at rest [m], shape (f, 2).
+        force: x and z component [N], shape (f, 2).
+    """
+
+    body: Integers
+    at: Array
+    force: Array
 
 
 @jitable
@@ -148,6 +187,33 @@ def depth(points: Points, i: int, frame: Array) -> float:
 
 
 @jitable
+def slack(ties: Ties, i: int, frame: Array, v: Array, a: Array) -> tuple[float, float, float, float]:
+    """How much longer tie i may still become before it pulls [m], and its rates; else as `gap`."""
+    rx, rz, vx, vz, ax, az, cx, cz = carried(frame, v, a, ties.body[i], ties.at[i, 0], ties.at[i, 1])
+    face = ties.face_body[i]
+    if face >= 0:
+        fx, fz, fvx, fvz, fax, faz, fcx, fcz = carried(frame, v, a, face, ties.face_at[i, 0], ties.face_at[i, 1])
+        rx, rz, vx, vz = rx - fx, rz - fz, vx - fvx, vz - fvz
+        ax, az, cx, cz = ax - fax, az - faz, cx - fcx, cz - fcz
+    rx, rz = rx + ties.between[i, 0], rz + ties.between[i, 1]
+    length = math.sqrt(rx * rx + rz * rz)
+    nx, nz = rx / length, rz / length
+    across = nz * vx - nx * vz
+    swept = nx * cx + nz * cz + across * across / length
+    return ties.reach[i] - length, -(nx * vx + nz * vz), -(nx * ax + nz * az), -swept
+
+
+@jitable
+def stretch(ties: Ties, i: int, frame: Array) -> tuple[float, float]:
+    """Elastic elongation of tie i, and by how much it has just yielded [m]. Its reach is brought up to date."""
+    still = frame[0]  # any numbers do, the rates are not used
+    pulled = -slack(ties, i, frame, still, still)[0]
+    yielded = max(pulled - ties.stretch[i], 0.0)
+    ties.reach[i] += yielded
+    return max(pulled - yielded, 0.0), yielded
+
+
+@jitable
 def along(points: Points, i: int, frame: Array, v: Array) -> tuple[float, float, float]:
     """Position of point i along its face from the origin of the face [m], its rate, and the slip of the bodies [m/s].
 
@@ -189,24 +255,43 @@ def _gaps(points: Points, q: Array, frame: Array, found: Array) -> None:
             found[step, i] = -depth(points, i, frame)
 
 
-def energies(points: Points, masses: Array, q: Array, v: Array) -> Array:
-    """Kinetic, potential and elastic energy [J] at many poses, shape (steps, 3).
+def energies(points: Points, ties: Ties, forces: Forces, masses: Array, q: Array, v: Array) -> tuple[Array, Array]:
+    """Kinetic, potential and elastic energy at the steps of a motion [J], shape (steps, 3), and what ties have taken.
 
-    The potential energy is that of the weight above the position of rest of the centroids. Masses are the generalised
-    ones, (m, m, I) for each body, shape (3 n,).
+    The potential energy is that of the weight above the position of rest of the centroids, and that of the constant
+    forces. Ties yield as the motion goes on. What they have taken up to each step has the shape (steps, t) [J]. Masses
+    are the generalised ones, (m, m, I) for each body, shape (3 n,).
     """
-    found = np.zeros((len(q), 3))
-    _energies(points, masses, q, v, np.empty((q.shape[1] // 3, 4)), found)
-    return found
+    found, taken = np.zeros((len(q), 3)), np.zeros((len(q), len(ties.k)))
+    own = ties._replace(reach=np.array(ties.reach))
+    _energies(points, own, forces, masses, q, v, np.empty((q.shape[1] // 3, 4)), found, taken)
+    return found, taken
 
 
 @compiled
-def _energies(points: Points, masses: Array, q: Array, v: Array, frame: Array, found: Array) -> None:
+def _energies(
+    points: Points,
+    ties: Ties,
+    forces: Forces,
+    masses: Array,
+    q: Array,
+    v: Array,
+    frame: Array,
+    found: Array,
+    taken: Array,
+) -> None:
     for step in range(len(q)):
         take_frame(q[step], frame)
         for j in range(len(masses)):
             found[step, 0] += 0.5 * masses[j] * v[step, j] ** 2
         for j in range(1, len(masses), 3):
             found[step, 1] += GRAVITY * masses[j] * q[step, j]
+        for i in range(len(forces.body)):
+            x, z, _, _, _, _, _, _ = carried(frame, v[step], v[step], forces.body[i], forces.at[i, 0], forces.at[i, 1])
+            found[step, 1] -= forces.force[i, 0] * x + forces.force[i, 1] * z
         for i in range(len(points.k)):
             found[step, 2] += spring_energy(points, i, frame)
+        for i in range(len(ties.k)):
+            stretched, yielded = stretch(ties, i, frame)
+            found[step, 2] += 0.5 * ties.k[i] * stretched * stretched
+            taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * stretched * yielded

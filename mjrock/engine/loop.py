@@ -17,12 +17,12 @@ from ..compiled import compiled, jitable
 from ..problem.quantities import ON_ITS_FACE, Array, Flags
 from .contact import set_rows
 from .ground import Ground, push
-from .kinematics import Points, frame_of, take_frame
+from .kinematics import Points, Ties, frame_of, stretch, take_frame
 from .memory import IMPRATIO, TIMESTEP, Memory
-from .pace import Pace, judged, resolves, while_loaded
+from .pace import Pace, judged, resolves, until_turned, while_loaded
 from .steps import Record
 from .sticking import Joints, deepest, put_back, sticks
-from .touches import ABRUPT, FADED, closure_changed, follow_contacts, step_to_touch
+from .touches import ABRUPT, FADED, Springs, closure_changed, follow, step_to_touch
 
 
 class State(NamedTuple):
@@ -33,9 +33,10 @@ class State(NamedTuple):
         rate: its rate, from the last two steps, shape (3 n,).
         velocity_now, acceleration_now: room for the values at the time of the pose, shape (3 n,).
         frame, next_frame: frames of the pose before and after the step, shape (n, 4).
-        motion: gap of each contact and its rates, see `touches.follow_contacts`, shape (m, 4).
-        closed: which contacts are closed, shape (m,).
-        touch: room for the touches of a step, shape (m, 2).
+        motion: gap of each contact, slack of each tie, and their rates, see `touches.follow`, shape (m + t, 4).
+        closed: which contacts are closed and which ties are taut, shape (m + t,).
+        touch: room for the touches of a step, shape (m + t, 2).
+        springs: of the contacts and the ties.
     """
 
     acceleration: Array
@@ -47,11 +48,12 @@ class State(NamedTuple):
     motion: Array
     closed: Flags
     touch: Array
+    springs: Springs
 
     @classmethod
-    def of(cls, memory: Memory, contacts: int) -> State:
+    def of(cls, memory: Memory, springs: Springs) -> State:
         """The state at the release."""
-        n = len(memory.pose)
+        n, touching = len(memory.pose), len(springs.k)
         return cls(
             acceleration=np.array(memory.acceleration),
             rate=np.zeros(n),
@@ -59,9 +61,10 @@ class State(NamedTuple):
             acceleration_now=np.zeros(n),
             frame=frame_of(memory.pose),
             next_frame=frame_of(memory.pose),
-            motion=np.zeros((contacts, 4)),
-            closed=np.zeros(contacts, dtype=np.bool_),
-            touch=np.zeros((contacts, 2)),
+            motion=np.zeros((touching, 4)),
+            closed=np.zeros(touching, dtype=np.bool_),
+            touch=np.zeros((touching, 2)),
+            springs=springs,
         )
 
 
@@ -210,6 +213,7 @@ def make_step(memory: Memory, ground: Ground, masses: Array, record: Record, n: 
 def fitted_loop(
     memory: Memory,
     points: Points,
+    ties: Ties,
     masses: Array,
     ground: Ground,
     pace: Pace,
@@ -225,15 +229,16 @@ def fitted_loop(
     while n < len(record.t) and not ended:
         present(memory, state, last)
         motion, v, a = state.motion, state.velocity_now, state.acceleration_now
-        follow_contacts(points, state.frame, v, a, motion)
+        follow(points, ties, state.frame, v, a, motion)
         if closure_changed(motion, state.closed) and last > pace.short and not fresh:
             look_again(memory, ground, masses, state, t, pace.short)
-            follow_contacts(points, state.frame, v, a, motion)
+            follow(points, ties, state.frame, v, a, motion)
             h, calm, fresh = pace.short, 0, True
 
         # predict
-        now, least = while_loaded(points, motion, h, pace.short), FADED * pace.accuracy * energy
-        to_touch = 0.0 if abrupt else step_to_touch(points, motion, now, h, least, pace.short, state.touch)
+        now = until_turned(ties, motion, while_loaded(points, motion, h, pace.short), pace.short)
+        least = FADED * pace.accuracy * energy
+        to_touch = 0.0 if abrupt else step_to_touch(state.springs, motion, now, h, least, pace.short, state.touch)
         if to_touch > 0:
             now = to_touch
 
@@ -245,6 +250,8 @@ def fitted_loop(
         change = change_of_acceleration(memory, masses, state, last, now, fresh) / energy
         abrupt = change > ABRUPT**2
         hold(memory, points, pace, joints, state, record, n)
+        for i in range(len(ties.k)):
+            stretch(ties, i, state.frame)
 
         # judge
         t, last = t + now, now

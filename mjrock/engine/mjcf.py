@@ -18,7 +18,8 @@ import numpy as np
 from .._version import __version__
 from ..problem.quantities import GRAVITY, Array
 from .contact import set_rows
-from .scene import GROUND, Scene
+from .scene import Scene
+from .tables import GROUND
 
 HEAD = """\
 <mujoco model="rocking wall">
@@ -26,9 +27,8 @@ HEAD = """\
        SI units and radians; k_n in N/m3, xi a fraction. To repeat `simulate(case, contacts, timestep={h})`, reset to
        the keyframe `release` and step. Its velocities are those half a step before the release, where MuJoCo's Euler
        step keeps them. A ground motion is not in this text: it acts through qfrc_applied. Steps that fit the motion are
-       not
-       either: they set timestep, impratio, solref, solimp and solreffriction for each length of step, and shift the
-       velocities by half of its change. -->
+       not in it either: they set timestep, impratio, solref, solimp and solreffriction for each length of step, and
+       shift the velocities by half of its change. -->
   <compiler angle="radian"/>
   <option timestep={timestep} gravity={gravity} integrator="Euler" cone="elliptic" impratio={impratio} solver="Newton"
           iterations="50" tolerance="1e-10">
@@ -44,8 +44,10 @@ HEAD = """\
   </default>
   <asset>
     <texture name="sky" type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.62 0.7 0.8" width="16"
-    height="96"/> <texture name="paving" type="2d" builtin="checker" rgb1="0.72 0.72 0.7" rgb2="0.66 0.66 0.64"
-    width="64" height="64"/> <material name="paving" texture="paving" texrepeat="1 1" texuniform="true"/>
+             height="96"/>
+    <texture name="paving" type="2d" builtin="checker" rgb1="0.72 0.72 0.7" rgb2="0.66 0.66 0.64" width="64"
+             height="64"/>
+    <material name="paving" texture="paving" texrepeat="1 1" texuniform="true"/>
     <material name="brick" rgba="0.7 0.33 0.23 1"/>
     <material name="plaster" rgba="0.85 0.82 0.76 1"/>{meshes}
   </asset>
@@ -89,16 +91,13 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, veloci
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
         _tag("camera", name="front", pos=camera, xyaxes=(1.0, 0.0, 0.0, 0.0, 0.05, 1.0), fovy="28"),
         *_world(scene),
+        *(f"  {site}" for site in _sites(scene, GROUND)),
         "</worldbody>",
-        "<contact>",
-        *_pairs(scene, rows),
-        "</contact>",
-        "<custom>",
-        *_records(scene, newmark_beta),
-        "</custom>",
-        "<keyframe>",
-        _tag("key", name="release", **key),
-        "</keyframe>",
+        *_section("contact", _pairs(scene, rows)),
+        *_section("tendon", _ties(scene)),
+        *_section("actuator", _forces(scene)),
+        *_section("custom", _records(scene, newmark_beta)),
+        *_section("keyframe", iter(["  " + _tag("key", name="release", **key)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 
@@ -147,7 +146,54 @@ def _world(scene: Scene) -> Iterator[str]:
         for i in np.flatnonzero(scene.point_body == j):
             at = (scene.point[i, 0], 0.0, scene.point[i, 1])
             yield "    " + _tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
+        yield from (f"    {site}" for site in _sites(scene, j))
         yield "  </body>"
+
+
+def _sites(scene: Scene, body: int) -> Iterator[str]:
+    """Ends of ties and points of forces on a body or on the ground, which is raised by the radius of the points."""
+    ends = (
+        (scene.tie_names, scene.tie_body, scene.tie_point),
+        ([f"{name}_anchor" for name in scene.tie_names], scene.anchor_body, scene.anchor),
+        (scene.force_names, scene.force_body, scene.force_point),
+    )
+    raised = scene.radius if body == GROUND else 0.0
+    for names, bodies, places in ends:
+        for name, on, (x, z) in zip(names, bodies, places, strict=True):
+            if on == body:
+                yield _tag("site", name=name, pos=(x, 0.0, z + raised))
+    if body == GROUND and scene.force_names:
+        yield _tag("site", name="origin")
+
+
+def _section(name: str, lines: Iterator[str]) -> list[str]:
+    """A section of the text, or nothing where it would be empty."""
+    found = list(lines)
+    return [f"<{name}>", *found, f"</{name}>"] if found else []
+
+
+def _ties(scene: Scene) -> Iterator[str]:
+    """The ties: springs that are slack up to a length and yield at a force."""
+    for i, name in enumerate(scene.tie_names):
+        yields = {} if scene.ties.stretch[i] == np.inf else {"springyield": scene.ties.stretch[i]}
+        spring = {"springlength": (0, scene.tie_length[i]), "stiffness": scene.tie_k[i], **yields}
+        ends = "".join(_tag("site", site=site) for site in (f"{name}_anchor", name))
+        yield "  " + _tag("spatial", ends, name=name, **spring)
+
+
+def _forces(scene: Scene) -> Iterator[str]:
+    """The constant forces: actuators that need no control."""
+    for name, (x, z) in zip(scene.force_names, scene.force, strict=True):
+        yield "  " + _tag(
+            "general",
+            name=name,
+            site=name,
+            refsite="origin",
+            gear=(x, 0, z, 0, 0, 0),
+            gainprm="0",
+            biastype="affine",
+            biasprm="1 0 0",
+        )
 
 
 def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
@@ -222,5 +268,6 @@ def _value(value: object) -> str:
     return f'"{" ".join(repr(float(number)) for number in np.ravel(np.asarray(value)))}"'
 
 
-def _tag(tag: str, /, **attributes: object) -> str:
-    return f"<{tag} {' '.join(f'{key}={_value(value)}' for key, value in attributes.items())}/>"
+def _tag(tag: str, within: str = "", /, **attributes: object) -> str:
+    opened = f"<{tag} {' '.join(f'{key}={_value(value)}' for key, value in attributes.items())}"
+    return f"{opened}>{within}</{tag}>" if within else f"{opened}/>"

@@ -9,7 +9,8 @@ The lengths follow from the contacts, the rocking and an error estimate:
   CHANGE accuracy |v|, and doubled after two steps in a row that changed by less than a quarter of that. |.| weighs with
   the masses, and |v| is the speed at which the bodies arrived at their last touch;
 * a loaded contact stays loaded: no step moves a loaded point by more than the share STAYS of its penetration through
-  the velocities alone.
+  the velocities alone;
+* a tie that can yield is met at its greatest length.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import numpy as np
 from ..compiled import jitable
 from ..problem.quantities import Array
 from .contact import longest_step
-from .kinematics import Points
+from .kinematics import Points, Ties
 from .scene import Scene
 
 SHORT = 24.0
@@ -43,6 +44,9 @@ point of a wall that turns at omega is moved by h^2/2 omega^2 times the height o
 lifts a toe that its weight presses in by micrometres, and friction at the toe is lost with it."""
 LOADED = 0.5
 """A point counts as loaded from this share of its penetration at rest on [-]: an edge may lift off as it likes."""
+TAUT = 1.0
+"""omega h of the longest step with a tie [-], omega the frequency of the bodies on the tie alone. MuJoCo integrates
+ties explicitly, which is stable up to 2."""
 SMOOTH = 1.5
 """omega h below which a step resolves the contacts and takes Newmark's beta = 1/12 (stable below 2.45). A longer step
 takes a beta above 1/4, which is stable at every step. The closed contacts hardly move then."""
@@ -81,6 +85,7 @@ class Pace(NamedTuple):
         short = short_step(scene, accuracy)
         longest = math.sqrt(LONG * accuracy) / scene.rocking_frequency
         longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
+        longest = min(longest, TAUT / max(scene.tie_frequency, 1e-300))
         if scene.motion is not None:
             longest = min(longest, scene.motion.dt)
         ringing = np.where(scene.points.bears > 0, RINGING_BORNE, RINGING_OPEN)
@@ -125,6 +130,25 @@ def while_loaded(points: Points, motion: Array, h: float, short: float) -> float
         g, swept = motion[i, 0], motion[i, 3]
         if -g > LOADED * points.bears[i] > 0 and 0.5 * h * h * abs(swept) > -STAYS * g:
             h = math.sqrt(-2 * STAYS * g / abs(swept))
+    return max(h, short)
+
+
+@jitable
+def until_turned(ties: Ties, motion: Array, h: float, short: float) -> float:
+    """The step h [s], shortened to end where a tie that can yield is longest, but not below the short step.
+
+    A tie yields up to its greatest length, which a long step would pass by.
+
+    Args:
+        ties: the ties.
+        motion: gap of the m contacts and slack of the t ties, with their rates, shape (m + t, 4).
+        h, short: the step, and the short step [s].
+    """
+    first = len(motion) - len(ties.k)
+    for i in range(len(ties.k)):
+        g, g1, g2 = motion[first + i, 0], motion[first + i, 1], motion[first + i, 2] + motion[first + i, 3]
+        if ties.stretch[i] < math.inf and g < 0 and g1 < 0 and g1 + h * g2 > 0:
+            h = -g1 / g2
     return max(h, short)
 
 

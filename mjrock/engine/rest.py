@@ -1,46 +1,83 @@
-"""Rest: the poses in which the springs of the contacts carry the weight."""
+"""Rest: the poses in which the springs of the contacts carry the weight and the constant forces."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..problem.quantities import GRAVITY, Array
-from .kinematics import Points, frame_of, gap, gaps
+from ..problem.quantities import GRAVITY, Array, Flags
+from .kinematics import Forces, Points, Ties, along, carried, frame_of, gap, gaps, slack
 
 ITERATIONS = 200
 """Most iterations of Newton's method."""
 
 
-def gap_rates(points: Points, pose: Array) -> Array:
-    """Rates of the gaps for unit velocities at a pose of shape (3 n,), shape (m, 3 n)."""
+def gap_rates(points: Points, ties: Ties, pose: Array) -> Array:
+    """Rates of the gaps and of the slack of the ties for unit velocities at a pose of shape (3 n,), (m + t, 3 n)."""
     frame, columns, none = frame_of(pose), np.eye(len(pose)), np.zeros_like(pose)
-    return np.array([[gap(points, i, frame, v, none)[1] for v in columns] for i in range(len(points.k))])
+    rates = [[gap(points, i, frame, v, none)[1] for v in columns] for i in range(len(points.k))]
+    rates += [[slack(ties, i, frame, v, none)[1] for v in columns] for i in range(len(ties.k))]
+    return np.reshape(rates, (-1, len(pose)))
 
 
-def settled(points: Points, masses: Array) -> Array:
-    """The pose in which the springs of the contacts carry the weight without friction, shape (n, 3).
+def openings(points: Points, ties: Ties, pose: Array) -> Array:
+    """Gaps of the contacts and slack of the ties at a pose of shape (3 n,) [m], shape (m + t,)."""
+    frame = frame_of(pose)
+    return np.append(gaps(points, pose[None])[0], [slack(ties, i, frame, pose, pose)[0] for i in range(len(ties.k))])
 
-    Newton's method on the potential energy. Where nothing holds a direction, the bodies stay where they are.
+
+def slip_rates(points: Points, closed: Flags, pose: Array) -> Array:
+    """Rates of the slip between bodies that friction holds, for unit velocities, shape (pairs of bodies, 3 n).
+
+    It is the mean slip of the closed points with friction of each pair. Two edges of one joint that both held would
+    lock its rotation.
+    """
+    frame, columns = frame_of(pose), np.eye(len(pose))
+    rows: dict[tuple[int, int], list[list[float]]] = {}
+    for i in np.flatnonzero(closed[: len(points.k)] & (points.friction > 0)):
+        pair = int(points.body[i]), int(points.face_body[i])
+        rows.setdefault(pair, []).append([along(points, int(i), frame, v)[1] for v in columns])
+    return np.reshape([np.mean(slips, axis=0) for slips in rows.values()], (-1, len(pose)))
+
+
+def load(forces: Forces, masses: Array, pose: Array) -> Array:
+    """Generalised force of the weight and of the constant forces at a pose of shape (3 n,), shape (3 n,)."""
+    total = np.zeros_like(masses)
+    total[1::3] = -GRAVITY * masses[1::3]
+    frame, columns = frame_of(pose), np.eye(len(pose))
+    for body, (x, z), force in zip(forces.body, forces.at, forces.force, strict=True):
+        total += [force @ carried(frame, v, v, body, x, z)[2:4] for v in columns]
+    return total
+
+
+def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
+    """The pose in which the springs of contacts and ties carry weight and forces, shape (n, 3).
+
+    Newton's method on the potential energy. Friction holds every joint that is pressed. Where nothing holds a
+    direction, the bodies stay where they are.
 
     Raises:
         ValueError: if no such pose is found near the undeformed one.
     """
-    weight = np.zeros_like(masses)
-    weight[1::3] = -GRAVITY * masses[1::3]
-    pose = np.zeros_like(masses)
-    closed = np.ones(len(points.k), dtype=bool)
+    pose, k = np.zeros_like(masses), np.append(points.k, ties.k)
+    closed = np.append(np.ones(len(points.k), dtype=bool), openings(points, ties, pose)[len(points.k) :] < 0)
+    scale = GRAVITY * float(masses[1::3].max())
     for _ in range(ITERATIONS):
-        rates, depth = gap_rates(points, pose), -gaps(points, pose[None])[0]
-        residual = weight + rates.T @ np.where(closed, points.k * depth, 0.0)
-        if np.abs(residual).max() < 1e-9 * np.abs(weight).max() and (closed == (depth > 0)).all():
+        rates, depth = gap_rates(points, ties, pose), -openings(points, ties, pose)
+        carrying = np.where(closed, k, 0.0)
+        stiffness = (rates.T * carrying) @ rates
+        residual = load(forces, masses, pose) + rates.T @ (carrying * depth)
+        grip = k.max() * slip_rates(points, closed, pose)
+        matrix = np.block([[stiffness, grip.T], [grip, np.zeros((len(grip), len(grip)))]])
+        found = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-12)[0]
+        moved, friction = found[: len(pose)], found[len(pose) :]
+        if np.abs(residual - grip.T @ friction).max() < 1e-9 * scale and (closed == (depth > 0)).all():
             return pose.reshape(-1, 3)
-        stiffness = (rates.T * np.where(closed, points.k, 0.0)) @ rates
-        pose = pose + np.linalg.lstsq(stiffness, residual, rcond=1e-12)[0]
-        closed = gaps(points, pose[None])[0] < 0
-    raise ValueError("the bodies do not stand on their contacts without friction")
+        pose = pose + moved
+        closed = openings(points, ties, pose) < 0
+    raise ValueError("the bodies do not stand on their contacts")
 
 
-def lowered(points: Points, masses: Array, pose: Array) -> Array:
+def lowered(points: Points, forces: Forces, masses: Array, pose: Array) -> Array:
     """A pose lowered until the springs of level ground carry the weight of all bodies, shape (n, 3).
 
     The bodies keep their rotations and their horizontal positions.
@@ -49,7 +86,8 @@ def lowered(points: Points, masses: Array, pose: Array) -> Array:
     depth, k = -gaps(points, np.array(pose, dtype=float).reshape(1, -1))[0][level], points.k[level]
     order = np.argsort(-depth, kind="stable")  # the deepest points are loaded first
     depth, k = depth[order], k[order]
-    # sum k_i max(0, depth_i - z) = m g for the points down to the i-th
-    levels = (np.cumsum(k * depth) - GRAVITY * masses[1::3].sum()) / np.cumsum(k)
+    # sum k_i max(0, depth_i - z) = m g + what presses down, for the points down to the i-th
+    carries = GRAVITY * masses[1::3].sum() - forces.force[:, 1].sum()
+    levels = (np.cumsum(k * depth) - carries) / np.cumsum(k)
     z = levels[np.flatnonzero(levels >= np.append(depth[1:], -np.inf))[0]]
     return pose + np.array([0.0, z, 0.0])

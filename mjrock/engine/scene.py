@@ -16,35 +16,23 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..problem.motion import GroundMotion
 from ..problem.quantities import GRAVITY, Array, Integers
 from .contact import planar_weight
-from .kinematics import Points, energies, gaps
+from .kinematics import Forces, Points, Ties, energies, gaps
 from .rest import gap_rates, lowered, settled
+from .tables import checked, frozen, nothing
 
-GROUND = -1
-"""The face of a contact that belongs to no body."""
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
 surface, which is why it is tiny."""
 HELD_MASSES = 1e3
 """Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
 a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
-SHAPES: dict[str, tuple[str | int, ...]] = {
-    "mass": ("bodies",),
-    "inertia": ("bodies",),
-    "rest": ("bodies", 2),
-    "point_body": ("points",),
-    "point": ("points", 2),
-    "face_body": ("points",),
-    "face": ("points", 2),
-    "normal": ("points", 2),
-    "k": ("points",),
-    "c": ("points",),
-    "friction": ("points",),
-}
+
+SHARED = ("points", "ties", "masses", "rest_energies", "highest_frequency", "tie_frequency", "rocking_frequency", "key")
+"""What scenes that differ in their release share."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +55,15 @@ class Scene:
         friction: coefficient of friction of each contact, zero for none [-], shape (m,).
         group: name of the group that each contact belongs to. Its points are numbered in the model, and the ledger has
             an account for each group.
+        tie_names: names of the t ties, which pull and never push.
+        tie_body, tie_point: the body that each tie holds, and where, from its centroid [m], shapes (t,) and (t, 2).
+        anchor_body, anchor: the body of the other end, or GROUND, and the end, as for a face, shapes (t,) and (t, 2).
+        tie_k: stiffness of each tie [N/m], shape (t,).
+        tie_length: length up to which it is slack [m], shape (t,).
+        tie_strength: force at which it yields [N], infinite for one that does not, shape (t,).
+        force_names: names of the f constant forces. They keep their direction and follow their points.
+        force_body, force_point: the body that each force acts on, and where, from its centroid [m], (f,) and (f, 2).
+        force: its x and z component [N], shape (f, 2).
         settled: pose of the bodies at rest under their weight, shape (n, 3). None searches for it.
         release: pose and velocity at the release, shape (n, 3) each. None stands for rest at `settled`.
         duration: how long to follow the motion [s].
@@ -93,6 +90,18 @@ class Scene:
     c: Array
     friction: Array
     group: tuple[str, ...]
+    tie_names: tuple[str, ...] = ()
+    tie_body: Integers = field(default_factory=nothing)
+    tie_point: Array = field(default_factory=nothing)
+    anchor_body: Integers = field(default_factory=nothing)
+    anchor: Array = field(default_factory=nothing)
+    tie_k: Array = field(default_factory=nothing)
+    tie_length: Array = field(default_factory=nothing)
+    tie_strength: Array = field(default_factory=nothing)
+    force_names: tuple[str, ...] = ()
+    force_body: Integers = field(default_factory=nothing)
+    force_point: Array = field(default_factory=nothing)
+    force: Array = field(default_factory=nothing)
     settled: Array | None = None
     release: tuple[Array, Array] | None = None
     duration: float = 1.0
@@ -101,52 +110,26 @@ class Scene:
     facts: Mapping[str, float | str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        sizes: dict[str | int, int] = {"bodies": len(self.names), "points": len(self.group), 2: 2}
-        for name, shape in SHAPES.items():
-            kind = np.int64 if name.endswith("body") else float
-            values = np.ascontiguousarray(getattr(self, name), dtype=kind)
-            wanted = tuple(sizes[size] for size in shape)
-            if values.shape != wanted:
-                raise ValueError(f"{name} has the shape {values.shape}; {wanted} is needed")
-            if not np.isfinite(values).all():
-                raise ValueError(f"{name} holds a value that is not finite")
-            object.__setattr__(self, name, _frozen(values))
-        for name, low in (("mass", 0.0), ("inertia", 0.0), ("k", 0.0)):
-            if not (getattr(self, name) > low).all():
-                raise ValueError(f"{name} = {getattr(self, name).min():g} is outside the valid range {name} > {low:g}")
-        for name in ("c", "friction"):
-            if not (getattr(self, name) >= 0).all():
-                raise ValueError(
-                    f"{name} = {getattr(self, name).min():g} is outside the valid range, which starts at 0"
-                )
+        for name, values in checked(vars(self)).items():
+            object.__setattr__(self, name, values)
         bodies = len(self.names)
-        if not ((self.point_body >= 0) & (self.point_body < bodies)).all():
-            raise ValueError(f"point_body is outside the valid range 0 to {bodies - 1}")
-        if not ((self.face_body >= GROUND) & (self.face_body < bodies) & (self.face_body != self.point_body)).all():
-            raise ValueError(f"face_body is another body, 0 to {bodies - 1}, or {GROUND} for the ground")
-        for name, number in Counter((*self.names, *dict.fromkeys(self.group))).items():
-            if number > 1:
-                raise ValueError(f"{name} names two things of the scene; bodies and groups need names of their own")
-        if not np.allclose(np.hypot(*self.normal.T), 1.0):
-            raise ValueError("normal holds a vector that is not of unit length")
         for name in ("settled", "release"):
             values = getattr(self, name)
             if values is not None:
-                values = np.reshape(
-                    np.asarray(values, dtype=float), (-1, bodies, 3) if name == "release" else (bodies, 3)
-                )
-                object.__setattr__(self, name, tuple(values) if name == "release" else _frozen(values))
+                shape = (-1, bodies, 3) if name == "release" else (bodies, 3)
+                values = frozen(np.reshape(np.asarray(values, dtype=float), shape))
+                object.__setattr__(self, name, tuple(values) if name == "release" else values)
 
     def lowered(self, pose: Array) -> Array:
         """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3)."""
-        return lowered(self._points, self.masses, pose)
+        return lowered(self._points, self.forces, self.masses, pose)
 
     def released(self, pose: Array, velocity: Array, duration: float, motion: GroundMotion | None) -> Scene:
         """This scene with another release, shape (n, 3) each, duration [s] and ground motion.
 
         What follows from the scene at rest is found once and shared.
         """
-        for name in ("points", "masses", "rest_energies", "highest_frequency", "rocking_frequency", "key"):
+        for name in SHARED:
             getattr(self, name)
         made = copy(self)
         made.__dict__.update(release=(pose, velocity), duration=duration, motion=motion)
@@ -158,7 +141,7 @@ class Scene:
     def weight(self) -> Array:
         """Sum of MuJoCo's inverse weights of the two bodies of each contact [1/kg], shape (m,)."""
         inverse = planar_weight(self.mass)
-        return _frozen(inverse[self.point_body] + np.where(self.face_body < 0, 0.0, inverse[self.face_body]))
+        return frozen(inverse[self.point_body] + np.where(self.face_body < 0, 0.0, inverse[self.face_body]))
 
     @cached_property
     def extent(self) -> float:
@@ -194,27 +177,49 @@ class Scene:
     @cached_property
     def masses(self) -> Array:
         """Generalised masses: m, m, I of each body, shape (3 n,)."""
-        return _frozen(np.column_stack([self.mass, self.mass, self.inertia]).ravel())
+        return frozen(np.column_stack([self.mass, self.mass, self.inertia]).ravel())
 
     @cached_property
     def _points(self) -> Points:
         """The contacts for the compiled functions, before it is known which of them bear the weight."""
-        of_face = np.where(self.face_body[:, None] < 0, 0.0, self.rest[self.face_body])
         return Points(
             body=self.point_body,
             at=self.point,
             face_body=self.face_body,
             face_at=self.face,
             normal=self.normal,
-            between=_frozen(self.rest[self.point_body] + self.point - of_face - self.face),
+            between=self._between(self.point_body, self.point, self.face_body, self.face),
             k=self.k,
             c=self.c,
             friction=self.friction,
             weight=self.weight,
-            held=_frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
+            held=frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
             radius=self.radius,
             bears=np.zeros(len(self.k)),
         )
+
+    def _between(self, body: Integers, at: Array, other: Integers, start: Array) -> Array:
+        """Vectors at rest from points of other bodies or of the ground to points of bodies [m]."""
+        return frozen(self.rest[body] + at - np.where(other[:, None] < 0, 0.0, self.rest[other]) - start)
+
+    @cached_property
+    def ties(self) -> Ties:
+        """The ties for the compiled functions."""
+        return Ties(
+            body=self.tie_body,
+            at=self.tie_point,
+            face_body=self.anchor_body,
+            face_at=self.anchor,
+            between=self._between(self.tie_body, self.tie_point, self.anchor_body, self.anchor),
+            k=self.tie_k,
+            reach=self.tie_length,
+            stretch=frozen(self.tie_strength / self.tie_k),
+        )
+
+    @cached_property
+    def forces(self) -> Forces:
+        """The constant forces for the compiled functions."""
+        return Forces(self.force_body, self.force_point, self.force)
 
     @cached_property
     def points(self) -> Points:
@@ -224,7 +229,7 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, 3)."""
-        return settled(self._points, self.masses) if self.settled is None else self.settled
+        return settled(self._points, self.ties, self.forces, self.masses) if self.settled is None else self.settled
 
     @cached_property
     def started(self) -> tuple[Array, Array]:
@@ -235,12 +240,16 @@ class Scene:
     def rest_energies(self) -> Array:
         """Kinetic, potential and elastic energy of the scene at rest [J], shape (3,)."""
         rest = _one(self.at_rest)
-        return energies(self._points, self.masses, rest, np.zeros_like(rest))[0]
+        return self.accounts(rest, np.zeros_like(rest))[0][0]
+
+    def accounts(self, q: Array, v: Array) -> tuple[Array, Array]:
+        """Kinetic, potential and elastic energy, and what ties have taken, see `kinematics.energies`."""
+        return energies(self._points, self.ties, self.forces, self.masses, q, v)
 
     def energy(self, pose: Array, velocity: Array) -> Array:
         """Energy above the scene at rest [J], shape (steps,), for poses and velocities of shape (steps, n, 3)."""
         flat = (len(pose), -1)
-        parts = energies(self.points, self.masses, np.reshape(pose, flat), np.reshape(velocity, flat))
+        parts, _ = self.accounts(np.reshape(pose, flat), np.reshape(velocity, flat))
         total: Array = parts.sum(axis=1) - self.rest_energies.sum()
         return total
 
@@ -256,8 +265,14 @@ class Scene:
 
         No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
         """
-        rates = gap_rates(self._points, np.zeros(3 * len(self.names))) / np.sqrt(self.masses)
-        return math.sqrt(float(np.linalg.eigvalsh((rates.T * self.k) @ rates)[-1]))
+        rates = gap_rates(self._points, self.ties, np.zeros(3 * len(self.names))) / np.sqrt(self.masses)
+        return math.sqrt(float(np.linalg.eigvalsh((rates.T * np.append(self.k, self.tie_k)) @ rates)[-1]))
+
+    @cached_property
+    def tie_frequency(self) -> float:
+        """The highest natural frequency of the bodies on one tie alone [rad/s], zero without ties."""
+        rates = gap_rates(self._points, self.ties, np.zeros(3 * len(self.names)))[len(self.k) :]
+        return math.sqrt(max(self.tie_k * (rates**2 @ (1 / self.masses)), default=0.0))
 
     @cached_property
     def rocking_frequency(self) -> float:
@@ -283,9 +298,3 @@ class Scene:
 def _one(pose: Array) -> Array:
     """A pose as a history of one step, shape (1, 3 n)."""
     return np.array(pose, dtype=float).reshape(1, -1)
-
-
-def _frozen(values: ArrayLike) -> Array:
-    made = np.array(values)
-    made.setflags(write=False)
-    return made

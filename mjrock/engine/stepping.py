@@ -21,6 +21,7 @@ from .pace import SMOOTH, Pace
 from .scene import Scene
 from .steps import Record, StepError, Steps
 from .sticking import Joints
+from .touches import Springs
 
 
 def fitted_steps(engine: Engine, scene: Scene, accuracy: float) -> Steps:
@@ -32,14 +33,15 @@ def fitted_steps(engine: Engine, scene: Scene, accuracy: float) -> Steps:
         StepError: if the engine warns or the state is not finite.
     """
     pace, ground, joints = Pace.of(scene, accuracy), Ground.of(scene.motion), Joints.of_scene(scene)
-    state = State.of(engine.memory, len(scene.k))
+    ties = scene.ties._replace(reach=np.array(scene.ties.reach))  # they yield in this run alone
+    state = State.of(engine.memory, Springs.of(scene.points, ties))
     energy = max(2 * scene.release_energy, pace.least_energy)
     clock = Clock(0.0, pace.short, pace.short, energy, 0, True, False, 0, False)
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal clock
         clock, n = fitted_loop(
-            engine.memory, scene.points, scene.masses, ground, pace, joints, state, clock, record, scene.duration
+            engine.memory, scene.points, ties, scene.masses, ground, pace, joints, state, clock, record, scene.duration
         )
         return n, clock.t, clock.ended
 

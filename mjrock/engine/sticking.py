@@ -5,9 +5,9 @@ the start of a step. In a step h a wall that turns at omega about its toe moves 
 see, h^2 omega^2 / 2 times the horizontal distance of the toe from the centroid. And the row, which is a dashpot,
 creeps. In a fall this adds up to some micrometres, and in an impact it may be as much. On a stiff base this presses the
 wall against its side stop, and later rebounds meet the stop out of true. So each joint remembers where its deepest
-sticking point stuck. After a step, the body that stands on the joint is shifted back by what this point has drifted,
-unless the
-shift would press a contact that bears nothing at rest: a side stop. Such a shift would put energy into its spring.
+sticking point stuck. After a step, the body that stands on the joint is shifted back by what this point has drifted.
+It is not shifted where this would press a contact that bears nothing at rest, such as a side stop, because that would
+put energy into its spring.
 """
 
 from __future__ import annotations

@@ -10,7 +10,8 @@ from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.interface import Contacts
 from ..problem.quantities import Array
-from .scene import GROUND, Scene
+from .scene import Scene
+from .tables import GROUND
 
 FREE_FRICTION = 1.0
 """Friction coefficient of the edges of a wall without a side stop on two lines [-]. On a bed of n lines it is n/2 times

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -23,6 +23,7 @@ class Ledger:
             wall.
         friction: work that friction has taken since the release.
         ground: work that the ground motion has put in, as seen from the base.
+        ties: work that yielding ties have taken since the release, by tie.
     """
 
     t: Array
@@ -32,6 +33,7 @@ class Ledger:
     dashpots: Mapping[str, Array]
     friction: Array
     ground: Array
+    ties: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def held(self) -> Array:
@@ -44,7 +46,7 @@ class Ledger:
 
         It is zero for an exact integration. A positive residual is energy that nothing has put in.
         """
-        gone = sum(self.dashpots.values(), self.friction) - self.ground
+        gone = sum((*self.dashpots.values(), *self.ties.values()), self.friction) - self.ground
         residual: Array = self.held - self.held[0] + gone
         return residual
 
@@ -62,10 +64,14 @@ class Ledger:
             {group: then(account) for group, account in self.dashpots.items()},
             then(self.friction),
             then(self.ground),
+            {tie: then(account) for tie, account in self.ties.items()},
         )
 
     def __repr__(self) -> str:
-        taken = ", ".join(f"{group} dashpots {account[-1]:.4g}" for group, account in self.dashpots.items())
+        taken = ", ".join(
+            [f"{group} dashpots {account[-1]:.4g}" for group, account in self.dashpots.items()]
+            + [f"{tie} {account[-1]:.4g}" for tie, account in self.ties.items()]
+        )
         return (
             f"<Ledger over {self.t[-1]:.4g} s [J]: at the end held {self.held[-1]:.4g}, taken by {taken}, "
             f"friction {self.friction[-1]:.4g}, put in by the ground {self.ground[-1]:.4g}, "
