@@ -20,7 +20,7 @@ lint: $(READY)
 	$(BIN)/mypy
 
 calibrate: $(READY) # the laws that ship, and what they are worth on walls they have not seen; half an hour on two cores
-	$(BIN)/python scripts/calibrate.py --laws mjrock/laws
+	$(BIN)/python scripts/calibrate.py --laws mjrock/problem/laws
 	$(BIN)/python scripts/validate_law.py
 	cp out/calibrate/calibrated_fit.png docs/figures/damping_corners.png
 	cp out/calibrate/calibrated_bed_fit.png docs/figures/damping_bed.png
@@ -48,6 +48,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/polarity.py --out docs/figures
 	$(BIN)/python scripts/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/throughput.py --out docs/figures
+	$(BIN)/python scripts/speed.py
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

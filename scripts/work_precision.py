@@ -28,7 +28,7 @@ import cli
 import mjrock as mr
 from mjrock import plotting
 from mjrock.engine import loop, stepping
-from mjrock.engine.contact import WITHIN
+from mjrock.engine.contact import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
 from mjrock.engine.stepping import fixed_steps
 from mjrock.engine.steps import StepError
@@ -94,7 +94,8 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
             model.opt.impratio = 1
         else:
             d = WITHIN[0]
-            model.pair_solref[:] = -(1 - d) * scene.weight[:, None] * np.stack([scene.k, scene.c], axis=1)
+            for i, (k, c, W) in enumerate(zip(scene.k, scene.c, scene.weight, strict=True)):
+                model.pair_solref[i] = pair_values(k, c, inertia_of(d, W), W)[:2]
             model.pair_solimp[:, :2] = d
             held = model.pair_solreffriction[:, 1] < 0
             model.pair_solreffriction[held, 1] = -d / (2 * h)
