@@ -22,7 +22,15 @@ def test_it_closes(contacts, side_stop):
     sound = mr.automatic_timestep(FIGURE_3, contacts, side_stop=side_stop)
     assert closure(mr.simulate(case, contacts, sound, ledger=True)) < 1e-3
     assert closure(mr.simulate(case, contacts, ledger=True)) < 3e-3
-    assert closure(mr.simulate(case, contacts, accuracy=3e-4, ledger=True)) < 1e-3
+
+
+def test_it_closes_with_the_accuracy(contacts):
+    """In the median over releases: one release may meet its touches up to five times better or worse than another."""
+    releases = np.linspace(0.3, 0.7, 9) * FIGURE_3.alpha
+    for accuracy, most in ((1e-3, 2e-3), (3e-4, 6e-4), (1e-4, 2e-4)):
+        cases = [mr.Case(FIGURE_3, float(theta0), 3.0) for theta0 in releases]
+        runs = [mr.simulate(case, contacts, accuracy=accuracy, ledger=True) for case in cases]
+        assert np.median([closure(run) for run in runs]) < most
 
 
 def test_order_of_closure(one_sided, contacts):

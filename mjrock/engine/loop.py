@@ -193,7 +193,7 @@ def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: Stat
             memory.options[IMPRATIO],
         ):
             i = -1
-        put_back(points, joints, j, i, memory.pose, state.next_frame)
+        put_back(points, joints, j, i, state.frame, record.pose[n], memory.pose, state.next_frame)
     for body in range(len(state.frame)):
         copied(state.next_frame[body], state.frame[body])
 

@@ -8,6 +8,10 @@ wall against its side stop, and later rebounds meet the stop out of true. So eac
 sticking point stuck. After a step, the body that stands on the joint is shifted back by what this point has drifted.
 It is not shifted where this would press a contact that bears nothing at rest, such as a side stop, because that would
 put energy into its spring.
+
+Friction acts halfway between the faces that overlap at the point, not at the point itself. Where that place does not
+slip, the point still moves along its face as the body turns, by half the penetration times the rotation. The place that
+is remembered moves with it.
 """
 
 from __future__ import annotations
@@ -110,13 +114,32 @@ def presses(points: Points, body: int, frame: Array) -> bool:
 
 
 @jitable
-def put_back(points: Points, joints: Joints, j: int, i: int, q: Array, frame: Array) -> None:
+def rolled(points: Points, i: int, before: Array, frame: Array, from_: Array, q: Array) -> float:
+    """How far point i moves along its face in a step without slip, as the bodies turn [m].
+
+    Args:
+        points: the contacts.
+        i: the point.
+        before, frame: frames before and after the step.
+        from_, q: poses before and after it.
+    """
+    turned, face = q[3 * points.body[i] + 2] - from_[3 * points.body[i] + 2], points.face_body[i]
+    if face >= 0:
+        turned -= q[3 * face + 2] - from_[3 * face + 2]
+    return -0.25 * turned * (depth(points, i, before) + depth(points, i, frame))
+
+
+@jitable
+def put_back(
+    points: Points, joints: Joints, j: int, i: int, before: Array, from_: Array, q: Array, frame: Array
+) -> None:
     """Shift the body on joint j so that point i, the deepest of the joint and sticking, is where it stuck.
 
     Args:
         points: the contacts.
         joints: the joints, whose state is brought up to date.
         j, i: the joint and the point, -1 where the deepest point does not stick.
+        before, from_: frame and pose before the step.
         q, frame: the pose after the step and its frame, which are changed.
     """
     if i < 0 or joints.stuck[j] != i:
@@ -124,6 +147,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, q: Array, frame: Ar
         if i >= 0:
             joints.anchor[j] = along(points, i, frame, q)[0]
         return
+    joints.anchor[j] += rolled(points, i, before, frame, from_, q)
     drift, body = along(points, i, frame, q)[0] - joints.anchor[j], joints.body[j]
     nx, nz = direction(points, i, frame)
     frame[body, 0], frame[body, 1] = q[3 * body] - drift * nz, q[3 * body + 1] + drift * nx

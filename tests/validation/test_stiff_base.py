@@ -20,14 +20,15 @@ def wall_on(k_n):
 @pytest.mark.filterwarnings("ignore:CALIBRATED. outside the range of the fit")
 @pytest.mark.parametrize("k_n", [5e8, 5e9, 5e10, pytest.param(5e11, marks=pytest.mark.slow)])
 def test_every_rebound_is_that_of_the_contact_law(k_n):
-    """Within 1e-3 at the default accuracy, within 3e-4 at 1e-4 up to 5e10 N/m3."""
+    """Within 1e-3 at the default accuracy, the faint fifth within 1.5e-3; within 1e-4 at 1e-4 up to 5e10 N/m3."""
     case, contacts = wall_on(k_n)
     law = mr.solve_compliant(case, contacts, rtol=1e-9).restitution[:FIRST]
     assert len(law) >= (5 if k_n > 1e10 else 3)
     found = mr.simulate(case, contacts).restitution[: len(law)]
-    np.testing.assert_allclose(found, law, atol=1e-3)
+    np.testing.assert_allclose(found[:4], law[:4], atol=1e-3)
+    np.testing.assert_allclose(found, law, atol=1.5e-3)
     finer = mr.simulate(case, contacts, accuracy=1e-4).restitution[: len(law)]
-    np.testing.assert_allclose(finer, law, atol=3e-4 if k_n < 1e11 else 1e-3)
+    np.testing.assert_allclose(finer, law, atol=1e-4 if k_n < 1e11 else 1e-3)
 
 
 @pytest.mark.slow
