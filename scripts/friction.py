@@ -23,7 +23,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     steps = (1e-4,) if args.quick else (1e-5, 1e-4)
     e = mr.Restitution.from_geometry(FIGURE_3.alpha)
-    contacts = mr.Contacts.from_law(FIGURE_3, e, k_base=K_N, k_side=K_N)
+    contacts = mr.Contacts.from_law(FIGURE_3, e, k_base=K_N, k_side=K_N, law="PUBLISHED")
     one_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 1.6)
     two_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0, side_stop=False)
     limits = [mr.solve_compliant(case, contacts) for case in (two_sided, one_sided)]

@@ -28,7 +28,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     bounce = math.sqrt(K_N * 2 * wall.b * wall.length / wall.mass)
     rows: list[list[object]] = []
     for points in tqdm((2,) if args.quick else (2, 4, 8, 32), desc="layouts", disable=None, leave=False):
-        made = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, points=points)
+        made = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED", points=points)
         for mode, omega in (("rocking in full contact", made.base.frequency), ("vertical bounce", bounce)):
             assert made.side is not None
             contacts = dataclasses.replace(

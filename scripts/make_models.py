@@ -35,7 +35,7 @@ class Model:
         """Corner lines with the published law, at the paper's stiffness."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # the specimens lie outside Table 1; their cards say so
-            return mr.Contacts.from_law(self.case.block, self.e, k_base=K_N, k_side=K_N)
+            return mr.Contacts.from_law(self.case.block, self.e, k_base=K_N, k_side=K_N, law="PUBLISHED")
 
     def scene(self) -> str:
         """The MJCF text."""

@@ -30,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         wall, e = specimen.block, specimen.restitution
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N)
+            contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED")
         notes += [f"{specimen.name}: {warning.message}" for warning in caught]
         assert contacts.side is not None
         case = mr.Case(wall, theta0=0.5 * wall.alpha, duration=0.5 if args.quick else 1.2)

@@ -58,7 +58,9 @@ def in_theory(wall: mr.Block, *, side_stop: bool = True, impacts: bool = True) -
 
 def in_mujoco(wall: mr.Block, k_n: float) -> Overturns:
     """Whether a pulse overturns the one-sided wall on interfaces of `k_n` [N/m3], damped as the published law says."""
-    contacts = mr.Contacts.from_law(wall, mr.Restitution.from_geometry(wall.alpha), k_base=k_n, k_side=k_n)
+    contacts = mr.Contacts.from_law(
+        wall, mr.Restitution.from_geometry(wall.alpha), k_base=k_n, k_side=k_n, law="PUBLISHED"
+    )
 
     def overturns(motion: GroundMotion) -> bool:
         case = mr.Case(wall, 0.0, 8 / wall.p, motion=motion)

@@ -18,7 +18,7 @@ def e(wall: mr.Block) -> mr.Restitution:
 @pytest.fixture(scope="session")
 def contacts(wall: mr.Block, e: mr.Restitution) -> mr.Contacts:
     """Corner lines with the published law."""
-    return mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N)
+    return mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED")
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ def text(one_sided, contacts):
 
 
 def test_same_case_same_bytes(one_sided, contacts, wall, e, text):
-    again = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N)
+    again = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED")
     assert mr.wall_mjcf(dataclasses.replace(one_sided), again, timestep=1e-3) == text
 
 
@@ -69,7 +69,7 @@ def test_only_explicit_pairs_collide(text):
 
 
 def test_friction_holds_the_edges_of_a_bed_alone(wall, e, one_sided):
-    contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, points=7)
+    contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED", points=7)
     model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(one_sided, contacts, 1e-3))
     condim = {model.pair(i).name: int(model.pair_dim[i]) for i in range(model.npair)}
     assert {name for name, dim in condim.items() if dim == 3} == {"base_0", "base_6"}

@@ -17,7 +17,7 @@ def test_alpha_as_printed_would_give_something_else(wall):
 
 
 def test_from_lumped_keeps_the_measured_value():
-    e = mr.Restitution.from_lumped(-0.328, alpha=0.1184)
+    e = mr.Restitution.from_lumped(-0.328, 0.1184)
     assert e.lumped == pytest.approx(-0.328, rel=1e-14)
     assert e.base == mr.Restitution.from_geometry(0.1184).base
 
@@ -31,4 +31,4 @@ def test_values_outside_their_range(base, side):
 @pytest.mark.parametrize("lumped", [0.3, 0.0, -0.99, math.nan])
 def test_measurements_that_cannot_be(lumped):
     with pytest.raises(ValueError, match="lumped restitution"):
-        mr.Restitution.from_lumped(lumped, alpha=0.1184)
+        mr.Restitution.from_lumped(lumped, 0.1184)

@@ -41,7 +41,10 @@ def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, floa
 
 
 class Run:
-    """One run of the engine, checked: its steps, its energy, its peaks and impacts.
+    """One run of the engine, checked: its steps, its energy, its peaks and impacts, and how far its base slid.
+
+    The slip is that of the lower edge along the base since the release [m], and `slid` its largest size while the wall
+    can still come back.
 
     Raises:
         StepError: if energy appears from nowhere.
@@ -50,6 +53,7 @@ class Run:
     def __init__(self, case: Case, uplift: tuple[float, float], scene: Scene, steps: Steps, *, released: bool) -> None:
         self.case, self.uplift, self.scene, self.steps = case, uplift, scene, steps
         t, self.theta, self.omega = steps.t, steps.pose[:, 2], steps.velocity[:, 2]
+        self.slip = steps.pose[:, 0] - case.block.pose(self.theta)[:, 0]
         self.energy = scene.energy(steps.pose, steps.velocity)
         times, self.peaks, self.impacts = rocking_history(
             case, t, self.theta, self.omega, self.energy, uplift, released=released
@@ -58,6 +62,7 @@ class Run:
         # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
         standing = np.flatnonzero(np.abs(self.theta) <= case.block.alpha)
         count = int(standing[-1]) + 1 if standing.size else 1
+        self.slid = float(np.abs(self.slip[:count] - self.slip[0]).max())
         work = ground_work(scene, steps)[:count]
         own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
         gain, when = energy_gain(times[times <= t[count - 1]], t[:count], own)
@@ -96,7 +101,7 @@ class Run:
                 "longest_timestep": float(steps.h.max()),
                 "sound_timestep": sound_timestep(scene.highest_frequency),
                 "touches": steps.touches,
-                "base_displacement": float(steps.pose[-1, 0] - case.block.pose(steps.pose[-1:, 2])[0, 0]),
+                "base_displacement": float(self.slip[-1] - self.slip[0]),
                 "mujoco": mujoco.__version__,
             }
             | {

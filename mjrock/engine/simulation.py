@@ -22,6 +22,9 @@ from .stepping import fitted_steps, fixed_steps
 from .steps import StepError
 from .wall import wall_scene
 
+SLID = 0.01
+"""Sliding of a base that should hold that is warned of, over b [-]."""
+
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
     """The step [s] at which a touch misplaces no more than ENERGY_GAIN of the energy that it meets.
@@ -139,6 +142,7 @@ def _simulate_fitted(
             if used < 0.02 * accuracy:
                 raise broken(error, scene, h, used) from None
             used /= 10
+    _warn_if_slid(run, contacts)
     settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
     response = run.response(output_step, 1, want_ledger, settings)
     response.stats["wall_time"] = time.perf_counter() - started
@@ -174,6 +178,7 @@ def _simulate_fixed(
             run = Run(case, uplift, scene, steps, released=start is None)
         except StepError as error:
             return broken(error, scene, timestep, None)
+        _warn_if_slid(run, contacts)
         settings = {
             "timestep": timestep,
             "accuracy": None,
@@ -201,5 +206,15 @@ def _warn_if_coarse(scene: Scene, h: float) -> None:
         warnings.warn(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
             f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
+            stacklevel=4,
+        )
+
+
+def _warn_if_slid(run: Run, contacts: Contacts) -> None:
+    half_base = run.case.block.half_base
+    if contacts.base.friction is None and run.slid > SLID * half_base:
+        warnings.warn(
+            f"the base slid by up to {run.slid:.3g} m, {run.slid / half_base:.1%} of b, although it should hold: no "
+            "edge was loaded enough to hold it. Give the base the friction that it has",
             stacklevel=4,
         )

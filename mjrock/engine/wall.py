@@ -41,9 +41,12 @@ def inner_friction(wall: Block, contacts: Contacts) -> float:
 def base_friction(wall: Block, contacts: Contacts, side_stop: bool) -> Array:
     """Friction coefficients of the lines of the base [-], shape (points,).
 
-    Friction acts at the two edges alone. A bed of which every line sticks would lock the rotation that shears it.
+    A coefficient that is given acts at every line. A base that holds does so at the two edges alone: a bed of which
+    every line sticks for good would lock the rotation that shears it.
     """
     points = contacts.base.points
+    if contacts.base.friction is not None:
+        return np.full(points, contacts.base.friction)
     friction = np.zeros(points)
     if side_stop:
         friction[0], friction[-1] = inner_friction(wall, contacts), HELD_FRICTION
@@ -91,7 +94,7 @@ def standing_wall(wall: Block, contacts: Contacts, side_stop: bool) -> Scene:
         faces, normals = faces + [(-b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
         groups += ["side"] * side.points
         k, c = np.concatenate([k, side.stiffness]), np.concatenate([c, side.damping])
-        friction = np.concatenate([friction, np.zeros(side.points)])
+        friction = np.concatenate([friction, np.full(side.points, side.friction or 0.0)])
         facts |= {"k_n_side": side.k_n, "xi_side": side.xi}
     facts |= {"reference_frequency": base.frequency, "law": contacts.law}
     return Scene(

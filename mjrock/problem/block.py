@@ -20,6 +20,8 @@ class Block:
         length: length along the wall, out of the plane of rocking [m], 1e-3 to 1000. Mass and contact stiffness are
             both proportional to it, so that no rotation depends on it.
         density: mass density [kg/m3], 100 to 30000.
+        inset: how far the edges that the wall rocks about lie inside its faces [m], 0 to less than b. Crushed or broken
+            corners move them inwards. Mass and inertia are those of the full wall.
 
     Raises:
         ValueError: for a value outside its range, or a wall that is thicker than it is high.
@@ -29,6 +31,7 @@ class Block:
     h: float
     length: float = 1.0
     density: float = 2000.0
+    inset: float = 0.0
 
     def __post_init__(self) -> None:
         require_within("half thickness b", self.b, 1e-3, 10.0, "m")
@@ -36,11 +39,16 @@ class Block:
         require_within("length", self.length, 1e-3, 1e3, "m")
         require_within("density", self.density, 100.0, 3e4, "kg/m3")
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
+        if not 0 <= self.inset < self.b:
+            raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
+        require_within("slenderness h / (b - inset)", self.slenderness, 1.0, 200.0)
 
     @classmethod
-    def from_size(cls, thickness: float, height: float, length: float = 1.0, density: float = 2000.0) -> Block:
-        """The wall of full sizes `thickness` 2b, `height` 2h and `length` [m]."""
-        return cls(b=thickness / 2, h=height / 2, length=length, density=density)
+    def from_size(
+        cls, thickness: float, height: float, length: float = 1.0, density: float = 2000.0, inset: float = 0.0
+    ) -> Block:
+        """The wall of full sizes `thickness` 2b, `height` 2h and `length` [m], with its edges `inset` [m]."""
+        return cls(b=thickness / 2, h=height / 2, length=length, density=density, inset=inset)
 
     @classmethod
     def from_slenderness(cls, slenderness: float, R: float, length: float = 1.0, density: float = 2000.0) -> Block:
@@ -49,9 +57,14 @@ class Block:
         return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
 
     @property
+    def half_base(self) -> float:
+        """Half the distance between the edges that the wall rocks about, b less the inset [m]."""
+        return self.b - self.inset
+
+    @property
     def slenderness(self) -> float:
-        """h/b [-], as Eqs. 5-6 and Table 1 of the paper use it."""
-        return self.h / self.b
+        """h/b [-], as Eqs. 5-6 and Table 1 of the paper use it, with b between the edges that the wall rocks about."""
+        return self.h / self.half_base
 
     @property
     def alpha(self) -> float:
@@ -59,12 +72,12 @@ class Block:
 
         The paper prints arctan(h/b) below Eq. 1; its own example (Figure 3) needs arctan(b/h) in Eq. 2.
         """
-        return math.atan2(self.b, self.h)
+        return math.atan2(self.half_base, self.h)
 
     @property
     def R(self) -> float:
-        """Half the diagonal: distance from the centroid to the toe [m]."""
-        return math.hypot(self.b, self.h)
+        """Half the diagonal: distance from the centroid to the edge that the wall rocks about [m]."""
+        return math.hypot(self.half_base, self.h)
 
     @property
     def mass(self) -> float:
@@ -79,7 +92,7 @@ class Block:
     @property
     def inertia(self) -> float:
         """Moment of inertia about the centroid [kg m2]."""
-        return self.mass * self.R**2 / 3
+        return self.mass * (self.b**2 + self.h**2) / 3
 
     @property
     def toe_inertia(self) -> float:
@@ -117,7 +130,7 @@ class Block:
         Returns:
             x away from the side stop, z upwards, and theta, shape (n, 3).
         """
-        toe = np.copysign(self.b, theta)
+        toe = np.copysign(self.half_base, theta)
         x = toe * (1 - np.cos(theta)) + self.h * np.sin(theta)
         z = toe * np.sin(theta) - self.h * (1 - np.cos(theta))
         return np.stack([x, z, theta], axis=-1)
@@ -125,5 +138,5 @@ class Block:
     def turning(self, theta: float, direction: float) -> Array:
         """Rate of `pose` per unit of angular velocity, the wall turning about the toe in `direction`, +1 or -1;
         (3,)."""
-        toe, sine, cosine = direction * self.b, math.sin(theta), math.cos(theta)
+        toe, sine, cosine = direction * self.half_base, math.sin(theta), math.cos(theta)
         return np.array([self.h * cosine + toe * sine, toe * cosine - self.h * sine, 1.0])

@@ -201,3 +201,17 @@ CALIBRATED = DampingLaw.load(LAWS / "calibrated.toml")
 
 CALIBRATED_BED = DampingLaw.load(LAWS / "calibrated_bed.toml")
 """The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+
+NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
+"""The laws that come with the package, by name."""
+
+
+def law_named(name: str) -> DampingLaw:
+    """The law of that name, in any case of letters.
+
+    Raises:
+        ValueError: if there is none.
+    """
+    if name.upper() not in NAMED:
+        raise ValueError(f"law = {name!r} is none of {', '.join(NAMED)}")
+    return NAMED[name.upper()]

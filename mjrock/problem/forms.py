@@ -49,14 +49,14 @@ class Groups:
     @classmethod
     def of(cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5) -> Groups:
         """The groups of `wall` on a base of `k_n` [N/m3] against a side of `k_side`, the same where it is None."""
-        softness = wall.weight / (2 * k_n * wall.length * wall.b**2) / wall.alpha
+        softness = wall.weight / (2 * k_n * wall.length * wall.half_base**2) / wall.alpha
         return cls(
             slenderness=wall.slenderness,
             k_n=k_n,
             softness=softness,
             work=softness * 0.75 / (amplitude * (2 - amplitude)),
             side_ratio=1.0 if k_side is None else k_side / k_n,
-            housner=-math.log(Restitution.from_geometry(wall.alpha).base),
+            housner=-math.log(Restitution.from_geometry(wall).base),
             base_loss=-math.log(e.base),
             side_loss=-math.log(abs(e.side)),
         )
@@ -182,9 +182,9 @@ class SideLaw:
     The top of the wall hits the stop like a mass on a spring and a dashpot. Its damping ratio is
     zeta = xi sqrt(2 k_side / k_base) (h/b)^1.5, where the factor of xi is the rocking frequency against the stop over
     that on the base. The base takes little energy in the quick sequence base, side, base, so that the stop has to lose
-    nearly all of L = -ln|e_1s|. With s = softness:
+    nearly all of L = -ln|e_1s|. With w = work:
 
-        xi = scale (h/b)^slenderness_exponent (k_side / k_base)^ratio_exponent L (1 + curvature L) (1 + softening s L)
+        xi = scale (h/b)^slenderness_exponent (k_side / k_base)^ratio_exponent L (1 + curvature L) (1 + softening w L)
         L = side_loss + base_share base_loss         -ln|e_1s| itself has base_share = 2
     """
 
@@ -200,7 +200,7 @@ class SideLaw:
         """As `Form.xi`."""
         total = loss + self.base_share * groups.base_loss
         factor = groups.slenderness**self.slenderness_exponent * groups.side_ratio**self.ratio_exponent
-        curve = (1 + self.curvature * total) * (1 + self.softening * groups.softness * total)
+        curve = (1 + self.curvature * total) * (1 + self.softening * groups.work * total)
         return self.scale * factor * total * curve
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from .block import Block
+
 
 @dataclass(frozen=True)
 class Restitution:
@@ -33,29 +35,42 @@ class Restitution:
         return self.base**2 * self.side
 
     @classmethod
-    def from_geometry(cls, alpha: float) -> Restitution:
-        """Conservation of angular momentum through each impact (Eqs. 2-3), `alpha` = arctan(b/h) [rad].
+    def from_geometry(cls, wall: Block | float) -> Restitution:
+        """Conservation of angular momentum through each impact (Eqs. 2-3).
+
+        Args:
+            wall: the wall, or alpha = arctan(b/h) [rad] of a wall whose edges are not inset. Eqs. 2-3 are written for
+                such a wall. With edges at b' < b below and the corner at b above, the momentum about the edge, and then
+                about the top corner, gives e_2s = (I + m (h^2 - b'^2)) / (I + m (h^2 + b'^2)) and e_side =
+                (I + m (b b' - h^2)) / (I + m (b^2 + h^2)).
 
         Raises:
             ValueError: if alpha is too large for Eq. 2 to leave any velocity, that is from 54.7 degrees.
         """
+        if isinstance(wall, Block) and wall.inset:
+            low, b, h, own = wall.half_base, wall.b, wall.h, wall.inertia / wall.mass
+            return cls(
+                base=(own + h**2 - low**2) / (own + h**2 + low**2), side=(own + b * low - h**2) / (own + b**2 + h**2)
+            )
+        alpha = wall.alpha if isinstance(wall, Block) else wall
         if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
             raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
         return cls(base=1 - 1.5 * math.sin(alpha) ** 2, side=1 - 1.5 * math.cos(alpha) ** 2)
 
     @classmethod
-    def from_lumped(cls, lumped: float, alpha: float) -> Restitution:
+    def from_lumped(cls, lumped: float, wall: Block | float) -> Restitution:
         """From a measured e_1s: e_2s by Eq. 2, and the side takes the rest, e_side = e_1s / e_2s^2.
+
+        `wall` is the wall, or its alpha [rad], as in `from_geometry`.
 
         This is how Table 2 of the paper turns its experiments into damping ratios.
 
         Raises:
             ValueError: if the measured value asks more of the side than a perfect rebound.
         """
-        base = cls.from_geometry(alpha).base
+        base = cls.from_geometry(wall).base
         if not -(base**2) <= lumped < 0:
             raise ValueError(
-                f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 "
-                f"for alpha = {alpha:g} rad"
+                f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 for this wall"
             )
         return cls(base=base, side=lumped / base**2)

@@ -41,6 +41,7 @@ class _Wall:
     def __init__(self, case: Case, contacts: Contacts) -> None:
         self.wall = wall = case.block
         self.b, self.h, self.mass, self.inertia = wall.b, wall.h, wall.mass, wall.inertia
+        self.toe = wall.half_base
         self.base, self.side = contacts.base, contacts.side if case.side_stop else None
         self.motion = case.motion
 
@@ -55,7 +56,7 @@ class _Wall:
 
     def released(self, case: Case) -> Array:
         """The state at release: tilted about the toe, the base compressed until its springs carry the weight."""
-        toe, theta = case.direction * self.b, case.theta0
+        toe, theta = case.direction * self.toe, case.theta0
         sine, cosine = math.sin(theta), math.cos(theta)
         lowest = self.base_gap(0.0, theta)
 
@@ -97,7 +98,7 @@ class _Wall:
         It is at the lower edge, halfway between the two faces that overlap there.
         """
         _, z, theta, _, vz, omega = y
-        s = math.copysign(self.b, theta)
+        s = math.copysign(self.toe, theta)
         sine, cosine = math.sin(theta), math.cos(theta)
         edge, rate = -s * sine - self.h * cosine, -(s * cosine - self.h * sine) * omega
         return 0.5 * (edge - z - self.h), 0.5 * (rate - vz)

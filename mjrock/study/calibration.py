@@ -33,6 +33,8 @@ class Plan:
         side_losses: the same, for which the side is matched.
         sides: restitutions |e_side| asked of the side.
         seed: of the combinations.
+        k_n: interface stiffnesses that are covered [N/m3].
+        amplitude: releases theta_0/alpha that are covered [-]. Low ones stand for later rebounds.
     """
 
     base_count: int = 160
@@ -41,12 +43,14 @@ class Plan:
     side_losses: tuple[float, ...] = (0.8, 1.0, 1.25)
     sides: tuple[float, ...] = (0.2, 0.3, 0.4, 0.5, 0.6)
     seed: int = 1
+    k_n: tuple[float, float] = K_N_RANGE
+    amplitude: tuple[float, float] = (0.08, 0.8)
 
     def base_tasks(self, points: int, **options: Any) -> list[Match]:
         """Two-sided matches; `options` are those of `Match`."""
         return [
             Match(one, Restitution(_housner(one) ** share, -0.5), points, **options)
-            for one in combinations(self.base_count, self.seed)
+            for one in combinations(self.base_count, self.seed, self.k_n, self.amplitude)
             for share in self.losses
         ]
 
@@ -56,7 +60,7 @@ class Plan:
         The losses of the base are varied where they can be; elsewhere they are those of Eq. 2.
         """
         tasks = []
-        for i, one in enumerate(combinations(self.side_count, self.seed + 1)):
+        for i, one in enumerate(combinations(self.side_count, self.seed + 1, self.k_n, self.amplitude)):
             e_base = _housner(one) ** self.side_losses[i % len(self.side_losses)]
             if not LEAST < _base_damping(one, Restitution(e_base, -0.5), base) < HIGHEST:
                 e_base = _housner(one)
@@ -67,7 +71,7 @@ class Plan:
 
 
 def _housner(one: Combination) -> float:
-    return Restitution.from_geometry(one.wall.alpha).base
+    return Restitution.from_geometry(one.wall).base
 
 
 def _base_damping(one: Combination, e: Restitution, base: Form) -> float:
@@ -132,13 +136,13 @@ def calibrate(
     side = regress(SideLaw, side_tasks, side_rows)
     law = DampingLaw(
         name=name,
-        source=f"mjrock.calibration over Table 1 of the paper, {points} contact lines a face, {VERSION}; "
-        "scripts/calibrate.py makes it",
+        source=f"mjrock.calibration over Table 1 of the paper up to {plan.k_n[1]:.0e} N/m3, {points} contact lines a "
+        f"face, {VERSION}; scripts/calibrate.py makes it",
         base=base.form,
         side=side.form,
         R_range=R_RANGE,
         slenderness_range=SLENDERNESS_RANGE,
-        k_n_range=K_N_RANGE,
+        k_n_range=plan.k_n,
         side_range=(min(plan.sides), max(plan.sides)),
         points=points,
         scalable=True,

@@ -31,6 +31,8 @@ from .task import Row
 
 R_RANGE, SLENDERNESS_RANGE, AMPLITUDE_RANGE, K_N_RANGE = (1.4, 2.8), (4.0, 15.0), (0.3, 0.8), (0.5e8, 30e8)
 """Table 1: half diagonal [m], h/b [-], theta_0/alpha [-], interface stiffness of base and of side [N/m3]."""
+MOST_UNLIKE = 60.0
+"""Largest ratio of the stiffnesses of base and side in Table 1 [-]."""
 BASE_BOUNDS, SIDE_BOUNDS = (LEAST, HIGHEST), (1e-4, HIGHEST)
 """Damping ratios that are searched [-]."""
 SCAN = 3.0
@@ -71,19 +73,30 @@ REFERENCE = Combination()
 """The reference values of Table 1."""
 
 
-def combinations(count: int, seed: int) -> list[Combination]:
+def combinations(
+    count: int,
+    seed: int,
+    k_n: tuple[float, float] = K_N_RANGE,
+    amplitude: tuple[float, float] = AMPLITUDE_RANGE,
+) -> list[Combination]:
     """Combinations that fill Table 1 evenly (a Latin hypercube), stiffnesses on a logarithmic scale.
 
     Each parameter takes `count` values, one in each of `count` equal strata of its range. Two seeds share no
-    combination.
+    combination. A side is at most MOST_UNLIKE times as stiff as the base, or as soft, which is the range of Table 1.
+
+    Args:
+        count, seed: how many, and which.
+        k_n: the range of the stiffness of base and side, where it is not that of Table 1 [N/m3].
+        amplitude: the range of theta_0/alpha [-].
     """
-    ranges = np.array([R_RANGE, SLENDERNESS_RANGE, np.log(K_N_RANGE), np.log(K_N_RANGE), AMPLITUDE_RANGE])
+    ranges = np.array([R_RANGE, SLENDERNESS_RANGE, np.log(k_n), np.log(k_n), amplitude])
     rng = np.random.default_rng(seed)
     strata = rng.permuted(np.tile(np.arange(count), (len(ranges), 1)), axis=1).T
     shares = (strata + rng.random(strata.shape)) / count
     made = []
-    for R, slenderness, k_base, k_side, amplitude in (ranges[:, 0] + shares * np.ptp(ranges, axis=1)).tolist():
-        made.append(Combination(R, slenderness, math.exp(k_base), math.exp(k_side), amplitude))
+    for R, slenderness, k_base, k_side, phi in (ranges[:, 0] + shares * np.ptp(ranges, axis=1)).tolist():
+        k_side = min(max(k_side, k_base - math.log(MOST_UNLIKE)), k_base + math.log(MOST_UNLIKE))
+        made.append(Combination(R, slenderness, math.exp(k_base), math.exp(k_side), phi))
     return made
 
 
@@ -99,6 +112,7 @@ class Match:
         measure: "restitution", |e| of the first rebound, matched to the digit on the branch of high damping; or "rms",
             the root mean square difference of theta over three quarters of a period, minimised, as in the paper.
         accuracy: what the fitted steps aim at, see `simulate`.
+        friction, side_friction: of base and side, as `Contacts.from_damping` takes them.
     """
 
     COLUMNS: ClassVar[tuple[str, ...]] = ("reached", "xi", "found", "lowest", "highest", "rms", "runs")
@@ -109,6 +123,8 @@ class Match:
     xi_base: float | None = None
     measure: str = "restitution"
     accuracy: float = 1e-4
+    friction: float | None = None
+    side_friction: float | None = None
 
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
@@ -133,6 +149,8 @@ class Match:
             "e_base": self.e.base,
             "e_side": self.e.side,
             "xi_base": self.xi_base,
+            "friction": self.friction,
+            "side_friction": self.side_friction,
         }
 
     @property
@@ -149,12 +167,16 @@ class Match:
     def respond(self, xi: float, quarters: float = 3.0) -> Response:
         """The simulation with damping ratio `xi` over `quarters` of the period of the release."""
         one, wall = self.combination, self.combination.wall
-        if self.xi_base is None:
-            contacts = Contacts.from_damping(wall, k_base=one.k_base, xi_base=xi, points=self.points)
-        else:
-            contacts = Contacts.from_damping(
-                wall, k_base=one.k_base, xi_base=self.xi_base, k_side=one.k_side, xi_side=xi, points=self.points
-            )
+        contacts = Contacts.from_damping(
+            wall,
+            k_base=one.k_base,
+            xi_base=xi if self.xi_base is None else self.xi_base,
+            k_side=None if self.xi_base is None else one.k_side,
+            xi_side=xi,
+            points=self.points,
+            friction=self.friction,
+            side_friction=self.side_friction,
+        )
         return simulate(self._case(quarters), contacts, accuracy=self.accuracy)
 
     def _case(self, quarters: float) -> Case:

@@ -39,7 +39,7 @@ class TestVerification:
 
     @pytest.mark.parametrize("points", [4, 8])
     def test_beds(self, wall, e, points):
-        contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, points=points)
+        contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED", points=points)
         for side_stop, duration, tolerance in ((False, 3.0, 5e-4), (True, 1.5, 0.01)):
             case = mr.Case(wall, 0.5 * wall.alpha, duration, side_stop=side_stop)
             found = mr.compare(mr.solve_compliant(case, contacts), mr.simulate(case, contacts, 1e-4))

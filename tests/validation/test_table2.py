@@ -41,7 +41,7 @@ def test_geometry_and_warning(specimen):
 
 @specimens
 def test_mujoco_follows_the_contact_law(specimen):
-    contacts = mr.Contacts.from_law(specimen.block, specimen.restitution, k_base=K_N, k_side=K_N)
+    contacts = mr.Contacts.from_law(specimen.block, specimen.restitution, k_base=K_N, k_side=K_N, law="PUBLISHED")
     case = mr.Case(specimen.block, 0.5 * specimen.block.alpha, 0.8)
     found = mr.compare(mr.solve_compliant(case, contacts), mr.simulate(case, contacts))
     assert found.rms < 0.003
