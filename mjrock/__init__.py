@@ -28,6 +28,7 @@ from .study.analysis import Analysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
 from .study.grid import Grid
+from .study.matched import as_theory, matched_contacts
 from .study.store import Store
 from .theory.analytical import solve_analytical
 
@@ -57,12 +58,14 @@ __all__ = [
     "SimulationError",
     "Store",
     "__version__",
+    "as_theory",
     "automatic_timestep",
     "calibrate",
     "campaign",
     "compare",
     "contact_parameters",
     "contact_stiffness",
+    "matched_contacts",
     "reference_frequency",
     "results",
     "simulate",

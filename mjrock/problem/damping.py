@@ -17,6 +17,10 @@ from .restitution import Restitution
 
 LEAST, HIGHEST = 1e-3, 0.3
 """Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
+MARGIN = 0.03
+"""Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
+SIZE = 2.0
+"""Rebound over the uplift rotation from which a law can be expected to give it [-]."""
 DENSITY = 2000.0
 """Density of the walls that laws are fitted on [kg/m3]."""
 
@@ -80,7 +84,9 @@ class DampingLaw:
         if not 0 < amplitude <= 1:
             raise ValueError(f"amplitude = {amplitude:g} is outside the valid range 0 < theta_0/alpha <= 1")
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
-        self._warn_outside(wall, e, k_n, k_side)
+        outside = self._outside(wall, e, k_n, k_side)
+        if outside:
+            warnings.warn(f"{self.name}: outside the range of the fit: {'; '.join(outside)}", stacklevel=2)
         xi_base = float(self.base.xi(groups, groups.base_loss))
         if self.scalable:
             lowest, highest = self.reach(wall, k_n, amplitude)
@@ -106,7 +112,33 @@ class DampingLaw:
         groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
         return math.exp(-float(loss(groups, HIGHEST))), math.exp(-float(loss(groups, LEAST)))
 
-    def _warn_outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> None:
+    def covers(
+        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+    ) -> bool:
+        """Whether the law can be expected to give what is asked for.
+
+        It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
+        least MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE times as
+        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base.
+
+        Args:
+            wall, e: the wall, and the restitution asked for.
+            k_n, k_side: interface stiffness of base and side [N/m3].
+            amplitude: rotation over alpha that the wall comes from [-].
+        """
+        low, high = self.reach(wall, k_n, amplitude)
+        margin = MARGIN * (high - low)
+        groups = Groups.of(wall, e, k_n, k_side, amplitude)
+        released = float(wall.potential_energy(amplitude * wall.alpha))
+        rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
+        return (
+            not self._outside(wall, e, k_n, k_side)
+            and low + margin <= e.base <= high - margin
+            and rebound > SIZE * groups.softness
+        )
+
+    def _outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:
+        """The values that lie outside the fitted ranges, in words."""
         scale = DENSITY / wall.density if self.scalable else 1.0
         covered = {
             "h/b [-]": (wall.slenderness, self.slenderness_range),
@@ -117,13 +149,11 @@ class DampingLaw:
             covered["|e_side| [-]"] = (abs(e.side), self.side_range)
         else:
             covered = {"R [m]": (wall.R, self.R_range)} | covered
-        outside = [
+        return [
             f"{name} = {value:.4g} not in {low:g} to {high:g}"
             for name, (value, (low, high)) in covered.items()
             if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9)
         ]
-        if outside:
-            warnings.warn(f"{self.name}: outside the range of the fit: {'; '.join(outside)}", stacklevel=3)
 
     def save(self, path: str | Path) -> Path:
         """Write the law as a TOML file that `DampingLaw.load` reads and a text editor shows.

@@ -102,13 +102,13 @@ class PowerLaw:
 class CornerLaw:
     """The base of a wall on two corner lines.
 
-    With L = -ln e_2s the loss asked for, L_H that of Eq. 2, s = softness and w = work, the loss goes from an undamped
+    With L = -ln e_2s the loss asked for, L_H that of Eq. 2 and w = work, the loss goes from an undamped
     bounce to a plastic touch-down as the damping grows:
 
         L = L_f - (L_f - L_u) exp(-xi / xi_0)        xi = xi_0 ln[(L_f - L_u) / (L_f - L)]
         L_f = L_H + floor w                          plastic: Housner's loss, and the work of the weight on the springs
-        L_u = max(0, L_H - bounce sqrt(s) b/h)       undamped: what the bounce off the springs gives back
-        xi_0 = scale s^softness_exponent (h/b)^slenderness_exponent (1 + growth w)
+        L_u = max(0, L_H - bounce sqrt(w) b/h)       undamped: what the bounce off the springs gives back
+        xi_0 = scale w^work_exponent (h/b)^slenderness_exponent (1 + growth w)
 
     No damping loses more than L_f or less than L_u: a restitution beyond them is out of reach.
     """
@@ -116,17 +116,17 @@ class CornerLaw:
     floor: float
     bounce: float
     scale: float
-    softness_exponent: float
+    work_exponent: float
     slenderness_exponent: float
     growth: float
     r_squared: float = math.nan
 
     def _parts(self, groups: Groups) -> tuple[Any, Any, Any]:
-        s = groups.softness
-        most = groups.housner + self.floor * groups.work
-        least = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(s) / groups.slenderness)
-        steepness = s**self.softness_exponent * groups.slenderness**self.slenderness_exponent
-        return most, least, self.scale * steepness * (1 + self.growth * groups.work)
+        w = groups.work
+        most = groups.housner + self.floor * w
+        least = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(w) / groups.slenderness)
+        steepness = w**self.work_exponent * groups.slenderness**self.slenderness_exponent
+        return most, least, self.scale * steepness * (1 + self.growth * w)
 
     def xi(self, groups: Groups, loss: Any) -> Any:
         """As `Form.xi`; infinite where no damping loses as much, zero or less where none loses as little."""

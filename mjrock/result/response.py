@@ -100,6 +100,27 @@ class Response:
             return np.array([impact.restitution for impact in self.impacts])
         return restitution_of(peak_energies(self.case, self.peaks))
 
+    @property
+    def settled_restitution(self) -> Array:
+        """|e| of each rebound, from the whole energy of the wall above its settled rest [-], shape (m - 1,).
+
+        The energy at a rotation peak is potential and elastic. It differs from that of `restitution`, the rigid wall's
+        above the undeformed base, by what the settled base gives back as the wall lifts off it: V - E is nearly the
+        same at every peak. It counts for more the smaller the rebound is. Both are the same in rocking theory.
+
+        Raises:
+            ValueError: on a shaken base, where the ground does work between two peaks.
+        """
+        if self.case.motion is not None:
+            raise ValueError("on a shaken base the ground does work between two peaks; see impacts")
+        bounds = [0.0, *(impact.t for impact in self.impacts), float(self.t[-1])]
+        energies = []
+        for i in range(len(self.peaks)):
+            first, last = np.searchsorted(self.t, bounds[i : i + 2])
+            turn = first + int(np.argmax(np.abs(self.theta[first : last + 1])))
+            energies.append(self.energy[0] if i == 0 and self.peaks[0] == self.case.release_peak else self.energy[turn])
+        return restitution_of(np.array(energies))
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Response):
             return NotImplemented

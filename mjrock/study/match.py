@@ -41,8 +41,6 @@ XI_TOLERANCE = 1e-3
 """Relative tolerance of a matched damping ratio [-]."""
 E_TOLERANCE = 5e-3
 """Relative difference to the restitution asked for at which a search has missed it [-]."""
-MARGIN = 0.03
-"""Share of the reachable range, at either end, in which any damping ratio gives the same restitution [-]."""
 MEASURES = ("restitution", "rms")
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from ..problem.damping import MARGIN
 from ..problem.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
 from ..problem.quantities import Array
-from .match import BASE_BOUNDS, MARGIN, SIDE_BOUNDS, Combination, Match
+from .match import BASE_BOUNDS, SIDE_BOUNDS, Combination, Match
 from .task import Row
 
 STARTS: dict[type, tuple[float, ...]] = {
