@@ -87,8 +87,8 @@ def test_what_is_out_of_reach_gets_the_closest_damping_and_a_warning(wall, e):
 
 
 def test_a_calibrated_law_warns_outside_its_own_range(wall, e):
-    with pytest.warns(UserWarning, match=r"k_side \[N/m3\] = 1e\+10 not in 5e\+07 to 3e\+09"):
-        CALIBRATED(wall, e, 5e8, 1e10)
+    with pytest.warns(UserWarning, match=r"k_side \[N/m3\] = 1e\+12 not in 5e\+07 to 1e\+11"):
+        CALIBRATED(wall, e, 5e8, 1e12)
     with pytest.warns(UserWarning, match=r"\|e_side\| \[-\] = 0.9 not in 0.2 to 0.6"):
         CALIBRATED(wall, mr.Restitution(e.base, -0.9), 5e8)
     with pytest.raises(ValueError, match="amplitude = 0 is outside"):

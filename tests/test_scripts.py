@@ -35,6 +35,7 @@ WRITES = {
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
     | {"calibrated_residuals_side.png", "calibration.csv", "calibration.sqlite", "calibration.txt"},
+    "validate_contacts": {"validate_contacts.csv", "validate_contacts.txt"},
     "validate_law": {"table2_laws.csv", "validation.csv", "validation.png", "validation.sqlite", "validation.txt"},
 }
 

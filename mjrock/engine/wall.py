@@ -19,9 +19,10 @@ that, because an edge carries so much less. It holds any wall in free rocking, w
 (3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of its load. It is no larger, because two edges that both stick while the
 wall turns over do work against each other. With mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a third too much."""
 HELD_FRICTION = 30.0
-"""Friction coefficient of the outer edge of a wall with a side stop [-]. This edge must not slip when the side impact
-pushes the hardly loaded base. On the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on
-nothing changes (`scripts/friction.py`). The inner edge takes as much of it as SELF_WORK allows."""
+"""Friction coefficient of the outer edge of a wall with a side stop on two lines [-]. On a bed of n lines it is n/2
+times that. This edge must not slip when the side impact pushes the hardly loaded base. On the paper's wall mu = 1 loses
+13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on nothing changes (`scripts/friction.py`). The inner edge takes as
+much of it as SELF_WORK allows."""
 SELF_WORK = 1e-4
 """Most work that two sticking edges may do against each other in an impact, over the energy of a release at alpha/2."""
 
@@ -49,7 +50,7 @@ def base_friction(wall: Block, contacts: Contacts, side_stop: bool) -> Array:
         return np.full(points, contacts.base.friction)
     friction = np.zeros(points)
     if side_stop:
-        friction[0], friction[-1] = inner_friction(wall, contacts), HELD_FRICTION
+        friction[0], friction[-1] = inner_friction(wall, contacts), HELD_FRICTION * points / 2
     else:
         friction[0] = friction[-1] = FREE_FRICTION * points / 2
     return friction

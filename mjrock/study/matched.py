@@ -17,6 +17,9 @@ from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, Match, highest_branch
 
 RIGID = 16.0
 """Rotation of the last rebound that counts, over that at which an edge lifts, of a base as stiff as theory's [-]."""
+FLAT = 2e-4
+"""Most rotation at which an edge of such a base lifts, over alpha [-]: the work of the weight on its springs then costs
+less than 0.001 of e_2s."""
 TOUCH_DOWN = 0.415
 """Damping ratio of such a base times h/b [-], about that of a plastic touch-down. With less the wall bounces on it,
 with more a faint rebound loses more than a large one."""
@@ -103,8 +106,8 @@ def as_theory(
     """Interfaces on which a wall rocks as classical theory has it: the same |e| at every one of the first rebounds.
 
     A soft base makes |e| depend on the size of the rebound. Here the stiffness is chosen so that the rotation after
-    `rebounds` rebounds is still RIGID times that at which an edge lifts off the base. On such a base e_2s is that of
-    Eq. 2 whatever the damping. The side is matched.
+    `rebounds` rebounds is still RIGID times that at which an edge lifts off the base, and this at most FLAT alpha. On
+    such a base e_2s is that of Eq. 2 whatever the damping. The side is matched.
 
     Args:
         wall, e: the wall, and the restitution of theory.
@@ -125,7 +128,8 @@ def as_theory(
         warnings.warn(f"a stiff base gives e_2s = {theory:.4g} of Eq. 2, and not {e.base:.4g}", stacklevel=2)
     left = (e.lumped if side_stop else e.base) ** (2 * rebounds)
     last = wall.rotation_at(left * float(wall.potential_energy(amplitude * wall.alpha)))
-    k_n = wall.weight * RIGID / (2 * wall.length * wall.half_base**2 * last)
+    uplift = min(last / RIGID, FLAT * wall.alpha)
+    k_n = wall.weight / (2 * wall.length * wall.half_base**2 * uplift)
     xi_base, xi_side = TOUCH_DOWN / wall.slenderness, 0.0
     if side_stop:
         side = Match(Standing(wall, k_n, k_n, amplitude), e, 2, xi_base)  # type: ignore[arg-type]

@@ -11,28 +11,28 @@ FIRST = 5
 
 
 def wall_on(k_n):
-    """The Figure 3 wall against its side, with the calibrated damping."""
-    e = mr.Restitution.from_geometry(FIGURE_3.alpha)
-    contacts = mr.Contacts.from_law(FIGURE_3, e, k_base=k_n, k_side=k_n, law=mr.CALIBRATED)
+    """The Figure 3 wall against its side, with damping that is about right on every base."""
+    contacts = mr.Contacts.from_damping(FIGURE_3, k_base=k_n, xi_base=0.06, k_side=k_n, xi_side=0.0113)
     return mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 2.2), contacts
 
 
-@pytest.mark.filterwarnings("ignore:CALIBRATED. outside the range of the fit")
 @pytest.mark.parametrize("k_n", [5e8, 5e9, 5e10, pytest.param(5e11, marks=pytest.mark.slow)])
 def test_every_rebound_is_that_of_the_contact_law(k_n):
-    """Within 1e-3 at the default accuracy, the faint fifth within 1.5e-3; within 1e-4 at 1e-4 up to 5e10 N/m3."""
+    """Within 1e-3 at the default accuracy, and within 1e-4 at 1e-4, up to 5e10 N/m3.
+
+    On 5e11 N/m3 the fifth rebound, of 7e-5 alpha, is within 2.5e-3 and 1e-3.
+    """
     case, contacts = wall_on(k_n)
     law = mr.solve_compliant(case, contacts, rtol=1e-9).restitution[:FIRST]
     assert len(law) >= (5 if k_n > 1e10 else 3)
     found = mr.simulate(case, contacts).restitution[: len(law)]
     np.testing.assert_allclose(found[:4], law[:4], atol=1e-3)
-    np.testing.assert_allclose(found, law, atol=1.5e-3)
+    np.testing.assert_allclose(found, law, atol=1e-3 if k_n < 1e11 else 2.5e-3)
     finer = mr.simulate(case, contacts, accuracy=1e-4).restitution[: len(law)]
     np.testing.assert_allclose(finer, law, atol=1e-4 if k_n < 1e11 else 1e-3)
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:CALIBRATED. outside the range of the fit")
 def test_an_edge_that_drifts_fails(monkeypatch):
     """The twin that must fail: as plain Python, so that the rule can be taken out of the loop."""
     case, contacts = wall_on(5e10)
