@@ -39,10 +39,13 @@ def test_rotation_at_inverts_potential_energy(wall, share):
 @pytest.mark.parametrize(
     ("sizes", "complaint"),
     [
-        ({"thickness": 600, "height": 4200}, r"b = 300 m is outside the valid range 0.001 to 10 m"),  # millimetres
-        ({"thickness": 0.6, "height": 4200}, r"h = 2100 m"),
-        ({"thickness": -0.6, "height": 4.2}, r"b = -0.3 m"),
-        ({"thickness": math.nan, "height": 4.2}, r"b = nan m"),
+        (
+            {"thickness": 600, "height": 4200},
+            r"thickness = 600 m is outside the valid range 0.002 to 20 m",
+        ),  # millimetres
+        ({"thickness": 0.6, "height": 4200}, r"height = 4200 m"),
+        ({"thickness": -0.6, "height": 4.2}, r"thickness = -0.6 m"),
+        ({"thickness": math.nan, "height": 4.2}, r"thickness = nan m"),
         ({"thickness": 0.6, "height": 4.2, "density": 2.0}, r"density = 2 kg/m3"),  # tonnes
         ({"thickness": 4.2, "height": 0.6}, r"slenderness"),
         ({"thickness": 0.6, "height": 4.2, "length": 0}, r"length = 0 m"),

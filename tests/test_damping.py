@@ -91,7 +91,7 @@ def test_a_calibrated_law_warns_outside_its_own_range(wall, e):
         CALIBRATED(wall, e, 5e8, 1e12)
     with pytest.warns(UserWarning, match=r"\|e_side\| \[-\] = 0.9 not in 0.2 to 0.6"):
         CALIBRATED(wall, mr.Restitution(e.base, -0.9), 5e8)
-    with pytest.raises(ValueError, match="amplitude = 0 is outside"):
+    with pytest.raises(ValueError, match="amplitude theta_0/alpha = 0 is outside"):
         CALIBRATED(wall, e, 5e8, amplitude=0)
 
 

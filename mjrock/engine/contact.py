@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compiled import jitable
-from ..problem.quantities import Array
+from ..problem.quantities import Array, require_array, require_real, require_within, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
@@ -177,16 +177,14 @@ def contact_parameters(
     Raises:
         ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
     """
-    for name, value, least in (
-        ("stiffness k [N/m]", k, "k > 0"),
-        ("timestep [s]", timestep, "timestep > 0"),
-        ("inverse_weight [1/kg]", inverse_weight, "inverse_weight > 0"),
+    for name, value, low, high, unit in (
+        ("stiffness k", k, 1e-30, 1e30, "N/m"),
+        ("damping c", c, 0.0, 1e30, "N s/m"),
+        ("timestep", timestep, 1e-12, 1e3, "s"),
+        ("inverse_weight", inverse_weight, 1e-30, 1e30, "1/kg"),
+        ("newmark_beta", newmark_beta, 0.0, 1e6, ""),
     ):
-        if not 0 < value < float("inf"):
-            raise ValueError(f"{name} = {value:g} is outside the valid range {least}")
-    for name, value in (("damping c [N s/m]", c), ("newmark_beta", newmark_beta)):
-        if not 0 <= value < float("inf"):
-            raise ValueError(f"{name} = {value:g} is outside the valid range, which starts at 0")
+        require_within(name, value, low, high, unit)
     inertia = newmark_inertia(float(k), float(c), float(timestep), float(newmark_beta))
     stiffness, damping, d = pair_values(float(k), float(c), inertia, float(inverse_weight))
     low, high = IMPEDANCE_RANGE
@@ -208,11 +206,12 @@ def contact_stiffness(
         ValueError: if solref is not in the direct (negative) format, or the impedance is not constant or is one that
             MuJoCo would clamp, or the weight is not positive.
     """
-    if len(solref) < 2 or len(solimp) < 2 or not 0 < inverse_weight < float("inf"):
-        raise ValueError(
-            f"solref = {tuple(solref)}, solimp = {tuple(solimp)} and inverse_weight = {inverse_weight:g} 1/kg: "
-            "two and at least two numbers and a positive weight are needed"
-        )
+    for name, numbers in (("solref", solref), ("solimp", solimp)):
+        if not isinstance(numbers, tuple | list | np.ndarray) or np.ndim(numbers) != 1 or len(numbers) < 2:
+            raise TypeError(f"{name} = {shown(numbers)} has to be at least two numbers")
+        require_array(name, numbers, (len(numbers),))
+    if not 0 < require_real("inverse_weight", inverse_weight) < float("inf"):
+        raise ValueError(f"inverse_weight = {inverse_weight:g} 1/kg is outside the valid range inverse_weight > 0")
     d, d_width = solimp[0], solimp[1]
     low, high = IMPEDANCE_RANGE
     if not (solref[0] < 0 and solref[1] <= 0):

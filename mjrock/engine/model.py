@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections import OrderedDict, deque
 from collections.abc import Iterator
@@ -13,7 +14,7 @@ import numpy as np
 
 from ..problem.case import Case
 from ..problem.interface import Contacts
-from ..problem.quantities import Array, require_within
+from ..problem.quantities import Array, require_kind, require_within
 from .contact import planar_weight
 from .memory import Memory
 from .mjcf import Rows, pair_rows, scene_mjcf
@@ -25,6 +26,15 @@ CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""
 KEPT = 16
 """Scenes whose compiled models are kept for the next run."""
+
+
+def _noted(text: str) -> None:
+    """Log a warning of MuJoCo, which would else write MUJOCO_LOG.TXT into the current folder."""
+    logging.getLogger("mujoco").warning(text)
+
+
+if mujoco.get_mju_user_warning() is None:
+    mujoco.set_mju_user_warning(_noted)
 
 
 class SimulationError(RuntimeError):
@@ -130,6 +140,8 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     Raises:
         ValueError: if the contacts do not fit the case, or for a value outside its range.
     """
+    require_kind("case", case, Case)
+    require_kind("contacts", contacts, Contacts)
     require_within("timestep", timestep, 1e-9, 1.0, "s")
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     return released_mjcf(wall_scene(case, contacts), timestep, newmark_beta)

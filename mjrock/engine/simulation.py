@@ -11,7 +11,15 @@ from os import cpu_count
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.interface import Contacts
-from ..problem.quantities import require_within
+from ..problem.quantities import (
+    ON_ITS_FACE,
+    require_array,
+    require_flag,
+    require_kind,
+    require_size,
+    require_within,
+    shown,
+)
 from ..result.response import Response, State
 from .mjcf import pair_rows
 from .model import SimulationError, engine_of
@@ -28,6 +36,8 @@ step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts
 |e| scatters by less than 0.002 omega h."""
 WORTH_SAYING = 0.02
 """Scatter of |e| that is warned of [-]."""
+PARTS = ("pose", "velocity")
+"""What a state is made of."""
 SLID = 0.01
 """Sliding of a base that should hold that is warned of, over b [-]."""
 
@@ -40,6 +50,10 @@ def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> f
     (omega h / 2)^2, with omega the frequency of the contact. So omega h = 2 sqrt(ENERGY_GAIN), omega the highest
     frequency of the wall with every contact closed: about a hundred steps in the shortest contact period.
     """
+    require_kind("wall", wall, Block)
+    require_kind("contacts", contacts, Contacts)
+    require_flag("side_stop", side_stop)
+    contacts.require_fit(wall, side_stop=side_stop)
     return sound_timestep(contacts.highest_frequency(wall, side_stop=side_stop))
 
 
@@ -77,9 +91,9 @@ def simulate(
     Warns:
         UserWarning: if a fixed step is too long to resolve the contacts.
     """
+    _require_asked(case, contacts, output_step, ledger)
     require_within("accuracy", accuracy, 1e-8, 0.1)
-    if output_step is not None:
-        require_within("output_step", output_step, 1e-9, case.duration, "s")
+    start = None if start is None else _required_state(start)
     if timestep is not None:
         (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, output_step, ledger, start)
         if isinstance(answer, SimulationError):
@@ -111,6 +125,11 @@ def simulate_batch(
     Raises:
         ValueError: if the walls or sides of the cases differ, or as `simulate` does.
     """
+    if not isinstance(cases, Sequence):
+        raise TypeError(f"cases = {shown(cases)} is not a list of cases")
+    for i, case in enumerate(cases):
+        require_kind(f"cases[{i}]", case, Case)
+        _require_asked(case, contacts, output_step, ledger)
     if not cases:
         return []
     first = cases[0]
@@ -130,6 +149,8 @@ def _simulate_fitted(
     start: State | None,
 ) -> Response:
     """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
+    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     started = time.perf_counter()
     scene, uplift = wall_scene(case, contacts), _uplift(case, contacts)
     used = accuracy
@@ -167,6 +188,8 @@ def _simulate_fixed(
     """Runs of one geometry at one fixed step, or how each broke down."""
     require_within("timestep", timestep, 1e-9, 1.0, "s")
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    longest = max(case.duration for case in cases)
+    require_size("the steps of this run", longest / timestep, "take a longer timestep, or steps that fit the motion")
     scenes, uplift = [wall_scene(case, contacts) for case in cases], _uplift(cases[0], contacts)
     _warn_if_coarse(scenes[0], timestep)
     rows = pair_rows(scenes[0], timestep, newmark_beta)
@@ -233,3 +256,28 @@ def _warn_if_slid(run: Run, contacts: Contacts) -> None:
             "edge was loaded enough to hold it. Give the base the friction that it has",
             stacklevel=4,
         )
+
+
+def _require_asked(case: object, contacts: object, output_step: object, ledger: object) -> None:
+    """Raise TypeError or ValueError for arguments of a run that cannot be."""
+    if isinstance(case, Contacts) and isinstance(contacts, Case):
+        raise TypeError("case and contacts are swapped: simulate(case, contacts)")
+    require_kind("case", case, Case)
+    require_kind("contacts", contacts, Contacts)
+    require_flag("ledger", ledger)
+    assert isinstance(case, Case)
+    if output_step is not None:
+        require_within("output_step", output_step, 1e-9, case.duration, "s")
+
+
+def _required_state(start: object) -> State:
+    """A start as pose and velocity of one wall, each of shape (1, 3) and finite, and not beyond its face."""
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
+    pose, velocity = (require_array(f"start, {name}", part, (1, 3)) for name, part in zip(PARTS, start, strict=True))
+    require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
+    for name, value in zip(("x", "z", "rotation"), velocity[0].tolist(), strict=True):
+        require_within(f"start, rate of {name}", value, -1e3, 1e3, "m/s or rad/s")
+    for name, value in zip("xz", pose[0].tolist(), strict=False):
+        require_within(f"start, {name}", value, -1e3, 1e3, "m")
+    return pose, velocity

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..problem.quantities import Array, Integers
+from ..problem.quantities import Array, Integers, shown
 
 GROUND = -1
 """The body of a face or an anchor that belongs to the ground."""
@@ -67,7 +67,10 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
     made: dict[str, Array | Integers] = {}
     for name, shape in SHAPES.items():
         wanted = tuple(size if isinstance(size, int) else len(given[size]) for size in shape)
-        values = np.ascontiguousarray(given[name], dtype=np.int64 if name.endswith("body") else float)
+        try:
+            values = np.ascontiguousarray(given[name], dtype=np.int64 if name.endswith("body") else float)
+        except (TypeError, ValueError, OverflowError):
+            raise TypeError(f"{name} = {shown(given[name])} is no array of numbers") from None
         values = values if values.size else values.reshape(wanted)
         if values.shape != wanted:
             raise ValueError(f"{name} has the shape {values.shape}; {wanted} is needed")

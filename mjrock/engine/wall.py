@@ -9,7 +9,7 @@ import numpy as np
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.interface import Contacts
-from ..problem.quantities import Array
+from ..problem.quantities import Array, require_kind
 from .scene import Scene
 from .tables import GROUND
 
@@ -69,6 +69,8 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
     Raises:
         ValueError: if the contacts do not fit the case.
     """
+    require_kind("case", case, Case)
+    require_kind("contacts", contacts, Contacts)
     wall, scene = case.block, standing_wall(case.block, contacts, case.side_stop)
     tilted = scene.lowered(wall.pose(np.array([case.theta0])))
     velocity = case.omega0 * wall.turning(case.theta0, case.direction)[None]

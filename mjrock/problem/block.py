@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .quantities import GRAVITY, Array, Real, require_within
+from .quantities import GRAVITY, Array, Real, require_real, require_within
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Block:
         require_within("length", self.length, 1e-3, 1e3, "m")
         require_within("density", self.density, 100.0, 3e4, "kg/m3")
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
-        if not 0 <= self.inset < self.b:
+        if not 0 <= require_real("inset", self.inset) < self.b:
             raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
         require_within("slenderness h / (b - inset)", self.slenderness, 1.0, 200.0)
 
@@ -48,12 +48,17 @@ class Block:
         cls, thickness: float, height: float, length: float = 1.0, density: float = 2000.0, inset: float = 0.0
     ) -> Block:
         """The wall of full sizes `thickness` 2b, `height` 2h and `length` [m], with its edges `inset` [m]."""
+        require_within("thickness", thickness, 2e-3, 20.0, "m")
+        require_within("height", height, max(1e-2, thickness), 200.0, "m")
         return cls(b=thickness / 2, h=height / 2, length=length, density=density, inset=inset)
 
     @classmethod
     def from_slenderness(cls, slenderness: float, R: float, length: float = 1.0, density: float = 2000.0) -> Block:
         """The wall of a `slenderness` h/b [-] and a half diagonal `R` [m], as Table 1 of the paper lists walls."""
+        require_within("slenderness h/b", slenderness, 1.0, 200.0)
         alpha = math.atan(1 / slenderness)
+        most = min(10 / math.sin(alpha), 100 / math.cos(alpha))
+        require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")
         return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
 
     @property

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from .block import Block
 from .motion import GroundMotion
-from .quantities import ON_ITS_FACE, require_within
+from .quantities import ON_ITS_FACE, require_flag, require_kind, require_within, shown
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,8 @@ class Case:
     motion: GroundMotion | None = None
 
     def __post_init__(self) -> None:
+        require_kind("block", self.block, Block)
+        require_flag("side_stop", self.side_stop)
         lowest = 0.0 if self.side_stop else -ON_ITS_FACE
         require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad")
         require_within("duration", self.duration, 1e-6, 1e6, "s")
@@ -48,7 +50,7 @@ class Case:
                 stacklevel=3,
             )
         if not (self.motion is None or isinstance(self.motion, GroundMotion)):
-            raise ValueError(f"motion = {self.motion!r} is not a GroundMotion")
+            raise TypeError(f"motion = {shown(self.motion)} is not a GroundMotion")
 
     @cached_property
     def release_energy(self) -> float:

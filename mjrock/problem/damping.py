@@ -13,6 +13,7 @@ from typing import Any, Self
 
 from .block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
+from .quantities import require_array, require_kind, require_within
 from .restitution import Restitution
 
 LEAST, HIGHEST = 1e-3, 0.3
@@ -21,6 +22,8 @@ MARGIN = 0.03
 """Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
 SIZE = 2.0
 """Rebound over the uplift rotation from which a law can be expected to give it [-]."""
+POSITIVE = ("coefficient", "scale", "floor", "bounce", "inertia", "weight")
+"""Coefficients of the formulas that cannot be negative."""
 DENSITY = 2000.0
 """Density of the walls that laws are fitted on [kg/m3]."""
 
@@ -61,6 +64,19 @@ class DampingLaw:
     runs: tuple[int, int] = (0, 0)
     errors: Mapping[str, Mapping[str, float]] = field(default_factory=dict, compare=False)
 
+    def __post_init__(self) -> None:
+        for name in ("name", "source"):
+            require_kind(name, getattr(self, name), str)
+        for name in ("R_range", "slenderness_range", "k_n_range", "side_range"):
+            low, high = require_array(name, getattr(self, name), (2,))
+            if not 0 <= low <= high:
+                raise ValueError(f"{name} = {low:g} to {high:g} is no range of positive numbers")
+        for part, form in (("base", self.base), ("side", self.side)):
+            require_kind(part, form, *FORMS.values())
+            for key, value in asdict(form).items():  # type: ignore[call-overload]
+                if key != "r_squared":
+                    require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE else -1e6, 1e6)
+
     def __call__(
         self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
     ) -> tuple[float, float]:
@@ -76,13 +92,13 @@ class DampingLaw:
         Raises:
             ValueError: for a value outside its range, or if `e.side` is zero (its logarithm has no value).
         """
+        require_kind("wall", wall, Block)
+        require_kind("e", e, Restitution)
         for symbol, k in (("k_n", k_n), ("k_side", k_n if k_side is None else k_side)):
-            if not k > 0:
-                raise ValueError(f"{symbol} = {k:g} N/m3 is outside the valid range {symbol} > 0")
+            require_within(symbol, k, 1e4, 1e14, "N/m3")
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
-        if not 0 < amplitude <= 1:
-            raise ValueError(f"amplitude = {amplitude:g} is outside the valid range 0 < theta_0/alpha <= 1")
+        require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
         outside = self._outside(wall, e, k_n, k_side)
         if outside:
@@ -104,8 +120,9 @@ class DampingLaw:
 
         They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
         """
-        if not k_n > 0:
-            raise ValueError(f"k_n = {k_n:g} N/m3 is outside the valid range k_n > 0")
+        require_kind("wall", wall, Block)
+        require_within("k_n", k_n, 1e4, 1e14, "N/m3")
+        require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         loss = getattr(self.base, "loss", None)
         if loss is None:
             return 0.0, 1.0
@@ -126,6 +143,9 @@ class DampingLaw:
             k_n, k_side: interface stiffness of base and side [N/m3].
             amplitude: rotation over alpha that the wall comes from [-].
         """
+        require_kind("e", e, Restitution)
+        if k_side is not None:
+            require_within("k_side", k_side, 1e4, 1e14, "N/m3")
         low, high = self.reach(wall, k_n, amplitude)
         margin = MARGIN * (high - low)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)

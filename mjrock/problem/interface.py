@@ -7,21 +7,20 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from .block import Block
 from .damping import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
-from .quantities import Array, require_within
+from .quantities import Array, require_kind, require_real, require_whole, require_within, shown
 from .restitution import Restitution
 
 Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 
 def _require_points(points: int) -> None:
-    require_within("contact points", points, 2, 1000)
-    if points != int(points):
-        raise ValueError(f"contact points = {points:g} is not a whole number; the valid range is 2 to 1000")
+    require_whole("contact points", points, 2, 1000)
 
 
 def contact_lines(face: float, points: int) -> tuple[Array, Array]:
@@ -45,11 +44,14 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     The paper prints xi as a fraction of critical damping and does not print the frequency. This reading is inferred
     from the magnitude of the loss. On the paper's Figure 3 wall (xi_b = 5.3 %, targets e_2s = 0.970 and |e_1s| =
     0.442), `solve_compliant` returns with this omega 0.970 and 0.558 for two corner lines (30.1 rad/s), and 0.977 and
-    0.485 for a bed of 32 (17.4 rad/s). With the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost
-    against the
-    side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed. `scripts/layouts.py` prints these figures.
+    0.485 for a bed of 32 (17.4 rad/s). With the vertical bounce sqrt(k_n A / m) (244 rad/s), and no less with a frequency
+    of the side, hardly anything is lost against the side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed.
+    `scripts/layouts.py` prints these figures.
     """
-    positions, widths = contact_lines(2 * wall.half_base, points)
+    require_kind("wall", wall, Block)
+    require_within("interface stiffness k_n", k_n, 1e4, 1e14, "N/m3")
+    _require_points(points)
+    positions, widths = contact_lines(2 * wall.half_base, int(points))
     K_rot = float(np.sum(k_n * widths * wall.length * positions**2))
     return math.sqrt(K_rot / (wall.inertia + wall.mass * wall.h**2))
 
@@ -81,6 +83,9 @@ class Interface:
     friction: float | None = None
 
     def __post_init__(self) -> None:
+        require_within("face", self.face, 1e-3, 1e3, "m")
+        require_within("length", self.length, 1e-3, 1e3, "m")
+        require_within("reference frequency", self.frequency, 1e-3, 1e9, "rad/s")
         if self.friction is not None:
             require_within("friction", self.friction, 0.0, 10.0)
         require_within("interface stiffness k_n", self.k_n, 1e4, 1e14, "N/m3")
@@ -91,7 +96,7 @@ class Interface:
 
     @cached_property
     def _lines(self) -> tuple[Array, Array]:
-        return contact_lines(self.face, self.points)
+        return contact_lines(self.face, int(self.points))
 
     @property
     def positions(self) -> Array:
@@ -119,6 +124,17 @@ class Interface:
         return float(np.sum(self.stiffness * self.positions**2))
 
 
+def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
+    """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
+    try:
+        xi_base, xi_side = law(wall, e, k_base)
+    except TypeError as error:
+        raise TypeError(
+            f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers: {error}"
+        ) from None
+    return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
+
+
 @dataclass(frozen=True)
 class Contacts:
     """The interfaces of one wall: its base and, where it has one, its side stop.
@@ -132,6 +148,11 @@ class Contacts:
     base: Interface
     side: Interface | None = None
     law: str = "given"
+
+    def __post_init__(self) -> None:
+        require_kind("base", self.base, Interface)
+        require_kind("side", self.side, Interface, type(None))
+        require_kind("law", self.law, str)
 
     @classmethod
     def from_damping(
@@ -154,8 +175,12 @@ class Contacts:
         Raises:
             ValueError: for a value outside its range, or a base too soft for the wall to stand on.
         """
+        require_kind("wall", wall, Block)
         _require_points(points)
+        points = int(points)
         require_within("base stiffness k_n", k_base, 1e4, 1e14, "N/m3")
+        if k_side is not None:
+            require_within("side stiffness k_n", k_side, 1e4, 1e14, "N/m3")
         omega = reference_frequency(wall, k_base, points)
         base = Interface(k_base, xi_base, 2 * wall.half_base, wall.length, omega, points, friction)
         side = None
@@ -201,12 +226,17 @@ class Contacts:
             UserWarning: what the law warns of; where it was fitted for another number of lines; and one-sided where it
                 was fitted in another code, as PUBLISHED was.
         """
+        require_kind("wall", wall, Block)
+        require_kind("e", e, Restitution)
+        _require_points(points)
         if law is None:
             law = CALIBRATED if points == 2 else CALIBRATED_BED
         elif isinstance(law, str):
             law = law_named(law)
+        elif not callable(law):
+            raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
         for name, k in (("base", k_base), ("side", k_side)):
-            if k is not None:
+            if name == "base" or k is not None:
                 require_within(f"{name} stiffness k_n", k, 1e4, 1e14, "N/m3")
         if k_side is not None and e.side >= 0:
             raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
@@ -223,7 +253,7 @@ class Contacts:
                     stacklevel=2,
                 )
         else:
-            xi_base, xi_side = law(wall, e, k_base)
+            xi_base, xi_side = _predicted(law, wall, e, k_base)
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall, k_base=k_base, xi_base=xi_base, k_side=k_side, xi_side=xi_side, points=points, law=name

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from .block import Block
+from .quantities import require_real
 
 
 @dataclass(frozen=True)
@@ -24,9 +25,9 @@ class Restitution:
     side: float
 
     def __post_init__(self) -> None:
-        if not 0 < self.base <= 1:
+        if not 0 < require_real("base restitution", self.base) <= 1:
             raise ValueError(f"base restitution = {self.base:g} is outside the valid range 0 < e <= 1")
-        if not -1 <= self.side <= 1:
+        if not -1 <= require_real("side restitution", self.side) <= 1:
             raise ValueError(f"side restitution = {self.side:g} is outside the valid range -1 to 1")
 
     @property
@@ -52,7 +53,7 @@ class Restitution:
             return cls(
                 base=(own + h**2 - low**2) / (own + h**2 + low**2), side=(own + b * low - h**2) / (own + b**2 + h**2)
             )
-        alpha = wall.alpha if isinstance(wall, Block) else wall
+        alpha = wall.alpha if isinstance(wall, Block) else require_real("alpha", wall)
         if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
             raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
         return cls(base=1 - 1.5 * math.sin(alpha) ** 2, side=1 - 1.5 * math.cos(alpha) ** 2)
@@ -68,6 +69,7 @@ class Restitution:
         Raises:
             ValueError: if the measured value asks more of the side than a perfect rebound.
         """
+        require_real("lumped restitution", lumped)
         base = cls.from_geometry(wall).base
         if not -(base**2) <= lumped < 0:
             raise ValueError(

@@ -19,7 +19,7 @@ from tqdm import tqdm
 
 from ..problem.case import Case
 from ..problem.interface import Contacts
-from ..problem.quantities import GRAVITY, ON_ITS_FACE, Array, require_within
+from ..problem.quantities import GRAVITY, ON_ITS_FACE, Array, require_kind, require_size, require_within
 from ..result.history import rocking_history
 from ..result.response import Response, ending
 
@@ -152,6 +152,8 @@ def solve_compliant(
         ValueError: if the contacts do not fit the case, or for a tolerance or step out of range.
         RuntimeError: if the integration fails.
     """
+    require_kind("case", case, Case)
+    require_kind("contacts", contacts, Contacts)
     require_within("rtol", rtol, 1e-14, 0.1)
     require_within("atol", atol, 1e-16, 0.1)
     require_within("output_step", output_step, 1e-7, 10.0, "s")
@@ -161,6 +163,7 @@ def solve_compliant(
     system = _Wall(case, contacts)
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.side_stop)
     fine = min(output_step, 1e-3 / wall.p)  # peaks and impacts are read off the samples
+    require_size("the samples of this answer", case.duration / fine, "follow it for less")
     sampled, history, evaluations, switches = _integrated(system, case, fine, period, rtol, atol)
     theta, omega = history[:, 2], history[:, 5]
     energy = system.energy(history)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem.quantities import Array
+from ..problem.quantities import Array, require_kind
 from .response import Outcome, Response
 
 
@@ -134,6 +134,8 @@ def compare(reference: Response, candidate: Response) -> Comparison:
     Raises:
         ValueError: if the responses answer different cases.
     """
+    require_kind("reference", reference, Response)
+    require_kind("candidate", candidate, Response)
     if reference.case != candidate.case:
         raise ValueError(f"the responses answer different cases: {reference.case} and {candidate.case}")
     common = reference.t <= min(reference.t[-1], candidate.t[-1]) * (1 + 1e-12)

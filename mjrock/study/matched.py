@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from ..problem.block import Block
 from ..problem.interface import Contacts
-from ..problem.quantities import require_within
+from ..problem.quantities import require_flag, require_kind, require_whole, require_within
 from ..problem.restitution import Restitution
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, Match, highest_branch
 
@@ -75,6 +75,8 @@ def matched_contacts(
         UserWarning: where no damping gives what is asked for. The damping that comes closest is returned, and the
             message says what it gives.
     """
+    require_kind("wall", wall, Block)
+    require_kind("e", e, Restitution)
     require_within("amplitude", amplitude, 0.01, 0.95)
     require_within("accuracy", accuracy, 1e-8, 0.1)
     one = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude)
@@ -121,8 +123,11 @@ def as_theory(
     Warns:
         UserWarning: where e.base is not that of Eq. 2, or no damping of the side gives e.lumped.
     """
+    require_kind("wall", wall, Block)
+    require_kind("e", e, Restitution)
+    require_flag("side_stop", side_stop)
     require_within("amplitude", amplitude, 0.01, 0.95)
-    require_within("rebounds", rebounds, 1, 6)
+    require_whole("rebounds", rebounds, 1, 6)
     theory = Restitution.from_geometry(wall).base
     if abs(e.base / theory - 1) > UNLIKE:
         warnings.warn(f"a stiff base gives e_2s = {theory:.4g} of Eq. 2, and not {e.base:.4g}", stacklevel=2)

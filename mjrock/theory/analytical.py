@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from ..problem.case import Case
-from ..problem.quantities import require_within
+from ..problem.quantities import require_kind, require_size, require_within
 from ..problem.restitution import Restitution
 from ..result.history import Impact
 from ..result.response import Outcome, Response, describe
@@ -47,10 +47,13 @@ def solve_analytical(
         ValueError: for a tolerance or step out of range, or a side stop from which the wall does not rebound.
         RuntimeError: if the integration fails.
     """
+    require_kind("case", case, Case)
+    require_kind("e", e, Restitution)
     require_within("rtol", rtol, 1e-14, 0.1)
     require_within("atol", atol, 1e-16, 0.1)
     require_within("output_step", output_step, 1e-7, 1e6, "s")
     require_within("rest", rest, 1e-30, 0.1)
+    require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     if case.side_stop and not -1 <= e.lumped < 0:
         raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
     started = time.perf_counter()
