@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study.store import Store, fingerprint
+from mjrock.study.fingerprint import fingerprint
+from mjrock.study.store import Store
 
 
 def row(key, position=0, **columns):
@@ -28,7 +29,7 @@ def test_rows_come_back_in_the_order_asked(tmp_path):
         ]
         with pytest.raises(ValueError, match="no column moment"):
             store.rows(moment=3)
-    assert [p.name for p in tmp_path.iterdir()] == ["c.sqlite"]
+    assert {p.name for p in tmp_path.iterdir()} == {"c.sqlite", "c.sqlite.lock"}
 
 
 def test_a_frame(tmp_path):

@@ -10,7 +10,7 @@ from typing import Any
 from ..engine.simulation import simulate_batch
 from ..result.response import Response
 from .analysis import Analysis
-from .store import fingerprint
+from .fingerprint import fingerprint
 from .task import Row, Task, failed_row
 
 BATCH = 8

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from .batch import BATCH, batch_rows, geometry
-from .store import Store, fingerprint
+from .fingerprint import fingerprint
+from .store import Store
 from .task import VERSION, Row, Task, carry_out_all, failed_row
 
 CHUNK_SECONDS = 0.5

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import dataclasses
-import hashlib
 import io
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -13,7 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from .lock import Lock
+from .values import checksum, plain, shown
 
 if TYPE_CHECKING:
     import pandas
@@ -22,105 +21,127 @@ APPLICATION = 0x6D6A726B
 """SQLite's application_id of a campaign, "mjrk"."""
 FIXED = ("key", "position", "status", "error", "version", "seconds")
 """Columns of every row. `position` is the place in the list of tasks. `seconds` is the only column that is a timing."""
-
-
-def fingerprint(*contents: object) -> str:
-    """A hash of the content of dataclasses, arrays, mappings and plain values, the same on every machine.
-
-    A field of a dataclass that does not take part in comparison does not count: a label, the name of a record.
-
-    Raises:
-        TypeError: for a value whose content is not known, such as a function.
-    """
-    digest = hashlib.sha256()
-    for piece in _pieces(contents):
-        digest.update(b"%d:" % len(piece) + piece)
-    return digest.hexdigest()[:32]
-
-
-def _pieces(value: object) -> Iterator[bytes]:
-    """The content of a value as bytes that tell it from any other."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        yield type(value).__name__.encode()
-        for field in dataclasses.fields(value):
-            if field.compare:
-                yield field.name.encode()
-                yield from _pieces(getattr(value, field.name))
-    elif isinstance(value, np.ndarray):
-        yield f"{value.dtype.str}{value.shape}".encode()
-        yield np.ascontiguousarray(value).tobytes()
-    elif isinstance(value, Mapping):
-        yield b"{%d" % len(value)
-        for name in sorted(value):
-            yield from _pieces(name)
-            yield from _pieces(value[name])
-    elif isinstance(value, tuple | list):
-        yield b"[%d" % len(value)
-        for item in value:
-            yield from _pieces(item)
-    elif isinstance(value, np.generic):
-        yield from _pieces(value.item())
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield repr(float(value)).encode()  # 1 and 1.0 are the same thickness
-    elif value is None or isinstance(value, bool | str):
-        yield repr(value).encode()
-    else:
-        raise TypeError(f"{value!r} is of no type whose content can be hashed")
+CHECKSUM = "checksum"
+"""The column with the checksum of a row, which is verified and left out when the row is read."""
+UNREADABLE = (sqlite3.Error, UnicodeError, OverflowError)
+"""What reading a damaged file raises."""
+ENVIRONMENT = frozenset(
+    (
+        sqlite3.SQLITE_BUSY,
+        sqlite3.SQLITE_CANTOPEN,
+        sqlite3.SQLITE_FULL,
+        sqlite3.SQLITE_IOERR,
+        sqlite3.SQLITE_LOCKED,
+        sqlite3.SQLITE_NOMEM,
+        sqlite3.SQLITE_PERM,
+        sqlite3.SQLITE_READONLY,
+    )
+)
+"""Errors of SQLite that the disk, the system or another process causes. All others say that the file is damaged."""
 
 
 class Store:
     """Rows of a campaign in a file. Use it in a `with` statement, or close it.
 
-    Rows are committed as they come: a process that is killed at any moment leaves every one that was written.
+    Rows are committed as they come: a process that is killed at any moment leaves every one that was written. The
+    structure of the file is checked when it is opened, and each row has a checksum that is verified when it is read. A
+    damaged file raises an error and never returns other rows than were written.
 
     Args:
         path: the SQLite file, made where there is none.
         writing: whether rows will be added; one process at a time may do so, any number may read meanwhile.
 
     Raises:
-        ValueError: if the file is not the store of a campaign.
+        ValueError: if the file is not the store of a campaign, or is damaged; the error says how many rows are
+            readable, and `Store.rescue` copies them.
         OSError: if it cannot be opened, or another process writes to it.
     """
 
     def __init__(self, path: str | Path, *, writing: bool = False) -> None:
         self.path = Path(path)
-        self._lock: sqlite3.Connection | None = None
+        self._lock: Lock | None = None
         if not writing and not self.path.is_file():
             raise FileNotFoundError(f"{self.path}: there is no such campaign")
         if writing:
-            self._lock = self._locked()
+            self._lock = Lock(self.path)
         try:
-            self._rows = sqlite3.connect(self.path, isolation_level=None)
-            self._open(writing)
-        except sqlite3.DatabaseError as error:
-            self.close()
-            if isinstance(error, sqlite3.OperationalError):
-                raise OSError(f"{self.path}: {error}") from None
-            raise ValueError(f"{self.path} is not a campaign: {error}") from None
-        except ValueError:
+            try:
+                self._rows = sqlite3.connect(self.path, isolation_level=None)
+                self._open(writing)
+            except UNREADABLE as error:
+                raise self._explained(error) from None
+            self._known = self.columns
+        except BaseException:
             self.close()
             raise
 
-    def _locked(self) -> sqlite3.Connection:
-        """A lock that the system releases when a process is killed."""
-        try:
-            lock = sqlite3.connect(self.path.with_name(self.path.name + ".lock"), timeout=0, isolation_level=None)
-            lock.execute("BEGIN EXCLUSIVE")
-        except sqlite3.OperationalError as error:
-            busy = "locked" in str(error)
-            raise OSError(f"{self.path}: {'another campaign is writing to it' if busy else error}") from None
-        return lock
+    @classmethod
+    def rescue(cls, damaged: str | Path, path: str | Path) -> int:
+        """Copy the rows of a damaged store that are as they were written into a new store.
+
+        Args:
+            damaged: the damaged store, which is left as it is.
+            path: the new store.
+
+        Returns:
+            How many rows were copied. The campaign, called with the new store, runs what is missing.
+
+        Raises:
+            FileExistsError: if there is a file at the new path.
+            FileNotFoundError: if there is none at the old one.
+        """
+        if not Path(damaged).is_file():
+            raise FileNotFoundError(f"{damaged}: there is no such campaign")
+        if Path(path).exists():
+            raise FileExistsError(f"{path} exists already; rows are rescued into a new file")
+        rows = readable(Path(damaged))
+        with cls(path, writing=True) as store:
+            store.add_columns(dict.fromkeys(name for row in rows for name in row if name not in FIXED))
+            store.add(rows)
+        return len(rows)
 
     def _open(self, writing: bool) -> None:
         (application,) = self._rows.execute("PRAGMA application_id").fetchone()
         (tables,) = self._rows.execute("SELECT count(*) FROM sqlite_master").fetchone()
         if application != APPLICATION and (tables or not writing):
             raise ValueError(f"{self.path} is a database, but not the store of a campaign")
+        if tables:
+            (verdict,) = self._rows.execute("PRAGMA integrity_check(1)").fetchone()
+            if verdict != "ok":
+                raise sqlite3.DatabaseError(verdict)
+            missing = {*FIXED, CHECKSUM} - {row[1] for row in self._rows.execute("PRAGMA table_info(cases)")}
+            if missing:
+                raise sqlite3.DatabaseError(f"there is no column {', '.join(sorted(missing))}")
         if writing:
             self._rows.execute("PRAGMA journal_mode = WAL")
             self._rows.execute("PRAGMA synchronous = NORMAL")
+        if writing and not tables:
+            columns = ", ".join((*FIXED, CHECKSUM))
+            self._rows.execute("BEGIN")
             self._rows.execute(f"PRAGMA application_id = {APPLICATION}")
-            self._rows.execute(f"CREATE TABLE IF NOT EXISTS cases ({', '.join(FIXED)}, PRIMARY KEY (key))")
+            self._rows.execute(f"CREATE TABLE cases ({columns}, PRIMARY KEY (key))")
+            self._rows.execute("COMMIT")
+
+    def _explained(self, error: Exception) -> Exception:
+        """What an error of SQLite means for the user."""
+        code = getattr(error, "sqlite_errorcode", None)
+        if code is not None and code & 0xFF in ENVIRONMENT and code != sqlite3.SQLITE_IOERR_SHORT_READ:
+            return OSError(f"{self.path}: {error}")
+        count = len(readable(self.path))
+        if code == sqlite3.SQLITE_NOTADB and not count:
+            return ValueError(f"{self.path} is not a campaign, or is damaged: {error}; none of its rows is readable")
+        return ValueError(
+            f"{self.path} is damaged ({shown(str(error))}); {count} of its rows are readable, and "
+            f"Store.rescue({str(self.path)!r}, new_path) copies them into a new store that a campaign can carry on from"
+        )
+
+    def _ask(self, query: str) -> tuple[list[str], list[tuple[Any, ...]]]:
+        """The names of the columns of a query, and its rows."""
+        try:
+            cursor = self._rows.execute(query)
+            return [column[0] for column in cursor.description], cursor.fetchall()
+        except UNREADABLE as error:
+            raise self._explained(error) from None
 
     def __enter__(self) -> Store:
         return self
@@ -133,69 +154,106 @@ class Store:
     def close(self) -> None:
         """Close the file."""
         if hasattr(self, "_rows"):
-            self._rows.close()
+            with contextlib.suppress(sqlite3.Error):  # every row is committed; the journal is taken up at the next opening
+                self._rows.close()
         if self._lock is not None:
-            self._lock.close()
-            self.path.with_name(self.path.name + ".lock").unlink(missing_ok=True)
+            self._lock.release()
             self._lock = None
 
     @property
     def columns(self) -> list[str]:
         """The names of the columns."""
-        return [row[1] for row in self._rows.execute("PRAGMA table_info(cases)")]
+        return [row[1] for row in self._ask("PRAGMA table_info(cases)")[1] if row[1] != CHECKSUM]
 
     def add_columns(self, names: Iterable[str]) -> None:
         """Make columns for these names where there are none yet.
 
         Raises:
-            ValueError: for a name that every row has already, or one that is no column's name.
+            ValueError: for a name that every row has already, one that is no column's name, or one that differs from
+                another in upper and lower case only. No column is made then.
         """
-        known = {name.lower() for name in self.columns}
+        names = list(names)
+        known = {name.lower(): name for name in self._known}
+        reserved = (*FIXED, CHECKSUM)
+        seen: set[str] = set()
         for name in names:
-            if name.lower() in FIXED or not name or '"' in name:
-                raise ValueError(f"{name!r} cannot name a column; reserved are {', '.join(FIXED)}")
-            if name.lower() not in known:
-                self._rows.execute(f'ALTER TABLE cases ADD COLUMN "{name}"')
-                known.add(name.lower())
+            if not isinstance(name, str) or not name or '"' in name or "\0" in name or name.lower() in reserved:
+                raise ValueError(f"{name!r} cannot name a column; reserved are {', '.join(reserved)}")
+            plain(name)
+            if name.lower() in seen or known.get(name.lower(), name) != name:
+                other = known.get(name.lower(), name)
+                raise ValueError(f"{name!r} cannot name a column beside {other!r}; upper and lower case do not count")
+            seen.add(name.lower())
+            known[name.lower()] = name
+        for name in names:
+            if name not in self._known:
+                self._write(((f'ALTER TABLE cases ADD COLUMN "{name}"', ()),))
+                self._known.append(name)
 
     def add(self, rows: Sequence[Mapping[str, object]]) -> None:
         """Write rows, all or none; a row of the same key is replaced.
 
         Raises:
+            ValueError: for a name that is no column, or a value that is neither text nor a number nor None.
             OSError: if the disk is full or the file cannot be written. What was written before stays.
         """
+        inserts = []
+        for row in rows:
+            values = {name: plain(value) for name, value in row.items()}
+            unknown = values.keys() - set(self._known)
+            if unknown:
+                raise ValueError(f"there is no column {', '.join(sorted(unknown))}; there are {', '.join(self._known)}")
+            names = ", ".join(f'"{name}"' for name in values)
+            marks = ", ?" * len(values)
+            insert = f"INSERT OR REPLACE INTO cases ({CHECKSUM}, {names}) VALUES (?{marks})"
+            inserts.append((insert, (checksum(values), *values.values())))
+        self._write(inserts)
+
+    def _write(self, statements: Iterable[tuple[str, tuple[object, ...]]]) -> None:
+        """Carry out statements, all or none."""
         try:
             self._rows.execute("BEGIN")
-            for row in rows:
-                names = ", ".join(f'"{name}"' for name in row)
-                values = tuple(value.item() if isinstance(value, np.generic) else value for value in row.values())
-                marks = ", ".join("?" * len(row))
-                self._rows.execute(f"INSERT OR REPLACE INTO cases ({names}) VALUES ({marks})", values)
+            for statement, values in statements:
+                self._rows.execute(statement, values)
             self._rows.execute("COMMIT")
-        except sqlite3.OperationalError as error:
+        except BaseException as error:
             with contextlib.suppress(sqlite3.Error):
                 self._rows.execute("ROLLBACK")
-            raise OSError(
-                f"{self.path}: {error}; what is in it is kept, and the same call carries on from there"
-            ) from None
+            if not isinstance(error, UNREADABLE):
+                raise
+            explained = self._explained(error)
+            if isinstance(explained, OSError):
+                explained = OSError(f"{explained}; what is in it is kept, and the same call carries on from there")
+            raise explained from None
 
     def statuses(self) -> dict[str, str]:
         """Status by key: "done" or "failed"."""
-        return dict(self._rows.execute("SELECT key, status FROM cases"))
+        return {row["key"]: row["status"] for row in self._verified()}
 
     def __len__(self) -> int:
         """How many rows there are."""
-        return int(self._rows.execute("SELECT count(*) FROM cases").fetchone()[0])
+        return int(self._ask("SELECT count(*) FROM cases")[1][0][0])
+
+    def _verified(self) -> Iterator[dict[str, Any]]:
+        """The rows in the order in which they were asked, each verified by its checksum."""
+        names, rows = self._ask("SELECT * FROM cases ORDER BY position, key")
+        for values in rows:
+            row = dict(zip(names, values, strict=True))
+            if row.pop(CHECKSUM) != checksum(row):
+                raise self._explained(ValueError("a row is not as it was written"))
+            yield row
 
     def rows(self, **where: object) -> list[dict[str, Any]]:
-        """The rows in the order in which they were asked, all or those whose columns have the values given."""
+        """The rows in the order in which they were asked, all or those whose columns have the values given.
+
+        Raises:
+            ValueError: for a column that there is not, a value that no column can hold, or a damaged file.
+        """
         unknown = where.keys() - set(self.columns)
         if unknown:
             raise ValueError(f"there is no column {', '.join(sorted(unknown))}; there are {', '.join(self.columns)}")
-        names = self.columns
-        condition = "".join(f' AND "{name}" IS ?' for name in where)
-        query = f"SELECT * FROM cases WHERE 1{condition} ORDER BY position, key"
-        return [dict(zip(names, row, strict=True)) for row in self._rows.execute(query, tuple(where.values()))]
+        wanted = {name: plain(value) for name, value in where.items()}
+        return [row for row in self._verified() if all(row[name] == value for name, value in wanted.items())]
 
     def csv(self, *, timings: bool = True) -> str:
         """The rows as CSV text; without timings it is the same however the campaign went, killed and resumed or not."""
@@ -211,3 +269,18 @@ class Store:
         import pandas
 
         return pandas.DataFrame(self.rows(), columns=self.columns)
+
+
+def readable(path: Path) -> list[dict[str, Any]]:
+    """The rows of a damaged store that are as they were written: those before the first and after the last damage."""
+    found: dict[str, dict[str, Any]] = {}
+    for order in ("ASC", "DESC"):
+        with contextlib.suppress(*UNREADABLE), contextlib.closing(sqlite3.connect(path)) as connection:
+            connection.text_factory = lambda text: text.decode("utf-8", "replace")
+            cursor = connection.execute(f"SELECT * FROM cases NOT INDEXED ORDER BY rowid {order}")
+            names = [column[0] for column in cursor.description]
+            for values in cursor:
+                row = dict(zip(names, values, strict=True))
+                if row.pop(CHECKSUM, None) == checksum(row) and set(FIXED) <= row.keys():
+                    found[row["key"]] = row
+    return sorted(found.values(), key=lambda row: (row["position"] or 0, row["key"]))
