@@ -10,16 +10,7 @@ from scipy.signal import periodogram
 import mjrock as mr
 from paper import FIGURE_3
 
-RECORDS = Path(__file__).parents[2] / "shared" / "records"
-SAMPLES = [0.0, 0.02, -0.05, 0.04, -0.01, 0.0]
-NUMBERS = "0.0 2E-2 -.05 4.0e-02\n  -0.01\n0\n"
-AT2 = "PEER NGA STRONG MOTION DATABASE RECORD\nSomewhere, 1/1/99\nACCELERATION TIME SERIES IN UNITS OF G\n"
-
-
-def record(name: str) -> Path:
-    if not RECORDS.is_dir():
-        pytest.skip(f"the recorded ground motions are not at {RECORDS}")
-    return RECORDS / f"{name}.sac"
+RECORDS = Path(__file__).parent / "records"
 
 
 @pytest.fixture
@@ -120,193 +111,11 @@ def test_the_ledger_closes_on_a_shaken_wall(contacts, accuracy):
     assert np.abs(book.residual).max() < 3 * accuracy * np.abs(book.ground).max()
 
 
-@pytest.mark.parametrize(
-    "head",
-    [
-        "NPTS=     6, DT=   .0100 SEC",
-        "npts= 6, dt= 1.0e-2 sec,",
-        "    6    0.0100    NPTS, DT",
-        "6, .0100, npts, dt",
-    ],
-)
-@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
-def test_at2(tmp_path, head, encoding):
-    path = tmp_path / "RSN9_A.90.AT2"
-    path.write_text(AT2.replace("Somewhere", "Düzce") + f"{head}\n{NUMBERS}", encoding=encoding)
-    motion = mr.GroundMotion.from_at2(path)
-    np.testing.assert_allclose(motion.accel, 9.81 * np.array(SAMPLES), rtol=1e-14)
-    assert motion.dt == 0.01
-    assert motion.name == "RSN9_A.90"
-
-
-@pytest.mark.parametrize(
-    ("content", "complaint"),
-    [
-        (AT2 + "NPTS= 7, DT= .01 SEC\n" + NUMBERS, "6 samples; the header states 7"),
-        (AT2 + "NPTS= 5, DT= .01 SEC\n" + NUMBERS, "6 samples; the header states 5"),
-        (AT2 + "NPTS= 6, DT= SEC\n" + NUMBERS, "line 4 states no NPTS and DT: 'NPTS= 6, DT= SEC'"),
-        (AT2 + "NPTS= 6\n" + NUMBERS, "line 4 states no NPTS and DT"),
-        (AT2 + "NPTS= 6, DT= 20 SEC\n" + NUMBERS, "dt = 20 s is outside the valid range 1e-05 to 1 s"),
-        (AT2 + "NPTS= 6, DT= .01 SEC\n" + NUMBERS.replace("-0.01", "*****"), r"line 6: .*'\*\*\*\*\*'"),
-        (AT2 + "NPTS= 6, DT= .01 SEC\n" + NUMBERS.replace("-0.01", "nan"), r"accel\[4\] = nan m/s2"),
-        (AT2 + "NPTS= 6, DT= .01 SEC\n" + NUMBERS.replace("-.05", "-inf"), r"accel\[2\] = -inf m/s2"),
-        (AT2.replace("OF G", "OF CM/S") + "NPTS= 6, DT= .01 SEC\n" + NUMBERS, "not an AT2 file"),
-        (AT2.replace("OF G", "OF GAL") + "NPTS= 6, DT= .01 SEC\n" + NUMBERS, "not an AT2 file"),
-        (NUMBERS, "not an AT2 file"),
-        ("\n", "an empty file"),
-        ("\x00\x01\x02", "a binary file"),
-    ],
-)
-def test_what_is_no_at2(tmp_path, content, complaint):
-    path = tmp_path / "bad.AT2"
-    path.write_text(content)
-    with pytest.raises(ValueError, match=rf"bad\.AT2: .*{complaint}"):
-        mr.GroundMotion.from_at2(path)
-
-
-@pytest.mark.parametrize(
-    ("content", "unit", "options", "scale"),
-    [
-        ("\ufeff0.00,0\n0.01,1\n0.02,-2\n", "m/s2", {}, 1.0),
-        ("time [s], accel\n# filtered\n0,0\n\n.01,1\n% note\n.02,-2", "cm/s2", {}, 0.01),
-        ("Zeit;a\r\n0,00;0,0\r\n0,01;1,0\r\n0,02;-2,0\r\n", "g", {}, 9.81),
-        ("// ms and mm\n  0\t0\n 10   1.\n 20  -2.\n", "mm/s2", {"time_unit": "ms"}, 0.001),
-        ("5.00 0\n5.01 1\n5.02 -2\n", "ft/s2", {}, 0.3048),
-    ],
-)
-def test_columns(tmp_path, content, unit, options, scale):
-    path = tmp_path / "two columns.csv"
-    path.write_text(content, encoding="utf-8")
-    if unit == "mm/s2":
-        with pytest.warns(UserWarning, match="two columns peaks at 0.002 m/s2 = 0.000204 g only"):
-            motion = mr.GroundMotion.from_csv(path, unit, **options)
-    else:
-        motion = mr.GroundMotion.from_csv(path, unit, **options)
-    np.testing.assert_allclose(motion.accel, scale * np.array([0.0, 1.0, -2.0]), rtol=1e-14)
-    assert motion.dt == pytest.approx(0.01, rel=1e-12)
-    assert motion.name == "two columns"
-
-
-def columns(t, a) -> str:
-    return "".join(f"{x!r},{y!r}\n" for x, y in zip(map(float, t), map(float, a), strict=True))
-
-
-T = 0.01 * np.arange(50)
-CYCLE = np.sin(2 * np.pi * T / T[-1])
-
-
-@pytest.mark.parametrize(
-    ("content", "unit", "complaint"),
-    [
-        (columns(T, T), "m/s", "unit = 'm/s' is not one of m/s2, cm/s2, mm/s2, g, ft/s2"),
-        (
-            "t,a\n" + columns(np.delete(T, 20), T[1:]),
-            "g",
-            "line 22: uneven time steps, 0.02 s from 0.19 s on where 0.01",
-        ),
-        (columns(T + 0.0005 * np.eye(50)[7], T), "g", "line [89]: uneven time steps, 0.0(10|09)5 s from 0.0[67]"),
-        (columns(np.where(T < 0.25, T, 1.1 * T - 0.025), T), "g", "uneven time steps"),
-        (columns(T[::-1], T), "g", "line 2: time does not increase, 0.49 s to 0.48 s"),
-        (columns([0, 0.01, 0.01], [0, 1, 2]), "g", "line 3: time does not increase, 0.01 s to 0.01 s"),
-        (columns([0, math.nan, 0.02], [0, 1, 2]), "g", "line 2: time nan s is not finite"),
-        (columns([0, 0.01, 0.02], [0, 1, math.inf]), "g", r"accel\[2\] = inf m/s2"),
-        (columns([0, 10, 20], [0, 1, 2]), "g", "dt = 10 s is outside"),  # milliseconds
-        ("0,0\n0.01,one\n0.02,2\n", "g", "line 2: .*'one'"),
-        ("0,zero\n0.01,1\n0.02,2\n", "g", "line 1: .*'zero'"),
-        ("0,0,0\n0.01,1,0\n", "g", "line 1 has 3 columns"),
-        ("0\n1\n2\n", "g", "line 1 has 1 columns"),
-        ("time,accel\n", "g", "0 rows of time and acceleration"),
-        ("", "g", "an empty file"),
-        ("0,1\x00", "g", "a binary file"),
-    ],
-)
-def test_columns_that_are_none(tmp_path, content, unit, complaint):
-    path = tmp_path / "bad.csv"
-    path.write_text(content)
-    with pytest.raises(ValueError, match=rf"bad\.csv: .*{complaint}"):
-        mr.GroundMotion.from_csv(path, unit)
-
-
-def test_an_unknown_unit_of_time(tmp_path):
-    (tmp_path / "a.csv").write_text(columns(T, T))
-    with pytest.raises(ValueError, match="time_unit = 'h' is not one of s, ms"):
-        mr.GroundMotion.from_csv(tmp_path / "a.csv", "g", time_unit="h")
-
-
-def test_printed_times_may_be_rounded(tmp_path):
-    """A record at 128 Hz whose times have four decimals: off the even grid by up to 0.6 % of a step."""
-    t = np.arange(1000) / 128
-    (tmp_path / "a.csv").write_text(columns(np.round(t, 4), np.sin(2 * np.pi * t / t[-1])))
-    assert mr.GroundMotion.from_csv(tmp_path / "a.csv", "m/s2").dt == pytest.approx(1 / 128, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("head", "complaint"),
-    [
-        ("  6  5.0E-03  0  0  0.", None),
-        ("  7  5.0E-03  0  0  0.", "6 samples; the header states 7"),
-        ("  5  5.0E-03  0  0  0.", "6 samples; the header states 5"),
-        ("  6", "not the plain text of a SAC record"),
-        ("0.1  0.2  0.3", "not the plain text of a SAC record"),
-        ("  6  0.0", "dt = 0 s"),
-    ],
-)
-def test_sac(tmp_path, head, complaint):
-    path = tmp_path / "STA.sac"
-    path.write_text(f"STA fn  Somewhere\n{head}\n" + " ".join(str(1000 * x) for x in SAMPLES))
-    if complaint:
-        with pytest.raises(ValueError, match=rf"STA\.sac: .*{complaint}"):
-            mr.GroundMotion.from_sac(path)
-    else:
-        motion = mr.GroundMotion.from_sac(path)
-        np.testing.assert_allclose(motion.accel, 10 * np.array(SAMPLES), rtol=1e-14)
-        assert (motion.dt, motion.name) == (0.005, "STA")
-
-
-def test_a_file_that_is_not_there(tmp_path):
-    for read in (mr.GroundMotion.from_at2, mr.GroundMotion.from_sac, lambda p: mr.GroundMotion.from_csv(p, "g")):
-        with pytest.raises(FileNotFoundError):
-            read(tmp_path / "nowhere.txt")
-
-
-@pytest.mark.parametrize(
-    ("accel", "unit", "complaint"),
-    [
-        (CYCLE, "mm/s2", "peaks at .* = 0.000102 g only"),
-        (100 * CYCLE, "g", r"peaks at 98\d.* = 99.9 g"),
-        (0.2 + CYCLE, "m/s2", r"residual velocity is 0.098 m/s, its peak velocity 0.\d+ m/s"),
-    ],
-)
-def test_a_record_that_smells(tmp_path, accel, unit, complaint):
-    (tmp_path / "a.csv").write_text(columns(T, accel))
-    with pytest.warns(UserWarning, match=complaint):
-        mr.GroundMotion.from_csv(tmp_path / "a.csv", unit)
-
-
-@pytest.mark.parametrize(
-    ("name", "count", "dt", "peak", "peak_velocity"),
-    [
-        ("LA13", 3000, 0.02, 6.6493, 0.956),
-        ("LA14", 3000, 0.02, 6.4449, 0.810),
-        ("NF01", 2500, 0.02, 8.8285, 1.100),
-        ("NF13", 2990, 0.005, 8.7272, 1.745),
-    ],
-)
-def test_the_records_at_hand(name, count, dt, peak, peak_velocity):
-    """Peaks as awk finds them in the text; peak velocities from its sum of trapezoids, at the samples only."""
-    motion = mr.GroundMotion.from_sac(record(name))
-    assert (len(motion.accel), motion.dt, motion.name) == (count, dt, name)
-    assert motion.peak == pytest.approx(peak, rel=1e-12)
-    assert motion.peak_velocity == pytest.approx(peak_velocity, rel=0.01)
-    assert abs(motion.residual_velocity) < 0.01 * motion.peak_velocity
-    assert 3 < motion.arias_intensity < 15
-
-
-def test_a_recorded_motion(contacts):
-    motion = mr.GroundMotion.from_sac(record("LA14")).scaled(0.25)
+def test_the_record_of_an_earthquake(contacts):
+    motion = mr.GroundMotion.from_sac(RECORDS / "near_a.sac").scaled(0.3)
     case = mr.Case(FIGURE_3, 0.0, 8.0, motion=motion)
     coarse, fine = (mr.simulate(case, contacts, accuracy=a, ledger=True) for a in (1e-3, 1e-4))
-    assert fine.theta.max() > 0.01 * FIGURE_3.alpha
+    assert fine.theta.max() > 0.05 * FIGURE_3.alpha
     assert coarse.theta.max() == pytest.approx(fine.theta.max(), rel=0.05)
     assert np.abs(fine.energy_residual).max() < 1e-3 * np.abs(fine.ledger.ground).max()
 
@@ -361,7 +170,10 @@ def test_ricker(antisymmetric, half, period):
         ("half_sine", (1.0, 200.0), "duration = 200 s"),
         ("half_sine", (1.0, 1.0, 1), "samples = 1"),
         ("ricker", (1.0, 0.001), "period = 0.001 s"),
-        ("ricker", (math.nan, 1.0), "not finite"),
+        ("ricker", (math.nan, 1.0), "amplitude = nan m/s2"),
+        ("ricker", (1.0, 100.0, False, 50), "samples = 50 is outside the valid range 100 to 1e"),
+        ("sine", (1.0, 0.01, 1.0, 5000), "samples = 5000 is outside the valid range 2 to 999"),
+        ("half_sine", (1.0, 1.0, 2.5), "samples = 2.5 is not a whole number"),
     ],
 )
 def test_pulses_that_cannot_be(pulse, arguments, complaint):

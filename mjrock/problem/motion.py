@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import pulses
-from .quantities import GRAVITY, Array, require_within
-from .records import Record, checked, parse_at2, parse_columns, parse_sac, read
+from .quantities import GRAVITY, Array, require_kind, require_within
+from .records import COARSEST, FINEST, Record, checked, parse_at2, parse_columns, parse_sac, read, reals
 from .resampling import resample
 
 SUSPICIOUS = 3 * GRAVITY
@@ -40,7 +40,7 @@ class GroundMotion:
         name: what it is called in tables and pictures.
 
     Raises:
-        ValueError: for a shape, a step or a value that cannot be.
+        TypeError, ValueError: for a shape, a step, a value or a name that cannot be.
 
     Warns:
         UserWarning: for a peak beyond 3 g, where the unit is probably another one. A motion from a file also warns for
@@ -52,6 +52,7 @@ class GroundMotion:
     name: str = field(default="ground motion", compare=False)
 
     def __init__(self, accel: ArrayLike, dt: float, name: str = "ground motion") -> None:
+        require_kind("name", name, str)
         for field_name, value in zip(("accel", "dt", "name"), (*checked(accel, dt), name), strict=True):
             object.__setattr__(self, field_name, value)
         if self.peak > SUSPICIOUS:
@@ -78,12 +79,12 @@ class GroundMotion:
 
     def __call__(self, t: float | Array) -> Array:
         """Acceleration at any time [m/s2]."""
-        return np.asarray(np.interp(t, self._times, self.accel, left=0.0, right=0.0))
+        return np.asarray(np.interp(_instants(t), self._times, self.accel, left=0.0, right=0.0))
 
     def velocity(self, t: ArrayLike) -> Array:
         """Integral of the acceleration from zero to any time, exact, constant after the last sample [m/s]."""
         steps = len(self.accel) - 1
-        positions = np.clip(np.asarray(t) / self.dt, 0, steps)
+        positions = np.clip(_instants(t) / self.dt, 0, steps)
         j = np.minimum(positions.astype(int), steps - 1)
         parts = positions - j
         means = self.accel[j] + 0.5 * parts * (self.accel[j + 1] - self.accel[j])
@@ -140,8 +141,9 @@ class GroundMotion:
         return self, self.reversed()
 
     def scaled(self, factor: float) -> GroundMotion:
-        """The motion with every acceleration times `factor`."""
-        return GroundMotion(factor * self.accel, self.dt, f"{self.name} x {factor:g}")
+        """The motion with every acceleration times `factor`, -1e6 to 1e6."""
+        accel = require_within("factor", factor, -1e6, 1e6) * self.accel
+        return GroundMotion(accel, self.dt, f"{self.name} x {factor:g}")
 
     def reversed(self) -> GroundMotion:
         """The motion of the other polarity."""
@@ -154,9 +156,9 @@ class GroundMotion:
         `mjrock.problem.resampling`.
 
         Raises:
-            ValueError: for a step below 1e-5 s, beyond 1 s, or beyond the duration of the motion.
+            ValueError: for a step below 1e-5 s, beyond 1 s or the duration, or that makes more than MOST_SAMPLES.
         """
-        require_within("time step dt", dt, 1e-5, min(1.0, self.duration), "s")
+        dt = require_within("time step dt", dt, FINEST, min(COARSEST, self.duration), "s")
         return GroundMotion(*resample(self.accel, self.dt, dt), f"{self.name} at {dt:g} s")
 
     @classmethod
@@ -165,7 +167,7 @@ class GroundMotion:
 
         Raises:
             OSError: if the file cannot be read.
-            ValueError: for another format, another number of samples than is stated, or what is no finite number.
+            ValueError: for another format or unit, another number of samples than is stated, or no finite number.
         """
         return cls._from_file(path, parse_at2)
 
@@ -173,7 +175,7 @@ class GroundMotion:
     def from_csv(cls, path: str | PathLike[str], unit: str, *, time_unit: str = "s") -> GroundMotion:
         """A record of two columns, time and acceleration, named after its file; its first row is time zero.
 
-        Commas, semicolons or white space set the columns apart; a header and lines that begin with #, % or // are
+        Commas, semicolons, or blanks and tabs set the columns apart; a header and lines that begin with #, % or // are
         skipped; between semicolons a comma is a decimal point.
 
         Args:
@@ -218,7 +220,7 @@ class GroundMotion:
         """A sine pulse of `amplitude` [m/s2] and `period` [s], `samples` to a cycle. A positive one starts inwards.
 
         Raises:
-            ValueError: for a period outside 0.01 to 100 s, cycles outside 0.5 to 1000, or fewer than 2 samples.
+            ValueError: for a period outside 0.01 to 100 s, cycles outside 0.5 to 1000, or steps outside 1e-5 to 1 s.
         """
         return cls(*pulses.sine(amplitude, period, cycles, samples), f"sine {amplitude:g} m/s2, {period:g} s")
 
@@ -227,7 +229,7 @@ class GroundMotion:
         """Half a sine of `amplitude` [m/s2] over `duration` [s], in `samples` steps. A positive one pushes inwards.
 
         Raises:
-            ValueError: for a duration outside 0.01 to 100 s, or fewer than 2 samples.
+            ValueError: for a duration outside 0.01 to 100 s, fewer than 2 samples, or steps outside 1e-5 to 1 s.
         """
         return cls(*pulses.half_sine(amplitude, duration, samples), f"half sine {amplitude:g} m/s2, {duration:g} s")
 
@@ -248,11 +250,11 @@ class GroundMotion:
         large lobe, or the first of its two, inwards. The small lobe before it, of 0.45 A or 0.27 A, goes outwards.
 
         Raises:
-            ValueError: for a period outside 0.01 to 100 s, or fewer than 10 samples.
+            ValueError: for a period outside 0.01 to 100 s, fewer than 10 samples, or steps outside 1e-5 to 1 s.
         """
+        record = pulses.ricker(amplitude, period, antisymmetric, samples)
         kind = "antisymmetric" if antisymmetric else "symmetric"
-        name = f"{kind} Ricker {amplitude:g} m/s2, {period:g} s"
-        return cls(*pulses.ricker(amplitude, period, antisymmetric, samples), name)
+        return cls(*record, f"{kind} Ricker {amplitude:g} m/s2, {period:g} s")
 
     @classmethod
     def synthetic(
@@ -276,7 +278,7 @@ class GroundMotion:
         Args:
             peak: largest |acceleration| [m/s2], 1e-3 to 100.
             duration: of the record, to the nearest step [s], 1 to 1000.
-            seed: of the phases, at least 0.
+            seed: of the phases, a whole number from 0 to 2**53.
             dt: time step [s], at most a quarter of the ground's period.
             ground_frequency, ground_damping: of the soil layer [Hz, -], 0.1 to 50 and 0.05 to 2.
             filter_frequency, filter_damping: of the high-pass [Hz, -], 0.01 to ground_frequency and 0.05 to 2.
@@ -286,15 +288,13 @@ class GroundMotion:
             ValueError: for a value outside its range.
         """
         record = pulses.synthetic(
-            peak,
-            duration,
-            seed=seed,
-            dt=dt,
-            ground_frequency=ground_frequency,
-            ground_damping=ground_damping,
-            filter_frequency=filter_frequency,
-            filter_damping=filter_damping,
-            rise=rise,
-            fall=fall,
+            peak, duration, seed, dt, ground_frequency, ground_damping, filter_frequency, filter_damping, rise, fall
         )
         return cls(*record, f"synthetic {peak:g} m/s2, seed {seed}")
+
+
+def _instants(t: ArrayLike) -> Array:
+    times = reals("t", t, "one or more times [s]")
+    if np.isnan(times).any():
+        raise ValueError("t holds nan; it takes one or more times [s]")
+    return times

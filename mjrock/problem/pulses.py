@@ -10,30 +10,46 @@ import math
 
 import numpy as np
 
-from .quantities import require_within
-from .records import Record
+from .quantities import require_flag, require_size, require_whole, require_within
+from .records import COARSEST, FINEST, Record
+
+LARGEST = 1e4
+"""Bound of the amplitude of a pulse [m/s2]."""
+
+
+def _amplitude(value: float) -> float:
+    return require_within("amplitude", value, -LARGEST, LARGEST, "m/s2")
+
+
+def _span(name: str, value: float) -> float:
+    return require_within(name, value, 1e-2, 100.0, "s")
+
+
+def _samples(value: int, span: float, least: int) -> int:
+    """The number of steps to a span [s], such that a step is one of a motion."""
+    return require_whole("samples", value, max(least, math.ceil(span / COARSEST)), math.floor(span / FINEST))
 
 
 def sine(amplitude: float, period: float, cycles: float, samples: int) -> Record:
     """A sine of `amplitude` [m/s2] and `period` [s] over a number of `cycles`, with `samples` to a cycle."""
-    require_within("period", period, 1e-2, 100.0, "s")
-    require_within("cycles", cycles, 0.5, 1e3)
-    require_within("samples", samples, 2, 1e6)
+    amplitude, period = _amplitude(amplitude), _span("period", period)
+    cycles, samples = require_within("cycles", cycles, 0.5, 1e3), _samples(samples, period, 2)
     count = math.ceil(cycles * samples)
+    require_size("the number of samples", count + 1, "choose fewer cycles or fewer samples to a cycle")
     t = cycles * period * np.arange(count + 1) / count
     return amplitude * np.sin(2 * np.pi * t / period), cycles * period / count
 
 
 def half_sine(amplitude: float, duration: float, samples: int) -> Record:
     """Half a sine of `amplitude` [m/s2] over `duration` [s], in `samples` steps."""
-    require_within("duration", duration, 1e-2, 100.0, "s")
-    require_within("samples", samples, 2, 1e6)
+    amplitude, duration = _amplitude(amplitude), _span("duration", duration)
+    samples = _samples(samples, duration, 2)
     return amplitude * np.sin(np.pi * np.arange(samples + 1) / samples), duration / samples
 
 
 def rectangular(amplitude: float, duration: float) -> Record:
     """A constant `amplitude` [m/s2] from zero to `duration` [s]."""
-    require_within("duration", duration, 1e-2, 100.0, "s")
+    amplitude, duration = _amplitude(amplitude), _span("duration", duration)
     steps = math.ceil(duration)
     return np.full(steps + 1, amplitude), duration / steps
 
@@ -50,8 +66,9 @@ def ricker(amplitude: float, period: float, antisymmetric: bool, samples: int) -
     (Vassiliou and Makris 2011). The symmetric one is given from -1.35 T to 1.35 T, the other from -1.75 T to 1.75 T.
     Less than 1e-6 A is left at these ends.
     """
-    require_within("period", period, 1e-2, 100.0, "s")
-    require_within("samples", samples, 10, 1e6)
+    amplitude, period = _amplitude(amplitude), _span("period", period)
+    samples = _samples(samples, period, 10)
+    require_flag("antisymmetric", antisymmetric)
     half = math.ceil((1.75 if antisymmetric else 1.35) * samples)
     t = np.arange(-half, half + 1) / samples
     u, s = np.pi * t, 2 * np.pi / math.sqrt(3) * t
@@ -62,7 +79,6 @@ def ricker(amplitude: float, period: float, antisymmetric: bool, samples: int) -
 def synthetic(
     peak: float,
     duration: float,
-    *,
     seed: int,
     dt: float,
     ground_frequency: float,
@@ -83,16 +99,19 @@ def synthetic(
     The sum is multiplied by a trapezoid that is linear over the shares `rise` and `fall` of the duration. A multiple
     of the trapezoid is subtracted so that the ground ends at rest. It may end displaced.
     """
-    require_within("peak", peak, 1e-3, 100.0, "m/s2")
-    require_within("duration", duration, 1.0, 1e3, "s")
-    require_within("ground_frequency", ground_frequency, 0.1, 50.0, "Hz")
-    require_within("ground_damping", ground_damping, 0.05, 2.0)
-    require_within("filter_frequency", filter_frequency, 0.01, ground_frequency, "Hz")
-    require_within("filter_damping", filter_damping, 0.05, 2.0)
-    require_within("time step dt", dt, 1e-5, 0.25 / ground_frequency, "s")
-    require_within("rise", rise, 0.01, 0.99)
-    require_within("fall", fall, 0.01, 1 - rise)
+    peak = require_within("peak", peak, 1e-3, 100.0, "m/s2")
+    duration = require_within("duration", duration, 1.0, 1e3, "s")
+    seed = require_whole("seed", seed, 0, 2**53)
+    ground_frequency = require_within("ground_frequency", ground_frequency, 0.1, 50.0, "Hz")
+    ground_damping = require_within("ground_damping", ground_damping, 0.05, 2.0)
+    filter_frequency = require_within("filter_frequency", filter_frequency, 0.01, ground_frequency, "Hz")
+    filter_damping = require_within("filter_damping", filter_damping, 0.05, 2.0)
+    dt = require_within("time step dt", dt, FINEST, min(COARSEST, 0.25 / ground_frequency), "s")
+    rise = require_within("rise", rise, 0.01, 0.99)
+    fall = require_within("fall", fall, 0.01, 1 - rise)
     steps = round(duration / dt)
+    remedy = "choose a shorter duration or a longer dt"
+    require_size(f"the number of samples of {duration:g} s at dt = {dt:g} s", steps + 1, remedy)
     x, y = (np.fft.rfftfreq(steps, dt) / f for f in (ground_frequency, filter_frequency))
     soil = (1 + (2 * ground_damping * x) ** 2) / ((1 - x**2) ** 2 + (2 * ground_damping * x) ** 2)
     high_pass = y**4 / ((1 - y**2) ** 2 + (2 * filter_damping * y) ** 2)

@@ -1,4 +1,4 @@
-"""Rocking theory against MuJoCo under recorded earthquakes: single histories part, distributions may not."""
+"""Rocking theory against MuJoCo under earthquakes: single histories part, distributions may not."""
 
 import csv
 from pathlib import Path
@@ -10,16 +10,14 @@ from scipy.stats import ks_2samp
 import agreement
 import suite
 
-RECORDS = Path(__file__).parents[3] / "shared" / "records"
+RECORDS = Path(__file__).parents[1] / "records"
 
 
 @pytest.mark.slow
 def test_outcomes_and_distributions(tmp_path):
-    if not RECORDS.is_dir():
-        pytest.skip(f"the recorded ground motions are not at {RECORDS.name}")
     agreement.main(["--records", str(RECORDS), "--out", str(tmp_path)])
     with open(tmp_path / "agreement.csv") as file:
-        rows = list(csv.DictReader(file))
+        rows = [row for row in csv.DictReader(file) if float(row["k_n"]) in (0.0, suite.STIFF)]
     theory, mujoco = ([row for row in rows if row["solver"] == solver] for solver in suite.SOLVERS)
     assert len(theory) == len(mujoco) >= 200
     same = np.mean([suite.verdict(a) == suite.verdict(b) for a, b in zip(theory, mujoco, strict=True)])
