@@ -40,6 +40,8 @@ AT2_UNIT = re.compile(
 AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}\s*(s|sec|seconds)?[\s.,]*", AS_ASCII)
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
 SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
+BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
+"""A control character, which could hide a row at the end of a header or comment."""
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
 DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 """A line of columns whose first letter or digit is a digit of any script, so that a damaged number is no header."""
@@ -154,13 +156,16 @@ def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> Record:
     semicolons a comma is a decimal point.
 
     Raises:
-        ValueError: for an unknown unit, another number of columns, something that is no number, or uneven times.
+        ValueError: for an unknown unit, another number of columns, something that is no number, a control character,
+            or uneven times.
     """
     scale, time_scale = _factor("unit", unit, UNITS), _factor("time_unit", time_unit, TIME_UNITS)
     rows: list[list[float]] = []
     places: list[int] = []
     for place, line in enumerate(lines, 1):
         if COMMENT.match(line) or not (rows or DATA.match(line)):
+            if hidden := BREAK.search(line):
+                raise ValueError(f"line {place} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
             continue
         row = _columns(line)
         if len(row) != 2:

@@ -36,6 +36,14 @@ def test_a_damaged_first_row_is_no_header(tmp_path, damage):
         READ["csv"](written(tmp_path / "a.csv", f"time,accel\n{damage}\n0.01,2\n0.02,3\n"))
 
 
+@pytest.mark.parametrize("character", ["\x0b", "\x0c", "\x1a", "\x1e", "\x85", "\u2028", "\u2029"])
+@pytest.mark.parametrize("text", ["time,accel", "# filtered"])
+def test_a_row_does_not_hide_behind_a_control_character(tmp_path, text, character):
+    path = written(tmp_path / "a.csv", f"{text}{character}0.00,1\n0.01,2\n0.02,3\n")
+    with pytest.raises(ValueError, match=r"a\.csv: line 1 has a '.*'; only CR, LF and CR LF end a line"):
+        READ["csv"](path)
+
+
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 @pytest.mark.parametrize("last", ["", "\x1a"])
 @FORMATS
@@ -114,7 +122,9 @@ def test_an_empty_file(tmp_path, ending, content):
 ])  # fmt: skip
 @FORMATS
 def test_a_file_of_another_format(tmp_path, ending, content):
-    with pytest.raises(ValueError, match=rf"a\.{ending}: .*(not an AT2 file|not the plain text of a SAC|needed)"):
+    with pytest.raises(
+        ValueError, match=rf"a\.{ending}: .*(not an AT2 file|not the plain text of a SAC|needed|only CR)"
+    ):
         READ[ending](written(tmp_path / f"a.{ending}", content))
 
 
