@@ -57,8 +57,8 @@ class Steps:
 
     @property
     def widths(self) -> Array:
-        """Lengths of the windows, from seam to seam, zero for the last [s], shape (steps,)."""
-        return np.append(np.diff(self.seams), 0.0)
+        """Lengths of the windows, from seam to seam, the last as long as its step [s], shape (steps,)."""
+        return np.append(np.diff(self.seams), self.h[-1])
 
 
 class Record(NamedTuple):

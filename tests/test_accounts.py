@@ -1,0 +1,148 @@
+"""The accounts of dashpots, friction and the ground, against MuJoCo's own forces and against closed forms."""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pytest
+from scenes import two_blocks
+
+import mjrock as mr
+from mjrock.engine import run as engine_run
+from mjrock.engine.accounts import ledger
+from mjrock.engine.kinematics import gaps
+from mjrock.engine.mjcf import pair_rows
+from mjrock.engine.model import engine_of, released_mjcf
+from mjrock.engine.stepping import fixed_steps
+from mjrock.engine.wall import wall_scene
+
+SQUAT = mr.Block.from_size(2.0, 2.0)
+"""A block that slides before it rocks."""
+
+
+def taken_by_the_engine(model, data, scene, given, before, after, h):
+    """Work that friction and the dashpots take in a step by MuJoCo's own forces and Jacobians [J], shape (2, m).
+
+    Friction takes the work of the tangential forces along the slip, and that of what a sliding cone presses on top of
+    the normal row f = -(k r + c v + m_i a). The dashpots take the rest of the normal row but for the spring's
+    k (r + beta h^2 a), and where the row does not press what its spring has `given` in the step [J], shape (m,).
+    """
+    jacobian, taken = np.reshape(data.efc_J, (data.nefc, model.nv)), np.array([np.zeros_like(given), given])
+    mean, acceleration = jacobian @ (0.5 * (before + after)), jacobian @ (after - before) / h
+    for contact in data.contact:
+        i = next(i for i in range(model.npair) if {model.pair_geom1[i], model.pair_geom2[i]} == set(contact.geom))
+        row, last = contact.efc_address, contact.efc_address + contact.dim
+        law = max(0.0, (data.efc_aref[row] - acceleration[row]) / data.efc_R[row])
+        taken[0, i] = -(data.efc_force[row:last] @ mean[row:last] - law * mean[row]) * h
+        spring = -scene.k[i] * (contact.dist + 0.25 * h**2 * acceleration[row])
+        if law > 0:
+            taken[1, i] = (spring - law) * mean[row] * h
+    return taken
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.7])
+def test_the_accounts_are_the_work_of_the_engines_forces(friction):
+    """Two blocks on soft joints that slide, stick, press and open: every step of both accounts, contact by contact.
+
+    Each contact is a group of its own. The joints are so soft that friction acts centimetres from the points.
+    """
+    h, blocks = 2e-4, two_blocks(k_n=5e6, friction=friction, xi=0.05)
+    names = tuple(f"line {i}" for i in range(4))
+    parts = {one.name: getattr(blocks, one.name) for one in dataclasses.fields(blocks)}
+    scene = mr.Scene(**parts | {"group": names})
+    thrown = np.array([[0.3, -0.1, 0.2], [1.0, -0.2, -0.4]])
+    scene = scene.released(scene.at_rest, thrown, 0.2, None)
+    with engine_of(scene) as engine:
+        engine.follow(h, pair_rows(scene, h, 0.25))
+        engine.release(scene.started)
+        steps = fixed_steps(engine, scene, h, 0.25)
+    books = ledger(scene, steps)
+    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, h))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    springs = 0.5 * scene.k * np.minimum(gaps(scene.points, steps.pose - 0.5 * h * steps.before), 0) ** 2
+    exact = np.zeros((len(steps.t) - 1, 2, 4))
+    for n in range(len(exact)):
+        before = data.qvel.copy()
+        mujoco.mj_step(model, data)
+        exact[n] = taken_by_the_engine(model, data, scene, springs[n] - springs[n + 1], before, data.qvel, h)
+    largest = np.abs(exact).max(axis=(0, 2))
+    np.testing.assert_allclose(np.diff(books.friction), exact[:, 0].sum(axis=1), rtol=0, atol=1e-6 * largest[0])
+    for i, name in enumerate(names):
+        np.testing.assert_allclose(np.diff(books.dashpots[name]), exact[:, 1, i], rtol=0, atol=1e-6 * largest[1])
+
+
+def test_a_thrown_block_stops_after_v2_over_2_mu_g():
+    """Friction takes m v^2/2 = mu m g s, and at every time before mu m g (v t - mu g t^2/2).
+
+    The jolt with which friction sets in rocks the block on its springs, which moves half a percent for a while.
+    """
+    mu, speed = 0.2, 1.0
+    contacts = mr.Contacts.from_damping(SQUAT, k_base=5e8, xi_base=0.05, friction=mu)
+    case = mr.Case(SQUAT, 0.0, 0.7, side_stop=False)
+    start = wall_scene(case, contacts).at_rest, np.array([[speed, 0.0, 0.0]])
+    run = mr.simulate(case, contacts, 1e-4, start=start, ledger=True)
+    t = np.minimum(run.ledger.t, speed / (mu * mr.GRAVITY))
+    exact = mu * SQUAT.weight * (speed * t - 0.5 * mu * mr.GRAVITY * t**2)
+    assert exact[-1] == pytest.approx(0.5 * SQUAT.mass * speed**2)
+    np.testing.assert_allclose(run.ledger.friction, exact, rtol=0, atol=6e-3 * exact[-1])
+    assert run.ledger.friction[-1] == pytest.approx(exact[-1], rel=2e-4)
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-4])
+def test_the_ledger_closes_for_a_block_that_a_pulse_slides(accuracy):
+    """Friction takes nearly all that the ground puts in, and the residual is a small share of it."""
+    contacts = mr.Contacts.from_damping(SQUAT, k_base=5e8, xi_base=0.05, friction=0.3)
+    motion = mr.GroundMotion.sine(-6.0, 0.5)
+    run = mr.simulate(
+        mr.Case(SQUAT, 0.0, 1.0, side_stop=False, motion=motion), contacts, accuracy=accuracy, ledger=True
+    )
+    taken = run.ledger.friction[-1]
+    assert taken > 0.99 * run.ledger.ground[-1] > 1000.0
+    assert np.abs(run.energy_residual).max() < 0.2 * np.sqrt(accuracy) * taken
+
+
+def own_energy(monkeypatch, *arguments, **options):
+    """The energy that a run is checked with, less what the ground has put in [J], and the run."""
+    seen, honest = [], engine_run.energy_gain
+    monkeypatch.setattr(
+        engine_run, "energy_gain", lambda times, t, energy: seen.append(energy) or honest(times, t, energy)
+    )
+    run = mr.simulate(*arguments, **options)
+    return seen[-1], run
+
+
+def test_on_ice_a_pushed_block_has_the_energy_that_was_put_in(monkeypatch):
+    """Under a constant push the mean of the two half-step velocities is exact.
+
+    At a pose half the work of its window has been done, so that nothing is left of the energy but a^2 h^2 m / 8 of the
+    leapfrog. All the work of the window would leave m a v h / 2, which is a thousand times more.
+    """
+    h, a = 1e-3, 2.0
+    contacts = mr.Contacts.from_damping(SQUAT, k_base=5e8, xi_base=0.05, friction=0.0)
+    motion = mr.GroundMotion([-a, -a], 1.0)
+    case = mr.Case(SQUAT, 0.0, 0.5, side_stop=False, motion=motion)
+    own, run = own_energy(monkeypatch, case, contacts, h)
+    assert run.energy[-1] == pytest.approx(0.5 * SQUAT.mass * (a * run.t[-1]) ** 2, rel=1e-3)
+    assert np.abs(own - own[0]).max() < 1.01 * SQUAT.mass * (a * h) ** 2 / 8 + 1e-9 * run.energy[-1]
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01])
+def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
+    """ENERGY_GAIN of the energy of release and of the work of the ground without its sign, or of uplift at least."""
+    ice = mr.Contacts.from_damping(SQUAT, k_base=5e8, xi_base=0.05, friction=0.0)
+    motion = mr.GroundMotion([-2.0, -2.0, 2.0, 2.0], 0.1)
+    shaken, still = mr.Case(SQUAT, 0.0, 0.2, side_stop=False, motion=motion), mr.Case(SQUAT, 0.0, 0.2, side_stop=False)
+    slid = mr.simulate(shaken, ice, 1e-3).energy  # the push speeds the block up and slows it down again
+    for case, made_of, most in (
+        (two_sided, contacts, mr.simulate(two_sided, contacts, 1e-3).energy[0]),
+        (shaken, ice, 2 * slid.max() - slid[-1]),
+        (still, ice, ice.uplift_energy(SQUAT)),
+    ):
+        gain = share * engine_run.ENERGY_GAIN * most
+        monkeypatch.setattr(engine_run, "energy_gain", lambda *_, gain=gain: (gain, 0.1))
+        if share < 1:
+            mr.simulate(case, made_of, 1e-3)
+        else:
+            with pytest.raises(mr.SimulationError, match=f"{share * engine_run.ENERGY_GAIN:.2%} of the energy"):
+                mr.simulate(case, made_of, 1e-3)
