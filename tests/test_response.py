@@ -2,7 +2,11 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.engine.kinematics import gaps
+from mjrock.engine.wall import wall_scene
 from mjrock.result.history import peak_energies, restitution_of, rocking_history
+from mjrock.result.response import ending
+from paper import K_N
 
 
 def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):
@@ -89,3 +93,40 @@ def test_a_response_prints_short_and_compares(one_sided, contacts, e):
     assert len(repr(theory)) < 120
     book = mr.simulate(one_sided, contacts, ledger=True).ledger
     assert repr(book).startswith("<Ledger over 3 s [J]: at the end held -")
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_wall_rests_while_its_energy_lifts_no_edge(wall, share):
+    """On springs without dashpots, tilted to just below or above the rotation of uplift, and let go.
+
+    Its energy is then share^2 of the energy of uplift, of which two edges that both stick take next to nothing. Just
+    below, both edges stay pressed and the wall is at rest. Just above, an edge has lifted and it rocks.
+    """
+    undamped = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.0)
+    case = mr.Case(wall, share * undamped.uplift_rotation(wall), 2.0, side_stop=False)
+    for run in (mr.simulate(case, undamped, 2e-4), mr.simulate(case, undamped)):
+        assert run.outcome is (mr.Outcome.AT_REST if share < 1 else mr.Outcome.TIME_ENDED)
+        lifted = gaps(wall_scene(case, undamped).points, run.pose[:, 0]).max()
+        assert bool(lifted > 0) is (share > 1)
+        if share < 1:
+            np.testing.assert_allclose(run.energy, share**2 * undamped.uplift_energy(wall), rtol=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("energy", "theta", "outcome"),
+    [
+        (0.999, 0.0, mr.Outcome.AT_REST),
+        (1.001, 0.0, mr.Outcome.TIME_ENDED),
+        (1.001, 0.999, mr.Outcome.TIME_ENDED),
+        (1.001, -0.999, mr.Outcome.TIME_ENDED),
+        (1.001, 1.001, mr.Outcome.OVERTURNED),
+        (-9.0, -1.001, mr.Outcome.OVERTURNED),  # what has fallen has lost energy, and does not rest
+    ],
+)
+def test_the_end_is_judged_by_the_last_sample(two_sided, wall, energy, theta, outcome):
+    """Energy in shares of that of uplift, rotation in shares of alpha; what was before the last sample is no matter."""
+    t, uplift = np.array([0.0, 1.0, 2.0]), 3.0
+    last = np.array([5.0, 0.0, energy]) * uplift, np.array([0.0, 0.5, theta]) * wall.alpha
+    found, message = ending(two_sided, t, last[1], last[0], uplift)
+    assert found is outcome
+    assert "2 s" in message

@@ -1,15 +1,17 @@
 import math
+import warnings
 
 import numpy as np
 import pytest
 
 import mjrock as mr
 from mjrock.engine import run as engine_run
+from mjrock.engine.contact import OVERDAMPED
 from mjrock.engine.kinematics import gaps
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import short_step
-from mjrock.engine.stepping import fitted_steps
+from mjrock.engine.stepping import fitted_steps, fixed_steps
 from paper import FIGURE_3, K_N
 
 
@@ -68,6 +70,36 @@ def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
     speed = (top[first] - top[first - 1]) / steps.h[first - 1]
     assert steps.h[first] == h
     assert top[first] / speed == pytest.approx(0.5 * h, rel=0.02)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.9, 1.1, 30.0])
+def test_a_dashpot_at_a_fixed_step_is_that_of_its_row(wall, share):
+    """A wall that moves straight down on its base, with dashpots of a share of OVERDAMPED, against m a = 2 f.
+
+    f = -(k r + c v + m_i a) of each of the two rows, with m_i = h^2 k / 4 + h c / 2, or + h c for a stiff dashpot. A
+    stiff dashpot then takes c h / m of the velocity that is left, and never turns it round.
+    """
+    h, v = 1e-3, 0.01
+    bare = mr.Contacts.from_damping(wall, k_base=1e8, xi_base=0.0)
+    k, weight, rest = bare.base.stiffness[0], 2 / (3 * wall.mass), -wall.weight / bare.base.stiffness.sum()
+    c = share * OVERDAMPED / (h * weight)
+    xi = 0.5 * c / k * bare.base.frequency
+    with warnings.catch_warnings(action="ignore"):
+        contacts = mr.Contacts.from_damping(wall, k_base=1e8, xi_base=xi)
+    assert contacts.base.damping[0] == pytest.approx(c)
+    scene = mr.wall_scene(mr.Case(wall, 0.0, 0.03, side_stop=False), contacts)
+    with engine_of(scene) as engine:
+        engine.follow(h, pair_rows(scene, h, 0.25))
+        engine.release((scene.at_rest, np.array([[0.0, -v, 0.0]])))
+        steps = fixed_steps(engine, scene, h, 0.25)
+    inertia = 0.25 * h**2 * k + (0.5 if share < 1 else 1.0) * h * c
+    z, velocity = rest, steps.before[0, 1]
+    for n in range(len(steps.t)):
+        assert steps.pose[n, 1] == pytest.approx(z, abs=1e-9 * v * h)
+        velocity += h * 2 * (-k * (z - rest) - c * velocity) / (wall.mass + 2 * inertia)
+        z += h * velocity
+        assert steps.after[n, 1] == pytest.approx(velocity, abs=1e-8 * v)
+    assert 0.5 * (steps.before[0, 1] + steps.after[0, 1]) == pytest.approx(-v, rel=1e-3)
 
 
 def test_steps_follow_the_contacts_not_the_wall(two_sided, contacts):

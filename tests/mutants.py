@@ -1,0 +1,181 @@
+"""Mutation test of the physics: changes one operator or number at a time and asks whether the tests notice.
+
+    python tests/mutants.py --count 60 --seed 1
+    python tests/mutants.py touches.py "accounts.py:9"
+
+The package, the tests and the scripts are copied to a temporary folder. One mutant after the other is written there,
+and the tests run on it until the first fails. They run in two rounds. The first is of plain Python: the compiled loops
+would take some six seconds to compile for each mutant, and most mutants fail within two. What survives runs the tests
+that make many steps with the loops compiled, which takes some twenty seconds. The exit code is 1 if a mutant survives
+that is not in EQUIVALENT.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[1]
+ENGINE = ("contact", "kinematics", "accounts", "pace", "touches", "sticking", "ground", "loop", "run")
+MODULES = (*(f"engine/{name}.py" for name in ENGINE), "result/history.py")
+ROUNDS = (
+    ("1", ("kinematics", "contact", "scene", "ties_and_forces")),
+    ("0", ("kinematics", "response", "ledger", "stepping", "simulation", "inset", "hard_cases")),
+)
+"""What NUMBA_DISABLE_JIT is, and the tests that run, in each round."""
+LONGEST = 240
+"""Longest time of a round [s]. A mutant that hangs is noticed."""
+SWAPPED = {
+    **{ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")},
+    **{ast.Lt: ("<", "<="), ast.LtE: ("<=", ">"), ast.Gt: (">", "<"), ast.GtE: (">=", ">")},
+    **{ast.Eq: ("==", "!="), ast.NotEq: ("!=", "==")},
+}
+"""Operators, as they are written and what takes their place."""
+EQUIVALENT: dict[str, str] = {}
+"""Mutants that no test can notice, by module and changed line, and why."""
+
+
+class Mutant(NamedTuple):
+    """A change of a module: bytes `start` to `stop` of its text are replaced."""
+
+    module: str
+    start: int
+    stop: int
+    replacement: bytes
+
+    def applied(self) -> bytes:
+        """The text of the module with the change."""
+        text = (ROOT / "mjrock" / self.module).read_bytes()
+        return text[: self.start] + self.replacement + text[self.stop :]
+
+    def lines(self) -> tuple[int, str, str]:
+        """Number of the line, and the line before and after the change."""
+        text = (ROOT / "mjrock" / self.module).read_bytes()
+        number = text.count(b"\n", 0, self.start)
+        return number + 1, *(source.decode().splitlines()[number].strip() for source in (text, self.applied()))
+
+    def __str__(self) -> str:
+        number, before, after = self.lines()
+        return f"mjrock/{self.module}:{number}: {before}  ->  {after}"
+
+    @property
+    def known(self) -> str | None:
+        """Why no test can notice it, or None."""
+        return EQUIVALENT.get(f"{Path(self.module).name}: {self.lines()[2]}")
+
+
+def doubled(value: float) -> float:
+    """Another number: twice it, a half of a half, one for zero."""
+    return {0: 1, 0.5: 0.25}.get(value, 2 * value)
+
+
+def mutants_of(module: str) -> Iterator[Mutant]:
+    """Every mutant of a module, but for indices, annotations and what an error says."""
+    text = (ROOT / "mjrock" / module).read_bytes()
+    starts = [0]
+    for line in text.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+
+    def begin(node: ast.AST) -> int:
+        return starts[node.lineno - 1] + node.col_offset
+
+    def end(node: ast.AST) -> int:
+        return starts[node.end_lineno - 1] + node.end_col_offset
+
+    def operator(kind: ast.AST, left: ast.AST, right: ast.AST) -> Iterator[Mutant]:
+        if type(kind) in SWAPPED:
+            before, after = SWAPPED[type(kind)]
+            at = text.index(before.encode(), end(left), begin(right))
+            yield Mutant(module, at, at + len(before), after.encode())
+
+    def visit(node: ast.AST) -> Iterator[Mutant]:
+        match node:
+            case ast.BinOp(left=left, op=op, right=right):
+                yield from operator(op, left, right)
+            case ast.Compare(left=left, ops=ops, comparators=others):
+                for kind, one, other in zip(ops, [left, *others], others, strict=False):
+                    yield from operator(kind, one, other)
+            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+                yield Mutant(module, begin(node), end(node), repr(doubled(value)).encode())
+            case ast.Call(func=ast.Name(id="min" | "max" as name) as func):
+                yield Mutant(module, begin(func), end(func), b"max" if name == "min" else b"min")
+            case ast.UnaryOp(op=ast.Not()):
+                yield Mutant(module, begin(node), begin(node) + len("not "), b"")
+            case ast.AugAssign():
+                yield Mutant(module, begin(node), end(node), b"pass")
+        for name, value in ast.iter_fields(node):
+            if name in ("annotation", "returns", "slice", "decorator_list") or isinstance(node, ast.Raise):
+                continue
+            for child in value if isinstance(value, list) else [value]:
+                if isinstance(child, ast.AST):
+                    yield from visit(child)
+
+    return visit(ast.parse(text))
+
+
+def survives(folder: Path, mutant: Mutant | None) -> bool:
+    """Whether all tests pass on a mutant, or on the package as it is."""
+    if mutant is not None:
+        target = folder / "mjrock" / mutant.module
+        target.write_bytes(mutant.applied())
+    try:
+        return all(passes(folder, jit, names) for jit, names in ROUNDS)
+    finally:
+        if mutant is not None:
+            target.write_bytes((ROOT / "mjrock" / mutant.module).read_bytes())
+
+
+def passes(folder: Path, no_jit: str, names: tuple[str, ...]) -> bool:
+    """Whether the tests of a round pass in a folder."""
+    tests = [f"tests/test_{name}.py" for name in names]
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", *tests]
+    setting = os.environ | {"NUMBA_DISABLE_JIT": no_jit, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(folder)}
+    try:
+        done = subprocess.run(command, cwd=folder, env=setting, capture_output=True, timeout=LONGEST, check=False)
+    except subprocess.TimeoutExpired:
+        return False
+    return done.returncode == 0
+
+
+def main() -> int:
+    """Run the mutants that are asked for, and name the survivors."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("match", nargs="*", help="only mutants whose description holds one of these texts")
+    parser.add_argument("--count", type=int, default=40, help="how many are drawn (0 for all)")
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    every = [mutant for module in MODULES for mutant in mutants_of(module)]
+    chosen = [one for one in every if any(text in str(one) for text in options.match or [""])]
+    if 0 < options.count < len(chosen):
+        chosen = random.Random(options.seed).sample(chosen, options.count)
+    drawn = [one for one in chosen if one.known is None]
+    print(f"{len(every)} mutants, {len(chosen)} drawn, {len(chosen) - len(drawn)} of them known to change nothing")
+    survivors = 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for part in ("mjrock", "tests", "scripts", "models"):
+            shutil.copytree(ROOT / part, folder / part)
+        shutil.copy(ROOT / "pyproject.toml", folder)
+        if not survives(folder, None):
+            sys.exit("the tests fail without any change")
+        for number, mutant in enumerate(drawn, 1):
+            if survives(folder, mutant):
+                survivors += 1
+                print(f"survived: {mutant}", flush=True)
+            elif number % 10 == 0:
+                print(f"{number} of {len(drawn)}", flush=True)
+    print(f"{survivors} of {len(drawn)} survived")
+    return int(survivors > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

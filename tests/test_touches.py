@@ -1,0 +1,91 @@
+"""Single steps that fit the motion: a block slides on ice towards its side stop."""
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.engine.ground import Ground
+from mjrock.engine.kinematics import gaps
+from mjrock.engine.loop import Clock, State, fitted_loop
+from mjrock.engine.mjcf import pair_rows
+from mjrock.engine.model import engine_of
+from mjrock.engine.pace import Pace
+from mjrock.engine.steps import Record
+from mjrock.engine.sticking import Joints
+from mjrock.engine.touches import ABRUPT, FADED, Springs
+from mjrock.engine.wall import wall_scene
+
+BLOCK = mr.Block.from_size(2.0, 2.0)
+ACCURACY, SPEED = 1e-3, 0.5
+
+
+@pytest.fixture(scope="module")
+def ice():
+    """The block on a base without friction, a metre before a side stop that has none either."""
+    contacts = mr.Contacts.from_damping(
+        BLOCK, k_base=5e8, xi_base=0.05, k_side=3e8, xi_side=0.02, friction=0.0, side_friction=0.0
+    )
+    return wall_scene(mr.Case(BLOCK, 0.0, 1.0), contacts)
+
+
+def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False):
+    """The clock after a step of the block, `away` from the stop and moving towards it, and the step itself.
+
+    The pace allows the step h, as long as the last. The acceleration in the last step was zero.
+    """
+    pace, start = Pace.of(scene, ACCURACY), scene.at_rest + [away, 0.0, 0.0]
+    ties = scene.ties._replace(reach=np.array(scene.ties.reach))
+    with engine_of(scene) as engine:
+        engine.follow(h, pair_rows(scene, h, 0.25))
+        engine.release((start, np.array([[-SPEED, 0.0, 0.0]])))
+        engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
+        state, record = State.of(engine.memory, Springs.of(scene.points, ties)), Record.of(1, 3)
+        state.acceleration[:], state.closed[:] = 0.0, gaps(scene.points, start)[0] < 0
+        before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
+        joints, ground = Joints.of_scene(scene), Ground.of(None)
+        after, n = fitted_loop(
+            *(engine.memory, scene.points, ties, scene.masses, ground, pace, joints, state, before, record, 1.0)
+        )
+    assert n == 1
+    return after, record
+
+
+@pytest.mark.parametrize("share", [0.1, 0.9])
+def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
+    """The block arrives after a share of the step that the pace allows; a step that does not arrive is left alone."""
+    short = Pace.of(ice, ACCURACY).short
+    for h in (short, 4 * short):
+        after, record = one_step(ice, share * h * SPEED, h)
+        assert (after.touches, after.h, after.calm, after.fresh) == (1, short, 0, True)
+        assert record.h[0] == after.last == after.t == pytest.approx(share * h + 0.5 * short, rel=1e-9)
+        after, record = one_step(ice, 1.1 * h * SPEED, h)
+        assert (after.touches, record.h[0], after.fresh) == (0, h, False)
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_a_faint_touch_is_not_met(ice, share):
+    """It is met where noticing it a step h late misplaces more than FADED accuracy x energy in one of the contacts.
+
+    That is k (v h)^2 / 4 in the spring and c h v^2 in the dashpot.
+    """
+    h = 2 * Pace.of(ice, ACCURACY).short
+    misplaced = (0.25 * ice.k[-1] * h + ice.c[-1]) * h * SPEED**2
+    after, _ = one_step(ice, 0.5 * h * SPEED, h, share * misplaced / (FADED * ACCURACY))
+    assert after.touches == (1 if share < 1 else 0)
+
+
+def test_no_touch_is_predicted_from_an_abrupt_step(ice):
+    """A dashpot that has just thrown the velocity about says nothing of where the next step leads."""
+    h = 2 * Pace.of(ice, ACCURACY).short
+    after, record = one_step(ice, 0.5 * h * SPEED, h, abrupt=True)
+    assert (after.touches, record.h[0]) == (0, h)
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
+    """The stop takes a share of ABRUPT of the speed of the last touch in one step. Speeds weigh with the masses."""
+    h = Pace.of(ice, ACCURACY).short
+    _, record = one_step(ice, -1e-4, h)
+    change = ice.masses @ (record.after[0] - record.before[0]) ** 2
+    after, _ = one_step(ice, -1e-4, h, change / (share * ABRUPT) ** 2)
+    assert bool(after.abrupt) is (share > 1)
