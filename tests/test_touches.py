@@ -33,7 +33,7 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
 
     The pace allows the step h, as long as the last. The acceleration in the last step was zero.
     """
-    pace, start = Pace.of(scene, ACCURACY), scene.at_rest + [away, 0.0, 0.0]
+    pace, start = Pace.of(scene, ACCURACY), scene.at_rest + np.array([away, 0.0, 0.0])
     ties = scene.ties._replace(reach=np.array(scene.ties.reach))
     with engine_of(scene) as engine:
         engine.follow(h, pair_rows(scene, h, 0.25))

@@ -11,8 +11,8 @@ from typing import Any
 
 from tqdm import tqdm
 
-from .runner import Runner, processes
 from .fingerprint import fingerprint
+from .runner import Runner, processes
 from .store import Store
 from .task import VERSION, Row, Task, carry_out
 

@@ -154,7 +154,9 @@ class Store:
     def close(self) -> None:
         """Close the file."""
         if hasattr(self, "_rows"):
-            with contextlib.suppress(sqlite3.Error):  # every row is committed; the journal is taken up at the next opening
+            with contextlib.suppress(
+                sqlite3.Error
+            ):  # every row is committed; the journal is taken up at the next opening
                 self._rows.close()
         if self._lock is not None:
             self._lock.release()
