@@ -64,4 +64,7 @@ def run(main: Callable[[Sequence[str] | None], None]) -> int:
     except (ValueError, OSError, RuntimeError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt as error:
+        print(f"interrupted: {error}", file=sys.stderr)
+        return 130
     return 0

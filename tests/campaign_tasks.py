@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,3 +35,29 @@ class Square:
             with open(marks / f"done-{self.number}", "a") as file:
                 file.write("x")
         return {"square": self.number**2}
+
+
+@dataclass(frozen=True)
+class Misbehave:
+    """A task that does what its kind says."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ("answer",)
+
+    kind: object
+    labels: dict = field(default_factory=dict, compare=False)
+
+    def __call__(self, history=None):
+        if self.kind == "exit":
+            sys.exit("enough")
+        if self.kind == "interrupt":
+            raise KeyboardInterrupt("by the task")
+        if self.kind == "generator":
+            raise GeneratorExit
+        if self.kind == "columns":
+            return {"answer": 1, "other": 2}
+        if self.kind == "list":
+            return {"answer": [1, 2]}
+        if self.kind == "sleep":
+            Path(f"{history}.{os.getpid()}.partial").write_text("half") if history else None
+            time.sleep(20)
+        return {"answer": 42}

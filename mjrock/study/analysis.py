@@ -41,8 +41,11 @@ class Analysis:
         options: keyword arguments of the solver, such as `accuracy`, `timestep` or `rtol`.
         labels: columns that tell the user which case it is: text, numbers.
 
+    Options and labels are copied: what happens to the mappings given does not reach the analysis.
+
     Raises:
         ValueError: for a solver or an option that there is not, or if `e` or `contacts` are missing.
+        TypeError: for an argument of another type.
     """
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
@@ -66,6 +69,15 @@ class Analysis:
     labels: Mapping[str, object] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
+        for name, kind in (("case", Case), ("e", Restitution), ("contacts", Contacts)):
+            value = getattr(self, name)
+            if not isinstance(value, kind) and (value is not None or name == "case"):
+                raise TypeError(f"{name} = {value!r} is no {kind.__name__}")
+        for name in ("options", "labels"):
+            value = getattr(self, name)
+            if not isinstance(value, Mapping):
+                raise TypeError(f"{name} = {value!r} is no mapping of names to values")
+            object.__setattr__(self, name, dict(value))
         if self.solver not in SOLVERS:
             raise ValueError(f"solver = {self.solver!r} is none of {', '.join(SOLVERS)}")
         needed = "e" if self.solver == "analytical" else "contacts"
@@ -76,7 +88,9 @@ class Analysis:
         valid = OPTIONS[self.solver]
         unknown = self.options.keys() - set(valid)
         if unknown:
-            raise ValueError(f"{self.solver} has no option {', '.join(sorted(unknown))}; it has {', '.join(valid)}")
+            raise ValueError(
+                f"{self.solver} has no option {', '.join(sorted(map(str, unknown)))}; it has {', '.join(valid)}"
+            )
 
     def solve(self) -> Response:
         """The response."""

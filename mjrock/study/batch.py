@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from ..engine.simulation import simulate_batch
 from ..result.response import Response
 from .analysis import Analysis
 from .fingerprint import fingerprint
-from .task import Row, Task, failed_row
+from .task import Row, Task, carry_out_all, checked_row, failed_row
 
 BATCH = 8
 """Fixed-step runs that each thread takes up in one batch."""
@@ -36,12 +37,12 @@ def batch_rows(batch: Sequence[tuple[Task, Path | None]]) -> tuple[list[Row], fl
     started = time.perf_counter()
     try:
         answers = simulate_batch([analysis.case for analysis in analyses], analyses[0].contacts, **options)
-    except Exception as error:
-        return [failed_row(error)] * len(batch), 0.0
+    except Exception:  # one of them may be to blame
+        return carry_out_all(batch), 0.0
     rows: list[Row] = []
     for (_, history), analysis, answer in zip(batch, analyses, answers, strict=True):
         if isinstance(answer, Response):
-            row = {"status": "done", **analysis.row(answer, history)}
+            row = checked_row(partial(analysis.row, answer, history), analysis.COLUMNS)
         else:
             row = failed_row(answer)
         rows.append(row | {"seconds": (time.perf_counter() - started) / len(batch)})

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
-from .fingerprint import fingerprint
-from .runner import Runner, processes
+from .dispatch import Dispatch
+from .progress import Progress
+from .runner import Runner
 from .store import Store
-from .task import VERSION, Row, Task, carry_out
+from .task import Row, Task, column_names, keyed
 
 
 def campaign(
@@ -25,11 +23,14 @@ def campaign(
     workers: int | None = None,
     histories: str | Path | None = None,
     retry: bool = False,
+    time_limit: float | None = None,
 ) -> Path:
     """Run every task that the store does not hold yet, and write a row for each.
 
-    Killing a campaign loses only the cases in progress. The same call carries on from there and does nothing twice. A
-    task that fails becomes a row with its error. The rows do not depend on the order in which tasks finish.
+    Killing a campaign loses only the cases in progress, and the rows of about the last half second. The same call
+    carries on from there and does nothing twice that has a row. A task that fails becomes a row with its error, and so
+    does one that calls `sys.exit`, kills its worker, or cannot be built, pickled or labelled. The rows do not depend on
+    the order in which tasks finish. Without a terminal a line every 30 s says how far the campaign is.
 
     Args:
         tasks: `Analysis` objects, a `Grid` of them, or an iterator; they are taken as they are needed.
@@ -37,47 +38,75 @@ def campaign(
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
             None stands for processes of this machine, which are replaced if they die. Fixed-step runs of one geometry
             go to threads of this process instead, if a measured first batch says that this is faster.
-        workers: how many processes, one for each processor by default; 1 runs in this process.
+        workers: how many processes, one for each processor by default; 1 runs in a thread of this process.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.
+        time_limit: how long a case may take [s]; one that takes longer is ended and becomes a failed row that says so.
+            It is for processes of this machine, which it uses also for workers=1.
 
     Returns:
         The path of the store, for `Store(path)`.
 
     Raises:
-        ValueError: if the file is not a store, two labels clash, or `workers` is not positive.
+        ValueError: if the file is not a store or is damaged, `workers` or `time_limit` is not positive, a time limit is
+            given with an executor, or the name of a label is that of a column or of another label, up to upper and
+            lower case. A label that repeats a column, as `solver` does, is none that clashes. For a list, and for a
+            `Grid`, this is found before anything runs.
         OSError: if the disk is full, or another process writes to the store.
-        RuntimeError: if the executor given has broken down.
+        RuntimeError: if the executor given has broken down, or worker processes die as they start.
+        KeyboardInterrupt: at Ctrl-C, once the worker processes have been ended; it says how many rows are kept.
     """
     if workers is not None and workers < 1:
         raise ValueError(f"workers = {workers} is outside the valid range, which starts at 1")
+    if time_limit is not None and not time_limit > 0:
+        raise ValueError(f"time_limit = {time_limit} s is outside the valid range, which is above 0")
+    if time_limit is not None and executor is not None:
+        raise ValueError(f"time_limit = {time_limit} s needs processes of this machine, and executor gives others")
     folder = None if histories is None else Path(histories)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     total = len(tasks) if isinstance(tasks, Sequence) else None
-    count = workers or os.cpu_count() or 1
-    with Store(store, writing=True) as file:
-        run = Runner(file, folder, retry)
-        pending = run.pending(tasks)
-        with tqdm(total=total, unit="case", desc="campaign", delay=1, disable=None, smoothing=0.05) as run.bar:
-            if executor is not None:
-                width = getattr(executor, "_max_workers", count)
-                run.across(pending, lambda: contextlib.nullcontext(executor), width, own=False)
-            elif count == 1:
-                for job in pending:
-                    run.write([job], [carry_out(job.task, job.history)])
-            else:
-                run.across(run.by_threads(pending, count, total), lambda: processes(count), count, own=True)
+    with Store(store, writing=True) as file, Progress(file.path, len(file), total) as progress:
+        if isinstance(tasks, list | tuple):
+            for names in dict.fromkeys(column_names(keyed(task)[1]) for task in tasks):
+                file.add_columns(names)
+        run = Runner(file, progress, folder, retry)
+        try:
+            _carry_out(run, tasks, executor, workers or os.cpu_count() or 1, total, time_limit)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(
+                f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
+            ) from None
         if total is not None and run.asked != total:
             raise RuntimeError(f"the tasks ended after {run.asked} of {total}; the same call carries on from there")
     return Path(store)
+
+
+def _carry_out(
+    run: Runner,
+    tasks: Iterable[Task],
+    executor: Executor | None,
+    count: int,
+    total: int | None,
+    limit: float | None,
+) -> None:
+    """Run the tasks where they are to run."""
+    pending = run.pending(tasks)
+    if executor is not None:
+        run.across(pending, executor, getattr(executor, "_max_workers", count))
+    elif limit is not None:
+        Dispatch(run, pending, count, limit).go()
+    elif count == 1:
+        run.here(pending)
+    else:
+        Dispatch(run, run.by_threads(pending, count, total), count, None).go()
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
     """The row of each task, in the order asked, from a store that may hold other rows too; None where there is none."""
     with Store(store) as file:
         rows = {row["key"]: row for row in file.rows()}
-    return [rows.get(fingerprint(VERSION, task)) for task in tasks]
+    return [rows.get(keyed(task)[0]) for task in tasks]
 
 
 def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[Row]:

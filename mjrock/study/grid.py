@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, ClassVar
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from .task import Row
+from .task import Refused
 
 
 class Grid(Sequence[Any]):
     """Every combination of the axes as a task. Each is built only when it is asked for, and labelled with its axes.
 
+    A label is the value itself if that is text, a number or None; a NumPy number counts as the Python number. For any
+    other value it is its `name`, or else its `repr`.
+
     Args:
         build: makes the task of a point, `build(slenderness=7, scale=0.5)`.
         axes: the values of each axis; the last one varies fastest.
+
+    Raises:
+        ValueError: if an axis has no values.
     """
 
     def __init__(self, build: Callable[..., Any], **axes: Iterable[object]) -> None:
@@ -32,12 +37,12 @@ class Grid(Sequence[Any]):
         return int(np.prod([len(values) for values in self.axes.values()], dtype=int))
 
     def __iter__(self) -> Iterator[Any]:
-        """The tasks in order. A point whose values `build` refuses becomes a task that fails with the same message."""
+        """The tasks in order. A point that `build` fails to make becomes a task that fails with the same message."""
         for i in range(len(self)):
             try:
                 yield self[i]
-            except ValueError as error:
-                yield Refused(str(error), self._labels(self._point(i)))
+            except (Exception, SystemExit) as error:
+                yield Refused.because(error, self._labels(self._point(i)))
 
     def __getitem__(self, index: Any) -> Any:
         """The task of one point, or a list of them for a slice."""
@@ -57,18 +62,10 @@ class Grid(Sequence[Any]):
 
     @staticmethod
     def _labels(point: Mapping[str, object]) -> dict[str, object]:
-        return {n: v if isinstance(v, str | int | float) else getattr(v, "name", repr(v)) for n, v in point.items()}
+        return {name: _label(value) for name, value in point.items()}
 
 
-@dataclass(frozen=True)
-class Refused:
-    """A point of a grid that its builder refused."""
-
-    COLUMNS: ClassVar[tuple[str, ...]] = ()
-
-    complaint: str
-    labels: Mapping[str, object]
-
-    def __call__(self, history: Path | None = None) -> Row:
-        """Fail with the complaint."""
-        raise ValueError(self.complaint)
+def _label(value: object) -> object:
+    if isinstance(value, np.generic):
+        value = value.item()
+    return value if value is None or isinstance(value, str | int | float) else getattr(value, "name", repr(value))

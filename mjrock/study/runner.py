@@ -3,61 +3,31 @@
 from __future__ import annotations
 
 import itertools
-import multiprocessing
-import os
 import sys
-import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from queue import SimpleQueue
+from threading import Event, Thread
 
 import numpy as np
 
 from .batch import BATCH, batch_rows, geometry
-from .fingerprint import fingerprint
+from .progress import Progress
 from .store import Store
-from .task import VERSION, Row, Task, carry_out_all, failed_row
+from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
+from .workers import FLUSH
 
 CHUNK_SECONDS = 0.5
 """Work that a worker is given at a time [s]: long compared with the 1 ms of handing it over, and short enough to keep
 the progress bar moving."""
 START_UP = 2.5
 """Time that worker processes need to import what they use [s]."""
-DEATHS = 2
-"""A task that was in progress at this many deaths of workers is run alone."""
-
-
-def processes(count: int) -> ProcessPoolExecutor:
-    """Worker processes of this machine, which end when the campaign is killed."""
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(count, mp_context=context, initializer=_die_with_the_campaign)
-
-
-def _await_worker(executor: Executor) -> None:
-    """Wait until a worker answers, so that a death at start-up is not blamed on a case."""
-    try:
-        executor.submit(os.getpid).result()
-    except BrokenExecutor as error:
-        raise RuntimeError(
-            "the worker processes die as they start: they import the script that calls the campaign; let it do so "
-            'below `if __name__ == "__main__":`; or give workers=1'
-        ) from error
-
-
-def _die_with_the_campaign() -> None:
-    """Make a worker end when its campaign is killed. It would wait for work for ever otherwise."""
-
-    def watch() -> None:
-        parent = multiprocessing.parent_process()
-        assert parent is not None
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
+LONG = 1.0
+"""Time of a run that is left to processes, which can be ended in the middle of it [s]."""
 
 
 @dataclass
@@ -74,10 +44,8 @@ class Job:
 class Runner:
     """A running campaign: its store, its counts, and where its tasks are."""
 
-    bar: Any
-
-    def __init__(self, file: Store, folder: Path | None, retry: bool) -> None:
-        self.file, self.folder, self.retry = file, folder, retry
+    def __init__(self, file: Store, progress: Progress, folder: Path | None, retry: bool) -> None:
+        self.file, self.progress, self.folder, self.retry = file, progress, folder, retry
         self.failed = 0
         self.seconds = 0.0
         self.finished = 0
@@ -85,12 +53,13 @@ class Runner:
         self.asked = 0
 
     def pending(self, tasks: Iterable[Task]) -> Iterator[Job]:
-        """The tasks that have no row yet, each once."""
+        """The tasks that have no row yet, each once. One that cannot be run gets its row here."""
         statuses = self.file.statuses()
+        partial = self._partial_histories()
         columns: tuple[str, ...] = ()
-        for position, task in enumerate(tasks):
+        for position, asked in enumerate(tasks):
             self.asked += 1
-            key = fingerprint(VERSION, task)
+            key, task = keyed(asked)
             history = None if self.folder is None else self.folder / f"{key}.npz"
             status = statuses.get(key)
             kept = status == "failed" or history is None or history.exists()
@@ -98,11 +67,24 @@ class Runner:
                 self.skipped += 1
                 continue
             statuses[key] = "taken"
-            names = (*task.labels, *task.COLUMNS)
+            names = column_names(task)
             if names != columns:
                 self.file.add_columns(names)
                 columns = names
-            yield Job(task, key, position, history)
+            for path in partial.pop(key, ()):
+                path.unlink(missing_ok=True)
+            job = Job(task, key, position, history)
+            if isinstance(task, Refused):
+                self.write([job], [{"status": "failed", "error": task.error, "seconds": 0.0}])
+            else:
+                yield job
+
+    def _partial_histories(self) -> dict[str, list[Path]]:
+        """What killed campaigns have left of time histories, by the key of the task."""
+        found: dict[str, list[Path]] = {}
+        for path in self.folder.glob("*.npz.*.partial") if self.folder is not None else ():
+            found.setdefault(path.name.partition(".")[0], []).append(path)
+        return found
 
     def write(self, jobs: Sequence[Job], rows: Sequence[Row]) -> None:
         """Write the rows of jobs and show how far the campaign is."""
@@ -115,23 +97,54 @@ class Runner:
         self.finished += len(rows)
         self.seconds += sum(row["seconds"] for row in rows)
         self.failed += sum(row["status"] == "failed" for row in rows)
-        if not self.bar.disable:
-            self.bar.initial = self.skipped  # what was there already is no part of the rate
-            self.bar.set_postfix_str(f"{self.failed} failed" if self.failed else "", refresh=False)
-            self.bar.update(self.skipped + self.finished - self.bar.n)
+        self.progress.show(self.skipped, self.finished, self.failed)
+
+    def here(self, pending: Iterator[Job]) -> None:
+        """Run jobs one after the other in a thread of this process.
+
+        The main thread waits for the rows, so that Ctrl-C reaches it also while compiled code runs.
+        """
+        asked: SimpleQueue[tuple[list[Job], list[Row], Event]] = SimpleQueue()
+        stop = Event()
+
+        def work() -> None:
+            while not stop.is_set():
+                jobs, rows, done = asked.get()
+                for job in jobs:
+                    if not stop.is_set():
+                        rows.append(carry_out(job.task, job.history))
+                done.set()
+
+        Thread(target=work, daemon=True).start()
+        try:
+            while jobs := list(itertools.islice(pending, self.chunk())):
+                rows: list[Row] = []
+                done, written = Event(), 0
+                asked.put((jobs, rows, done))
+                while written < len(jobs):
+                    done.wait(FLUSH)
+                    new = rows[written:]
+                    if new:
+                        self.write(jobs[written : written + len(new)], new)
+                        written += len(new)
+        finally:
+            stop.set()
+            asked.put(([], [], Event()))
 
     def by_threads(self, pending: Iterator[Job], threads: int, total: int | None) -> Iterator[Job]:
         """Run batches by threads while there are any and threads are faster; return the jobs that are left.
 
         Threads share the time that the engine takes for its steps. They do not share the time that Python takes. Each
-        batch measures both. Processes would share both, but they have to start first.
+        batch measures both. Processes would share both, but they have to start first. The first batch has one run for
+        each thread, and finds out whether the runs are long.
         """
+        size = threads
         while job := next(pending, None):
             batch, mark = [job], geometry(job.task)
             if mark is None:
                 return itertools.chain(batch, pending)
             for job in pending:
-                if len(batch) == BATCH * threads or geometry(job.task) != mark:
+                if len(batch) == size or geometry(job.task) != mark:
                     pending = itertools.chain([job], pending)
                     break
                 batch.append(job)
@@ -141,75 +154,54 @@ class Runner:
             self.write(batch, rows)
             by_processes = stepping + (by_threads - stepping) / threads
             left = (total or sys.maxsize) - self.skipped - self.finished
-            if left * (by_threads - by_processes) > START_UP:
+            if left * (by_threads - by_processes) > START_UP or by_threads * threads > LONG:
                 break
+            size = BATCH * threads
         return pending
 
-    def take(self, pending: Iterator[Job], again: deque[Job], flying: Iterable[list[Job]]) -> list[Job]:
-        """The jobs of the next chunk, about CHUNK_SECONDS of work. Jobs that a dying worker had go one by one."""
-        if any(jobs[0].deaths >= DEATHS for jobs in flying):
-            return []
-        if again:
-            return [again.popleft()] if again[0].deaths < DEATHS or not flying else []
-        size = int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64)) if self.finished else 1
-        return list(itertools.islice(pending, size))
+    def chunk(self) -> int:
+        """How many jobs are about CHUNK_SECONDS of work."""
+        return int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64)) if self.finished else 1
 
-    def across(self, pending: Iterator[Job], make: Callable[[], Any], width: int, *, own: bool) -> None:
+    def across(self, pending: Iterator[Job], executor: Executor, width: int) -> None:
         """Run jobs on an executor, with twice as many chunks in flight as it has workers.
 
-        If one of our own processes dies, all of them are replaced. The tasks that were in progress are run again, one
-        at a time. A task that was in progress at DEATHS deaths runs alone. If its worker dies again, the row of the
-        task says so.
+        A chunk that the executor could not carry out runs again, task by task.
         """
         again: deque[Job] = deque()
-        ended = False
-        while not ended:
-            flying: dict[Future[list[Row]], list[Job]] = {}
-            with make() as executor:
-                if own:
-                    _await_worker(executor)
-                try:
-                    while True:
-                        while len(flying) < 2 * width and (jobs := self.take(pending, again, flying.values())):
-                            again.extendleft(reversed(jobs))  # where they are safe if the executor is broken
-                            future = executor.submit(carry_out_all, [(job.task, job.history) for job in jobs])
-                            for _ in jobs:
-                                again.popleft()
-                            flying[future] = jobs
-                        if ended := not flying:
-                            break
-                        for future in wait(flying, return_when=FIRST_COMPLETED).done:
-                            self.collect(future, flying, again)
-                except BrokenExecutor as error:
-                    if not own:
-                        raise RuntimeError(
-                            f"the executor broke down: {error}; what is done is kept, and the same call carries on"
-                        ) from error
-                    for job in itertools.chain.from_iterable(flying.values()):
-                        job.deaths += 1
-                        if job.deaths > DEATHS:
-                            self.write([job], [failed_row(error)])
-                        else:
-                            again.append(job)
-                except BaseException:
-                    for future in flying:
-                        future.cancel()
-                    raise
-
-    def collect(self, future: Future[list[Row]], flying: dict[Future[list[Row]], list[Job]], again: deque[Job]) -> None:
-        """Write the rows of a chunk. A chunk that the executor could not carry out runs again, task by task."""
-        jobs = flying[future]
+        flying: dict[Future[list[Row]], list[Job]] = {}
         try:
-            rows = future.result()
-        except BrokenExecutor:
+            while True:
+                while len(flying) < 2 * width:
+                    jobs = [again.popleft()] if again else list(itertools.islice(pending, self.chunk()))
+                    if not jobs:
+                        break
+                    flying[executor.submit(carry_out_all, [(job.task, job.history) for job in jobs])] = jobs
+                if not flying:
+                    return
+                for future in wait(flying, return_when=FIRST_COMPLETED).done:
+                    jobs = flying.pop(future)
+                    try:
+                        self.write(jobs, future.result())
+                    except (BrokenExecutor, OSError):
+                        raise
+                    except Exception as error:
+                        again.extend(self.singly(jobs, error))
+        except BaseException as error:
+            for future in flying:
+                future.cancel()
+            if isinstance(error, BrokenExecutor):
+                raise RuntimeError(
+                    f"the executor broke down: {error}; what is done is kept, and the same call carries on"
+                ) from error
             raise
-        except Exception as error:
-            if len(jobs) > 1:
-                for job in jobs:
-                    job.deaths = max(job.deaths, 1)
-                again.extend(jobs)
-            else:
-                self.write(jobs, [failed_row(error)])
-        else:
-            self.write(jobs, rows)
-        del flying[future]
+
+    def singly(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
+        """The jobs of a chunk that could not be handed over, each of which is to be tried alone.
+
+        One that was alone already gets a row with the error.
+        """
+        if len(jobs) > 1:
+            return jobs
+        self.write(jobs, [failed_row(error)])
+        return ()

@@ -111,7 +111,8 @@ class Store:
                 raise sqlite3.DatabaseError(verdict)
             missing = {*FIXED, CHECKSUM} - {row[1] for row in self._rows.execute("PRAGMA table_info(cases)")}
             if missing:
-                raise sqlite3.DatabaseError(f"there is no column {', '.join(sorted(missing))}")
+                names = ", ".join(sorted(missing))
+                raise sqlite3.DatabaseError(f"it has no column {names}, or an earlier version of mjrock wrote it")
         if writing:
             self._rows.execute("PRAGMA journal_mode = WAL")
             self._rows.execute("PRAGMA synchronous = NORMAL")

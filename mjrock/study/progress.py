@@ -1,0 +1,57 @@
+"""How far a campaign is: a bar in a terminal, a line now and then without one."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+
+from tqdm import tqdm
+
+EVERY = 30.0
+"""Time between two lines of a campaign without a terminal [s]."""
+
+
+class Progress:
+    """How far a campaign is, on the standard error. Use it in a `with` statement.
+
+    Args:
+        store: the store of the campaign.
+        kept: how many rows it holds already.
+        total: how many tasks there are, or None if nobody knows.
+    """
+
+    def __init__(self, store: Path, kept: int, total: int | None) -> None:
+        self.store, self.total = store, total
+        self.started = self.spoken = time.monotonic()
+        if kept:
+            self._say(f"{kept} rows in {store} are kept")
+        self.bar = tqdm(total=total, unit="case", desc="campaign", delay=1, disable=None, smoothing=0.05)
+
+    def show(self, skipped: int, finished: int, failed: int) -> None:
+        """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
+        failures = f"{failed} failed" if failed else ""
+        if not self.bar.disable:
+            self.bar.initial = skipped  # what was there already is no part of the rate
+            self.bar.set_postfix_str(failures, refresh=False)
+            self.bar.update(skipped + finished - self.bar.n)
+        elif time.monotonic() - self.spoken >= EVERY:
+            self.spoken = time.monotonic()
+            rate = finished / (self.spoken - self.started)
+            of = "" if self.total is None else f" of {self.total}"
+            parts = [f"{skipped + finished}{of} cases", f"{rate:.3g} cases/s"]
+            if self.total is not None and rate > 0:
+                parts.append(f"{(self.total - skipped - finished) / rate:.0f} s left")
+            self._say(", ".join([*parts, failures] if failures else parts))
+
+    def _say(self, text: str) -> None:
+        print(f"campaign: {text}", file=sys.stderr, flush=True)
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.bar.close()
