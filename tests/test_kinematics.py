@@ -1,5 +1,6 @@
 """The one place of the kinematics, against corners written out, finite differences, and MuJoCo."""
 
+import dataclasses
 import math
 
 import mujoco
@@ -8,7 +9,7 @@ import pytest
 from scenes import two_blocks
 
 import mjrock as mr
-from mjrock.engine.kinematics import along, energies, frame_of, gap, gaps
+from mjrock.engine.kinematics import along, depth, energies, frame_of, gap, gaps, slack, stretch
 from mjrock.engine.rest import settled
 from paper import K_N
 
@@ -68,6 +69,75 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
             assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
             assert gap(scene.points, i, frame_of(q), 2 * v, a)[1] == pytest.approx(2 * now[1])
             assert gap(scene.points, i, frame_of(q), a, v)[1] == pytest.approx(now[2])
+
+
+def tied_blocks():
+    """The two blocks with one tie between them and one to the ground, neither along an axis."""
+    scene = two_blocks()
+    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    ties = {
+        "tie_names": ("between", "down"),
+        "tie_body": [1, 1],
+        "tie_point": [(0.3, 1.0), (-0.2, 0.7)],
+        "anchor_body": [0, -1],
+        "anchor": [(-0.2, -0.6), (-2.0, 0.1)],
+        "tie_k": [2e6, 3e6],
+        "tie_length": [2.0, 3.0],
+        "tie_strength": [1e5, math.inf],
+    }
+    return mr.Scene(**parts | ties)
+
+
+def test_ties_between_bodies_that_turn():
+    """Slack from the two ends written out; its rate and curvature along q + v t + a t^2/2, by central differences."""
+    scene, t = tied_blocks(), 1e-4
+
+    def world(q, body, local):
+        if body < 0:
+            return np.array(local)
+        x, z, theta = q[3 * body : 3 * body + 3]
+        c, s = math.cos(theta), math.sin(theta)
+        return scene.rest[body] + [x + local[0] * c + local[1] * s, z - local[0] * s + local[1] * c]
+
+    for q, v, a in zip(*poses(np.random.default_rng(9), 20, 2), strict=True):
+        for i in range(2):
+            ends = world(q, scene.tie_body[i], scene.tie_point[i]), world(q, scene.anchor_body[i], scene.anchor[i])
+            now = slack(scene.ties, i, frame_of(q), v, a)
+            assert now[0] == pytest.approx(scene.tie_length[i] - math.dist(*ends), abs=1e-12)
+            before, after = (slack(scene.ties, i, frame_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
+            assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
+            assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
+            assert slack(scene.ties, i, frame_of(q), a, v)[1] == pytest.approx(now[2])
+
+
+def test_a_tie_yields_beyond_its_strength_and_stays_longer():
+    """k (length - reach) up to the strength; what is beyond lengthens the reach, and less than that gives no force."""
+    scene = tied_blocks()
+    ties = scene.ties._replace(reach=np.array(scene.ties.reach))
+    q = np.zeros(6)
+    length = 2.0 - slack(ties, 0, frame_of(q), q, q)[0]
+    limit = 1e5 / 2e6
+    for reach, elastic, yielded in (
+        (length + 0.1, 0.0, 0.0),
+        (length - 0.4 * limit, 0.4 * limit, 0.0),
+        (length - limit - 0.3, limit, 0.3),
+    ):
+        ties.reach[0] = reach
+        assert stretch(ties, 0, frame_of(q), q) == pytest.approx((elastic, yielded), abs=1e-12)
+        assert ties.reach[0] == pytest.approx(reach + yielded)
+
+
+def test_a_place_along_a_face_moves_with_its_rate():
+    """The position along the face from its origin, its rate by central differences, and depth as the gap reversed."""
+    scene, t = two_blocks(), 1e-5
+    for q, v, _ in zip(*poses(np.random.default_rng(10), 20, 2), strict=True):
+        for i in range(len(scene.k)):
+            before, after = (along(scene.points, i, frame_of(q + s * v), v)[0] for s in (-t, t))
+            assert (after - before) / (2 * t) == pytest.approx(along(scene.points, i, frame_of(q), v)[1], abs=1e-7)
+            assert depth(scene.points, i, frame_of(q)) == pytest.approx(-gap(scene.points, i, frame_of(q), v, v)[0])
+    still = np.zeros(6)
+    for i, place in enumerate((-0.3, 0.3, -0.3, 0.3)):
+        assert along(scene.points, i, frame_of(still), still)[0] == pytest.approx(place)
 
 
 def test_slip_is_the_relative_velocity_where_friction_acts():
@@ -147,7 +217,7 @@ def test_energies_of_bodies_that_move():
     scene = two_blocks()
     q, v, _ = poses(np.random.default_rng(8), 5, 2)
     found, taken = energies(scene.points, scene.ties, scene.forces, scene.masses, q, v)
-    assert taken.shape == (5, 0)
+    assert (found.shape, taken.shape) == ((5, 3), (5, 0))
     np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.masses))
     np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.mass))
     np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.points, q), 0) ** 2 @ scene.k)

@@ -24,6 +24,40 @@ def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):
             assert sampled.restitution == pytest.approx(true.restitution, rel=1e-3)
 
 
+@pytest.mark.parametrize("side_stop", [False, True])
+def test_history_of_a_shaken_theory_is_the_theory(wall, e, side_stop):
+    """Impacts are found from the velocities at which the wall passes a small rotation: time, speed, and side."""
+    motion = mr.GroundMotion.sine(1.0, 0.7, cycles=6, samples=200)
+    case = mr.Case(wall, 0.4 * wall.alpha, 3.0, side_stop=side_stop, motion=motion)
+    exact = mr.solve_analytical(case, e, output_step=1e-4)
+    uplift = 2e-4 * wall.alpha, 1e-6
+    _, _, impacts = rocking_history(case, exact.t, exact.theta, exact.omega, exact.energy, uplift)
+    strong = [one for one in exact.impacts if abs(one.omega_after) > 0.03]
+    assert len(strong) >= 2
+    for true in strong:
+        found = min(impacts, key=lambda one: abs(one.t - true.t))
+        assert found.t == pytest.approx(true.t, abs=2e-3)
+        assert found.omega_before == pytest.approx(true.omega_before, rel=2e-2)
+        assert found.omega_after == pytest.approx(true.omega_after, rel=2e-2)
+        assert found.energy_before == pytest.approx(0.5 * wall.toe_inertia * true.omega_before**2, rel=4e-2)
+        assert found.energy_after == pytest.approx(0.5 * wall.toe_inertia * true.omega_after**2, rel=4e-2)
+
+
+def test_a_run_that_ends_on_the_way_out_has_its_last_impact(two_sided, e):
+    """There is no peak after the impact, but the wall's energy is that of its rotation and its velocity."""
+    exact = mr.solve_analytical(two_sided, e, output_step=1e-3)
+    impact = exact.impacts[1]
+    for later in (0.1, 0.2):
+        n = np.searchsorted(exact.t, impact.t + later)
+        assert abs(exact.theta[n]) > 1e-2 * two_sided.block.alpha
+        history = exact.t[:n], exact.theta[:n], exact.omega[:n], exact.energy[:n]
+        _, peaks, impacts = rocking_history(two_sided, *history, (1e-3 * two_sided.block.alpha, 0))
+        assert (len(peaks), len(impacts)) == (2, 2)
+        assert impacts[1].t == pytest.approx(impact.t, abs=1e-3)
+        assert impacts[1].energy_after == pytest.approx(impact.energy_after, rel=1e-3)
+        assert impacts[1].omega_after == pytest.approx(impact.omega_after, rel=1e-3)
+
+
 def test_a_wall_that_stops_dead_has_one_impact_and_no_rebound(one_sided):
     t = np.linspace(0, 1, 1001)
     theta = np.maximum(0.05 * np.cos(2 * np.pi * t), 0) * (t < 0.5)

@@ -12,7 +12,7 @@ from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace
 from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
-from mjrock.engine.touches import ABRUPT, FADED, Springs
+from mjrock.engine.touches import ABRUPT, FADED, Springs, hardest, predict
 from mjrock.engine.wall import wall_scene
 
 BLOCK = mr.Block.from_size(2.0, 2.0)
@@ -89,3 +89,23 @@ def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
     change = ice.masses @ (record.after[0] - record.before[0]) ** 2
     after, _ = one_step(ice, -1e-4, h, change / (share * ABRUPT) ** 2)
     assert bool(after.abrupt) is (share > 1)
+
+
+@pytest.mark.parametrize("curve", [-30.0, 0.0, 4.0])
+def test_when_a_gap_closes(curve):
+    """The first root of g + g1 t + g2 t^2/2, and the closing speed there, whichever part of g2 has the curvature."""
+    g, g1, springs = 0.01, -0.3, Springs(np.ones(2), np.zeros(2))
+    t = min(root.real for root in np.roots([0.5 * curve, g1, g]) if root.real > 0)
+    for parts in ((curve, 0.0), (3.0, curve - 3.0)):
+        motion, touch = np.array([[1.0, -0.3, 0.0, 0.0], [g, g1, *parts]]), np.zeros((2, 2))
+        assert predict(springs, motion, 1.01 * t, 1.0, 0.0, touch) == pytest.approx(t)
+        assert touch[1] == pytest.approx([t, -(g1 + curve * t)])
+        assert touch[0, 0] == np.inf
+        assert predict(springs, motion, 0.99 * t, 1.0, 0.0, touch) == np.inf
+        motion[1, 0] = -1e-9  # it is closed already
+        assert predict(springs, motion, 1.0, 1.0, 0.0, touch) == np.inf
+
+
+def test_the_hardest_of_the_touches_in_a_short_window_is_met():
+    touch = np.array([[0.3, 0.1], [0.2, 0.5], [0.25, 0.9], [0.31, 2.0], [np.inf, 9.0]])
+    assert [hardest(touch, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]

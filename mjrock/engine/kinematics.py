@@ -204,10 +204,12 @@ def slack(ties: Ties, i: int, frame: Array, v: Array, a: Array) -> tuple[float, 
 
 
 @jitable
-def stretch(ties: Ties, i: int, frame: Array) -> tuple[float, float]:
-    """Elastic elongation of tie i, and by how much it has just yielded [m]. Its reach is brought up to date."""
-    still = frame[0]  # any numbers do, the rates are not used
-    pulled = -slack(ties, i, frame, still, still)[0]
+def stretch(ties: Ties, i: int, frame: Array, v: Array) -> tuple[float, float]:
+    """Elastic elongation of tie i, and by how much it has just yielded [m]. Its reach is brought up to date.
+
+    The velocities v of the bodies make no difference.
+    """
+    pulled = -slack(ties, i, frame, v, v)[0]
     yielded = max(pulled - ties.stretch[i], 0.0)
     ties.reach[i] += yielded
     return max(pulled - yielded, 0.0), yielded
@@ -292,6 +294,6 @@ def _energies(
         for i in range(len(points.k)):
             found[step, 2] += spring_energy(points, i, frame)
         for i in range(len(ties.k)):
-            stretched, yielded = stretch(ties, i, frame)
+            stretched, yielded = stretch(ties, i, frame, v[step])
             found[step, 2] += 0.5 * ties.k[i] * stretched * stretched
             taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * stretched * yielded

@@ -251,7 +251,7 @@ def fitted_loop(
         abrupt = change > ABRUPT**2
         hold(memory, points, pace, joints, state, record, n)
         for i in range(len(ties.k)):
-            stretch(ties, i, state.frame)
+            stretch(ties, i, state.frame, memory.velocity)
 
         # judge
         t, last = t + now, now

@@ -1,0 +1,201 @@
+"""How long steps may be, rule by rule, and which edges stick in them."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scenes import two_blocks
+
+import mjrock as mr
+from mjrock.engine.kinematics import frame_of, gap, gaps
+from mjrock.engine.pace import (
+    CHANGE,
+    DASHPOT,
+    LOADED,
+    LONG,
+    MOST,
+    RINGING_BORNE,
+    RINGING_OPEN,
+    SHORT,
+    SMOOTH,
+    STAYS,
+    Pace,
+    judged,
+    resolves,
+    short_step,
+    until_turned,
+    while_loaded,
+)
+from mjrock.engine.sticking import Joints, deepest, presses, rolled
+from mjrock.engine.wall import wall_scene
+
+
+@pytest.fixture
+def scene(one_sided, contacts):
+    return wall_scene(one_sided, contacts)
+
+
+def test_the_limits_of_a_wall(scene, wall, contacts):
+    """The short step resolves the contacts, the longest the rocking; both go with the root of the accuracy."""
+    pace = Pace.of(scene, 1e-4)
+    assert pace.short == pytest.approx(math.sqrt(SHORT * 1e-4) / scene.highest_frequency)
+    assert pace.longest == pytest.approx(math.sqrt(LONG * 1e-4) / wall.p)
+    assert Pace.of(scene, 0.1).short == pytest.approx(MOST / scene.highest_frequency)
+    # two lines hold m g with their springs, m g / 2 each
+    assert pace.least_energy == pytest.approx(wall.weight**2 / contacts.base.stiffness.sum())
+    np.testing.assert_allclose(pace.ringing, [[0] * 4, [RINGING_BORNE] * 2 + [RINGING_OPEN] * 2])
+    np.testing.assert_allclose(pace.beta, [[1 / 12] * 4, (1 + pace.ringing[1] ** 2) / 4])
+    for share, kind in ((0.99, 0), (1.01, 1)):
+        assert resolves(pace, share * SMOOTH / scene.highest_frequency) == kind
+
+
+def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
+    """No step is longer than that of the record. A dashpot is resolved down to an eighth of the step of the spring."""
+    shaken = mr.Case(wall, 0.0, 1.0, motion=mr.GroundMotion([0.0, 1.0, 0.0], 3e-3))
+    assert Pace.of(wall_scene(shaken, contacts), 1e-3).longest == 3e-3
+    case = mr.Case(wall, 0.0, 1.0, side_stop=False)
+    for xi, limited in ((0.08, False), (0.12, False), (0.2, True), (0.8, True)):
+        damped = wall_scene(case, dataclasses.replace(contacts, base=dataclasses.replace(contacts.base, xi=xi)))
+        spring = math.sqrt(SHORT * 1e-3) / damped.highest_frequency
+        # the least mass that a contact may feel is 1 / (6 W), a quarter of the wall's
+        dashpot = math.sqrt(DASHPOT * 1e-3) * wall.mass / 4 / damped.c[0]
+        assert dashpot < spring
+        assert bool(dashpot < spring / 8) is limited
+        assert short_step(damped, 1e-3) == pytest.approx(spring / 8 if limited else dashpot)
+
+
+def test_a_step_is_judged_by_the_change_of_acceleration(scene):
+    """Halved above what is tolerated, doubled after two steps in a row below a quarter of it."""
+    pace = Pace.of(scene, 1e-3)
+    tolerated, h = (CHANGE * 1e-3) ** 2, math.sqrt(pace.short * pace.longest)
+    assert judged(pace, h, 1.01 * tolerated, 1) == (0.5 * h, 0)
+    assert judged(pace, h, 0.99 * tolerated, 1) == (h, 0)
+    assert judged(pace, h, 1.01 * tolerated / 16, 1) == (h, 0)
+    assert judged(pace, h, 0.99 * tolerated / 16, 0) == (h, 1)
+    assert judged(pace, h, 0.99 * tolerated / 16, 1) == (2 * h, 0)
+    assert judged(pace, 1.5 * pace.short, 2 * tolerated, 0) == (pace.short, 0)
+    assert judged(pace, 0.7 * pace.longest, 0.0, 1) == (pace.longest, 0)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_loaded_point_stays_loaded(scene, sign):
+    """h^2/2 |g2| = STAYS |g|; what has lifted off or bears nothing at rest does not count."""
+    pressed, short, curve = scene.points.bears[0], 1e-5, 3.0
+    motion = np.zeros((4, 4))
+    longest = math.sqrt(2 * STAYS * pressed / curve)
+    for point, share, counts in ((0, 1.0, True), (1, 1.01 * LOADED, True), (1, 0.99 * LOADED, False), (3, 1, False)):
+        motion[:] = 0.0
+        motion[point] = -share * pressed, 0.0, 7.0, sign * curve
+        expected = math.sqrt(share) * longest if counts else 1.0
+        assert while_loaded(scene.points, motion, 1.0, short) == pytest.approx(expected)
+    motion[0] = -pressed, 0.0, 0.0, sign * curve
+    assert while_loaded(scene.points, motion, 0.99 * longest, short) == 0.99 * longest
+    assert while_loaded(scene.points, motion, 1.0, 2 * longest) == 2 * longest
+
+
+def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
+    """A taut tie that still lengthens at 0.3 m/s and is held back with 20 + 10 m/s2 is longest after 10 ms."""
+    scene = two_blocks()
+    ties = scene.ties._replace(k=np.ones(1), stretch=np.ones(1), reach=np.ones(1))
+    motion = np.zeros((5, 4))
+    motion[4] = -0.01, -0.3, 20.0, 10.0
+    assert until_turned(ties, motion, 0.02, 1e-4) == pytest.approx(0.01)
+    assert until_turned(ties, motion, 0.02, 0.015) == 0.015
+    assert until_turned(ties, motion, 0.009, 1e-4) == 0.009
+    for changed in ((0.01, -0.3, 20.0, 10.0), (-0.01, 0.3, 20.0, 10.0)):  # slack, and shortening
+        motion[4] = changed
+        assert until_turned(ties, motion, 0.02, 1e-4) == 0.02
+    motion[4] = -0.01, -0.3, 20.0, 10.0
+    assert until_turned(ties._replace(stretch=np.array([math.inf])), motion, 0.02, 1e-4) == 0.02
+
+
+def with_stops(scene):
+    """Two blocks with a stop before each of them, one millimetre away, and one between them that meets no weight."""
+    extra = {
+        "point_body": [0, 1, 1],
+        "point": [(-0.3, 0.0), (-0.3, 0.0), (0.0, -1.05)],
+        "face_body": [-1, -1, 0],
+        "face": [(-0.301, 0.0), (-0.301, 0.0), (0.0, 1.049)],
+        "normal": [(1, 0), (1, 0), (0, 1)],
+        "k": [1e7] * 3,
+        "c": [0.0] * 3,
+        "friction": [0.0] * 3,
+        "group": ("stop", "stop", "pin"),
+    }
+    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    return mr.Scene(**parts | {name: (*parts[name], *values) for name, values in extra.items()})
+
+
+def test_which_body_presses_what_bears_nothing_at_rest():
+    """The stop of a body concerns that body alone, and the pin between the two concerns both."""
+    scene = with_stops(two_blocks())
+    np.testing.assert_array_equal(scene.points.bears > 0, [True] * 4 + [False] * 3)
+    for moved, pressing in (
+        ((0, 0, 0, 0), (False, False)),
+        ((-0.002, 0, 0, 0), (True, False)),
+        ((0, 0, -0.002, 0), (False, True)),
+        ((0, 0, 0, -0.002), (True, True)),
+    ):
+        pose = scene.at_rest.ravel() + np.array([moved[0], moved[1], 0, moved[2], moved[3], 0])
+        found = tuple(presses(scene.points, body, frame_of(pose)) for body in (0, 1))
+        assert found == pressing
+
+
+def test_joints_go_from_the_ground_upwards():
+    """However the bodies are numbered; a body that stands on two others has none."""
+    scene = two_blocks()
+    assert Joints.of_scene(scene).body.tolist() == [0, 1]
+    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    turned = {"rest": scene.rest[::-1], "point_body": [1, 1, 0, 0], "face_body": [-1, -1, 1, 1]}
+    joints = Joints.of_scene(mr.Scene(**parts | turned))
+    assert joints.body.tolist() == [1, 0]
+    assert joints.of.tolist() == [0, 0, 1, 1]
+    bridge = {"face_body": [-1, -1, 0, -1], "face": [(0, 0), (0, 0), (0, 1.05), (0, 2.1)]}
+    assert len(Joints.of_scene(mr.Scene(**parts | bridge)).body) == 0
+
+
+def test_the_deepest_point_of_a_joint():
+    """Of its own joint alone, and of closed points alone."""
+    scene = two_blocks()
+    joints, frame = Joints.of_scene(scene), np.zeros((2, 4))
+    for lean, found in (((0.01, 0.01), (1, -1)), ((-0.01, 0.02), (0, 3)), ((0.01, -0.03), (1, 2))):
+        pose = np.array([0, -1e-3, lean[0], 0, -2e-3, lean[1]])
+        frame[:] = frame_of(pose)
+        depths = -gaps(scene.points, pose[None])[0]
+        for joint, of in ((0, (0, 1)), (1, (2, 3))):
+            best = max(of, key=lambda i: depths[i])
+            expected = best if depths[best] > 0 else -1
+            assert deepest(scene.points, joints, joint, frame) == expected
+        assert deepest(scene.points, joints, 0, frame) == found[0]
+
+
+@pytest.mark.parametrize("i", [1, 3])
+def test_an_edge_rolls_about_the_place_of_friction(i):
+    """Where that place, half the penetration above the point, does not slip, the point moves by half of it."""
+    scene, turn = two_blocks(), 1e-4
+    pose = np.array([0, -0.004, 0.0, 0, -0.007, 0.0])
+    later = pose.copy()
+    later[3 * scene.point_body[i] + 2] += turn
+    if i == 3:
+        later[2] += 3 * turn  # the face turns as well, and only what is left turns the point against it
+    depth = [-gap(scene.points, i, frame_of(q), q, q)[0] for q in (pose, later)]
+    relative = turn if i == 1 else -2 * turn
+    moved = rolled(scene.points, i, frame_of(pose), frame_of(later), pose, later)
+    assert moved == pytest.approx(-relative * 0.5 * np.mean(depth), rel=1e-12)
+
+
+@pytest.mark.parametrize(("share", "slides"), [(0.9, False), (1.2, True)])
+def test_a_base_sticks_up_to_mu(share, slides):
+    """Pushed with a constant acceleration, a block slides by what is beyond mu g, and else stays where it is."""
+    mu, block = 0.3, mr.Block.from_size(2.0, 2.0)
+    contacts = mr.Contacts.from_damping(block, k_base=5e8, xi_base=0.05, friction=mu)
+    push = share * mu * mr.GRAVITY
+    motion = mr.GroundMotion(-push * np.minimum(np.arange(101) / 50, 1.0), 0.01)  # it sets in within half a second
+    run = mr.simulate(mr.Case(block, 0.0, 1.0, side_stop=False, motion=motion), contacts)
+    if not slides:
+        assert abs(run.stats["base_displacement"]) < 1e-6
+        return
+    t, dt = np.linspace(0, 1, 100001, retstep=True)
+    speed = np.cumsum(np.maximum(push * np.minimum(2 * t, 1.0) - mu * mr.GRAVITY, 0.0)) * dt
+    assert run.stats["base_displacement"] == pytest.approx(speed.sum() * dt, rel=2e-2)
