@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test test-slow lint calibrate models figures clean
+.PHONY: demo test test-slow mutants lint calibrate models figures clean
 
 demo: $(READY)
 	$(BIN)/python scripts/compare_wall.py --check --out out/demo
@@ -13,6 +13,9 @@ test: $(READY)
 
 test-slow: $(READY)
 	$(BIN)/pytest -n auto -m slow
+
+mutants: $(READY) # changes one operator or number of the physics at a time and names what no test notices; some minutes
+	$(BIN)/python tests/mutants.py $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
 
 lint: $(READY)
 	$(BIN)/ruff check .
