@@ -1,5 +1,7 @@
 """Single steps that fit the motion: a block slides on ice towards its side stop."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from mjrock.engine.loop import Clock, State, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace
+from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
 from mjrock.engine.touches import ABRUPT, FADED, Springs, hardest, predict
@@ -109,3 +112,34 @@ def test_when_a_gap_closes(curve):
 def test_the_hardest_of_the_touches_in_a_short_window_is_met():
     touch = np.array([[0.3, 0.1], [0.2, 0.5], [0.25, 0.9], [0.31, 2.0], [np.inf, 9.0]])
     assert [hardest(touch, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
+
+
+def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
+    """A block on ice is pulled against a tie, stretches it for good, springs back, and is pulled against it again."""
+    contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05, friction=0.0)
+    standing = wall_scene(mr.Case(BLOCK, 0.0, 1.0, side_stop=False), contacts)
+    parts = {one.name: getattr(standing, one.name) for one in dataclasses.fields(standing)}
+    tie = {
+        "tie_names": ("tie",),
+        "tie_body": [0],
+        "tie_point": [(0.0, 0.0)],
+        "anchor_body": [-1],
+        "anchor": [(-5.0, BLOCK.h)],
+        "tie_k": [2e6],
+        "tie_length": [5.02],
+        "tie_strength": [2e4],
+    }
+    pull = {"force_names": ("pull",), "force_body": [0], "force_point": [(0.0, 0.0)], "force": [(4e3, 0.0)]}
+    scene = mr.Scene(**parts | tie | pull)
+    scene = scene.released(scene.at_rest, np.array([[SPEED, 0.0, 0.0]]), 1.0, None)
+    short = Pace.of(scene, ACCURACY).short
+    with engine_of(scene) as engine:
+        engine.follow(short, pair_rows(scene, short, 0.25))
+        engine.release(scene.started)
+        steps = fitted_steps(engine, scene, ACCURACY)
+    elongation = scene.accounts(steps.pose, steps.velocity)[1][-1, 0] / 2e4
+    assert elongation > 0.04
+    beyond = steps.pose[:, 0] - 0.02 - elongation
+    again = np.flatnonzero((beyond[:-1] <= 0) & (beyond[1:] > 0) & (steps.t[1:] > steps.t[beyond.argmax()]))[0] + 1
+    assert steps.h[again] == short
+    assert beyond[again] / steps.before[again, 0] == pytest.approx(0.5 * short, rel=0.02)
