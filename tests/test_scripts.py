@@ -47,7 +47,8 @@ def test_no_script_is_forgotten():
 @pytest.mark.parametrize("name", WRITES)
 def test_quick(name, tmp_path, capsys):
     importlib.import_module(name).main(["--quick", "--out", str(tmp_path / "deep" / "er")])
-    assert {p.name for p in (tmp_path / "deep" / "er").iterdir()} == WRITES[name]
+    written = {p.name for p in (tmp_path / "deep" / "er").iterdir() if p.suffix != ".lock"}
+    assert written == WRITES[name]
     if name != "make_models":
         assert capsys.readouterr().out.strip()
 
