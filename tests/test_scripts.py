@@ -44,7 +44,13 @@ def test_no_script_is_forgotten():
     assert {p.stem for p in SCRIPTS.glob("*.py")} == set(WRITES) | {"cli", "paper", "suite"}
 
 
-@pytest.mark.parametrize("name", WRITES)
+LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"}
+"""Scripts that take a while even with --quick."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in WRITES]
+)
 def test_quick(name, tmp_path, capsys):
     importlib.import_module(name).main(["--quick", "--out", str(tmp_path / "deep" / "er")])
     written = {p.name for p in (tmp_path / "deep" / "er").iterdir() if p.suffix != ".lock"}
