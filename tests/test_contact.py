@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.contact import IMPEDANCE_RANGE, OVERDAMPED, pair_values, row
+from mjrock.engine.contact import IMPEDANCE_RANGE, OVERDAMPED, pair_values, row, set_rows
 
 K, C, H, W = 1.5e8, 5.3e5, 1e-3, 2 / (3 * 5040)
 
@@ -82,6 +82,20 @@ def test_ringing_is_an_extra_dashpot():
     dashpot, inertia = row(K, C, H, W, 0.5, 0.3)
     assert dashpot == pytest.approx(C + 0.3 * H * K)
     assert inertia == pytest.approx(H * dashpot / 2 + 0.5 * H**2 * K)
+
+
+@pytest.mark.parametrize(("held", "impratio"), [((0.0, 0.0), 1.0), ((8.0, 0.0), 8.0), ((8.0, 6.0), 3.0)])
+def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
+    """A friction row has impratio times the inertia of its normal row, here 1 kg and 2 kg. It is 1 without friction."""
+    c = np.array([1.0, 2.0]) * 2 / H
+    rows = np.zeros((2, 2)), np.zeros((2, 5)), np.zeros((2, 2))
+    weight, none = np.full(2, 0.01), np.zeros(2)
+    found = set_rows(np.full(2, 1e-9), c, weight, np.array(held), H, none, none, *rows)
+    assert found == pytest.approx(impratio, rel=1e-9)
+    impedance = rows[1][:, 0]
+    assert impedance == pytest.approx([0.01 / 1.01, 0.02 / 1.02])
+    for i in range(2):
+        assert rows[2][i, 1] == pytest.approx(-impedance[i] / H if held[i] else 0.0)
 
 
 def ball(k, c, timestep, beta, mass=3.0):

@@ -147,10 +147,14 @@ def test_joints_go_from_the_ground_upwards():
     scene = two_blocks()
     assert Joints.of_scene(scene).body.tolist() == [0, 1]
     parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
-    turned = {"rest": scene.rest[::-1], "point_body": [1, 1, 0, 0], "face_body": [-1, -1, 1, 1]}
+    turned = {
+        "rest": scene.rest[::-1],
+        "face_body": [1, 1, -1, -1],
+        "face": scene.face[::-1],
+    }
     joints = Joints.of_scene(mr.Scene(**parts | turned))
     assert joints.body.tolist() == [1, 0]
-    assert joints.of.tolist() == [0, 0, 1, 1]
+    assert joints.of.tolist() == [1, 1, 0, 0]
     bridge = {"face_body": [-1, -1, 0, -1], "face": [(0, 0), (0, 0), (0, 1.05), (0, 2.1)]}
     assert len(Joints.of_scene(mr.Scene(**parts | bridge)).body) == 0
 
