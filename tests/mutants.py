@@ -44,6 +44,7 @@ EQUIVALENT = {
     "accounts.py: dashpots[n, number[i]] += drag * rate * width[n] if law > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
+    "accounts.py: if points.held[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "pace.py: return 0 if h * pace.frequency <= SMOOTH else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""
