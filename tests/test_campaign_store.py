@@ -57,12 +57,6 @@ def test_a_symbolic_link_is_the_same_store(tmp_path):
         Store(tmp_path / "c.sqlite", writing=True)
 
 
-def test_a_lock_that_is_none(tmp_path):
-    (tmp_path / "c.sqlite.lock").write_text("not a lock\n" * 100)
-    with pytest.raises(OSError, match=r"c.sqlite.lock is not the lock of a store; move it away"):
-        Store(tmp_path / "c.sqlite", writing=True)
-
-
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """A store of 150 rows with labels, and its table."""
