@@ -2,8 +2,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
+OLDEST := .venv-oldest
 
-.PHONY: demo test test-slow mutants lint calibrate models figures clean
+.PHONY: demo test test-slow test-oldest mutants lint calibrate models figures clean stale
 
 demo: $(READY)
 	$(BIN)/python scripts/compare_wall.py --check --out out/demo
@@ -16,6 +17,9 @@ test-slow: $(READY)
 
 mutants: $(READY) # changes one operator or number of the physics at a time and names what no test notices; some minutes
 	$(BIN)/python tests/mutants.py $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
+
+test-oldest: $(OLDEST)/.ready # the everyday tests with the oldest Python and versions that pyproject.toml allows
+	$(OLDEST)/bin/pytest -n auto
 
 lint: $(READY)
 	$(BIN)/ruff check .
@@ -53,12 +57,24 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/throughput.py --out docs/figures
 	$(BIN)/python scripts/speed.py
 
-$(READY): pyproject.toml
+$(READY): INSTALL = pip install --quiet --disable-pip-version-check
+$(OLDEST)/.ready: PYTHON = python3.11
+$(OLDEST)/.ready: INSTALL = pip install --quiet --disable-pip-version-check uv && \
+	$(OLDEST)/bin/python -m uv pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct
+
+# An environment whose Python is gone, or that belongs to another folder, is stale and is made anew.
+SERVES = import importlib.util, os, sys; \
+	found = importlib.util.find_spec("mjrock"); \
+	sys.exit(found is None or not os.path.samefile(found.origin, "mjrock/__init__.py"))
+STALE = $(shell $*/bin/python -I -c '$(SERVES)' 2>/dev/null || echo stale)
+
+.SECONDEXPANSION:
+$(READY) $(OLDEST)/.ready: %/.ready: pyproject.toml $$(STALE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "mjrock needs Python 3.11 or newer; name one with: make PYTHON=python3.12 ..."; exit 1; }
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
-	@touch $(READY)
+	$(PYTHON) -m venv $(if $(filter stale,$^),--clear) $*
+	$*/bin/python -m $(INSTALL) --editable '.[test]'
+	@touch $@
 
 clean:
-	rm -rf .venv out .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv $(OLDEST) out .pytest_cache .mypy_cache .ruff_cache
