@@ -182,6 +182,7 @@ def gone(pids):
     return not any(Path(f"/proc/{pid}").exists() for pid in pids)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks for processes in /proc")
 def test_kill_and_resume(tmp_path):
     """kill -9 of the campaign mid-run, twice: it carries on, and its table is that of an undisturbed run."""

@@ -44,7 +44,17 @@ def test_no_script_is_forgotten():
     assert {p.stem for p in SCRIPTS.glob("*.py")} == set(WRITES) | {"cli", "paper", "suite"}
 
 
-LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"}
+LONG = {
+    "speed",
+    "thresholds",
+    "throughput",
+    "calibrate",
+    "work_precision",
+    "validate_law",
+    "fragility",
+    "agreement",
+    "polarity",
+}
 """Scripts that take a while even with --quick."""
 
 
