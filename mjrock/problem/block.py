@@ -49,7 +49,7 @@ class Block:
     ) -> Block:
         """The wall of full sizes `thickness` 2b, `height` 2h and `length` [m], with its edges `inset` [m]."""
         require_within("thickness", thickness, 2e-3, 20.0, "m")
-        require_within("height", height, max(1e-2, thickness), 200.0, "m")
+        require_within("height", height, max(1e-2, thickness), min(200.0, 200 * thickness), "m")
         return cls(b=thickness / 2, h=height / 2, length=length, density=density, inset=inset)
 
     @classmethod
