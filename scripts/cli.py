@@ -61,7 +61,7 @@ def run(main: Callable[[Sequence[str] | None], None]) -> int:
     """Call a script's main; an error that the user can mend is printed, not traced. Returns the exit code."""
     try:
         main(None)
-    except (ValueError, OSError, RuntimeError) as error:
+    except (ValueError, TypeError, OSError, RuntimeError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt as error:

@@ -44,16 +44,11 @@ def test_no_script_is_forgotten():
     assert {p.stem for p in SCRIPTS.glob("*.py")} == set(WRITES) | {"cli", "paper", "suite"}
 
 
-LONG = {
-    "speed",
-    "thresholds",
-    "throughput",
-    "calibrate",
-    "work_precision",
-    "validate_law",
-    "fragility",
+LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
     "agreement",
     "polarity",
+    "overturning_spectrum",
+    "ida",
 }
 """Scripts that take a while even with --quick."""
 
@@ -98,15 +93,21 @@ def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
         (["--out", "/dev/null/here"], "Not a directory"),
     ],
 )
-def test_bad_input_is_an_error_without_a_traceback(options, complaint, tmp_path):
+def test_bad_input_is_an_error_without_a_traceback(options, complaint, tmp_path, monkeypatch, capsys):
     out = [] if "--out" in options else ["--out", str(tmp_path / "out")]
-    run = subprocess.run(
-        [sys.executable, str(SCRIPTS / "compare_wall.py"), *options, *out], capture_output=True, text=True, check=False
-    )
-    assert run.returncode == 2
-    assert complaint in run.stderr
+    monkeypatch.setattr(sys, "argv", ["compare_wall.py", *options, *out])
+    assert cli.run(compare_wall.main) == 2
+    printed = capsys.readouterr()
+    assert complaint in printed.err
+    assert printed.out == ""
+
+
+def test_an_error_ends_the_process_with_its_code(tmp_path):
+    command = [sys.executable, str(SCRIPTS / "compare_wall.py"), "--timestep", "-1", "--out", str(tmp_path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout) == (2, "")
+    assert run.stderr.startswith("error: timestep = -1 s")
     assert "Traceback" not in run.stderr
-    assert run.stdout == ""
 
 
 def test_a_full_disk_leaves_the_old_file_whole(tmp_path, monkeypatch):
