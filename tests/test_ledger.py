@@ -34,6 +34,17 @@ def test_it_closes_with_the_accuracy(contacts):
         assert np.median([closure(run) for run in runs]) < most
 
 
+@pytest.mark.filterwarnings("ignore:xi = ")
+def test_one_that_does_not_close_says_so():
+    """Released at a speed into dashpots of nearly four times critical damping, far outside Table 1."""
+    wall = mr.Block.from_slenderness(1.988, 5.16, density=3278.0)
+    contacts = mr.Contacts.from_damping(wall, k_base=1.4448e9, xi_base=3.79, points=3)
+    case = mr.Case(wall, 1e-6, 3.0, side_stop=False, omega0=-0.1036)
+    with pytest.warns(UserWarning, match=r"the ledger does not close: it has .* too much; lower accuracy = 0.001"):
+        mr.simulate(case, contacts, ledger=True)
+    mr.simulate(case, contacts, ledger=True, accuracy=1e-5)  # silent: warnings are errors here
+
+
 def test_order_of_closure(one_sided, contacts):
     """With every touch centred the closure is second order in the step, first order in the accuracy."""
     knobs = np.array([1e-2, 3e-3, 1e-3, 3e-4, 1e-4])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from os import cpu_count
@@ -21,25 +20,18 @@ from ..problem.quantities import (
     shown,
 )
 from ..result.response import Response, State
+from .caveats import warn_if_coarse, warn_if_open, warn_if_slid
 from .mjcf import pair_rows
 from .model import SimulationError, engine_of
-from .pace import SMOOTH, short_step
+from .pace import short_step
 from .run import Run, broken, sound_timestep
 from .scene import Scene
 from .stepping import fitted_steps, fixed_steps
 from .steps import StepError
 from .wall import wall_scene
 
-SCATTER = 0.1
-"""Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
-step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts/convergence.py`). Without a side stop
-|e| scatters by less than 0.002 omega h."""
-WORTH_SAYING = 0.02
-"""Scatter of |e| that is warned of [-]."""
 PARTS = ("pose", "velocity")
 """What a state is made of."""
-SLID = 0.01
-"""Sliding of a base that should hold that is warned of, over b [-]."""
 
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
@@ -169,9 +161,10 @@ def _simulate_fitted(
             if used < 0.02 * accuracy:
                 raise broken(error, scene, h, used) from None
             used /= 10
-    _warn_if_slid(run, contacts)
+    warn_if_slid(run, contacts)
     settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
     response = run.response(output_step, 1, want_ledger, settings)
+    warn_if_open(response, run, f"lower accuracy = {accuracy:g}")
     response.stats["wall_time"] = time.perf_counter() - started
     return response
 
@@ -191,7 +184,7 @@ def _simulate_fixed(
     longest = max(case.duration for case in cases)
     require_size("the steps of this run", longest / timestep, "take a longer timestep, or steps that fit the motion")
     scenes, uplift = [wall_scene(case, contacts) for case in cases], _uplift(cases[0], contacts)
-    _warn_if_coarse(scenes[0], timestep)
+    warn_if_coarse(scenes[0], timestep)
     rows = pair_rows(scenes[0], timestep, newmark_beta)
     stride = max(1, round(output_step / timestep)) if output_step else 1
 
@@ -207,7 +200,7 @@ def _simulate_fixed(
             run = Run(case, uplift, scene, steps, released=start is None)
         except StepError as error:
             return broken(error, scene, timestep, None)
-        _warn_if_slid(run, contacts)
+        warn_if_slid(run, contacts)
         settings = {
             "timestep": timestep,
             "accuracy": None,
@@ -215,6 +208,7 @@ def _simulate_fixed(
             "stepping_time": stepping_time,
         }
         response = run.response(None, stride, want_ledger, settings)
+        warn_if_open(response, run, "take a shorter timestep")
         response.stats["wall_time"] = time.perf_counter() - started
         return response
 
@@ -228,34 +222,6 @@ def _simulate_fixed(
 def _uplift(case: Case, contacts: Contacts) -> tuple[float, float]:
     """Rotation [rad] and energy [J] below which the wall does not rock."""
     return contacts.uplift_rotation(case.block), contacts.uplift_energy(case.block)
-
-
-def _warn_if_coarse(scene: Scene, h: float) -> None:
-    resolved = h * scene.highest_frequency
-    scatter = SCATTER * resolved if (scene.points.bears == 0).any() else 0.0
-    if scatter > WORTH_SAYING and resolved <= SMOOTH:
-        warnings.warn(
-            f"with a fixed step of {h:.3g} s |e| scatters by {scatter:.0%} (standard deviation) with the phase of the "
-            f"touch; below {WORTH_SAYING / SCATTER / scene.highest_frequency:.3g} s it is less than "
-            f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter",
-            stacklevel=4,
-        )
-    if resolved > SMOOTH:
-        warnings.warn(
-            f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
-            f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
-            stacklevel=4,
-        )
-
-
-def _warn_if_slid(run: Run, contacts: Contacts) -> None:
-    half_base = run.case.block.half_base
-    if contacts.base.friction is None and run.slid > SLID * half_base:
-        warnings.warn(
-            f"the base slid by up to {run.slid:.3g} m, {run.slid / half_base:.1%} of b, although it should hold: no "
-            "edge was loaded enough to hold it. Give the base the friction that it has",
-            stacklevel=4,
-        )
 
 
 def _require_asked(case: object, contacts: object, output_step: object, ledger: object) -> None:
