@@ -19,7 +19,8 @@ step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts
 WORTH_SAYING = 0.02
 """Scatter of |e| that is warned of [-]."""
 OPEN = 0.05
-"""Energy that the ledger may have too much before that is warned of, over the energy of the release [-]."""
+"""Energy that the ledger may have too much before that is warned of, over the energy of the release and of the
+ground motion [-]."""
 SLID = 0.01
 """Sliding of a base that should hold that is warned of, over b [-]."""
 
@@ -59,10 +60,9 @@ def warn_if_open(response: Response, run: Run, advice: str) -> None:
     if response.ledger is None:
         return
     standing = np.abs(response.theta) <= run.case.block.alpha
-    scale = max(float(run.energy[0]), run.uplift[1])
-    unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / scale
+    unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
     if unpaid > OPEN:
         warnings.warn(
-            f"the ledger does not close: it has {unpaid:.1%} of the energy of the release too much; {advice}",
+            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}",
             stacklevel=4,
         )

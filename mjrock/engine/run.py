@@ -43,8 +43,8 @@ def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, floa
 class Run:
     """One run of the engine, checked: its steps, its energy, its peaks and impacts, and how far its base slid.
 
-    The slip is that of the lower edge along the base since the release [m], and `slid` its largest size while the wall
-    can still come back.
+    `scale` is the energy of the release and of what the ground put in or took [J]. The slip is that of the lower edge
+    along the base since the release [m], and `slid` its largest size while the wall can still come back.
 
     Raises:
         StepError: if energy appears from nowhere.
@@ -66,9 +66,11 @@ class Run:
         work = ground_work(scene, steps)[:count]
         own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
         gain, when = energy_gain(times[times <= t[count - 1]], t[:count], own)
-        scale = max(float(self.energy[0]) + float(np.abs(work).sum()), uplift[1])
-        if not gain <= ENERGY_GAIN * scale:
-            raise StepError(f"{gain:.3g} J, {gain / scale:.2%} of the energy there was, appeared from nowhere", when)
+        self.scale = max(float(self.energy[0]) + float(np.abs(work).sum()), uplift[1])
+        if not gain <= ENERGY_GAIN * self.scale:
+            raise StepError(
+                f"{gain:.3g} J, {gain / self.scale:.2%} of the energy there was, appeared from nowhere", when
+            )
 
     def response(self, spacing: float | None, stride: int, want_ledger: bool, stats: dict[str, Any]) -> Response:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None; `stats` says how."""
