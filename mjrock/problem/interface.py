@@ -238,8 +238,8 @@ class Contacts:
         for name, k in (("base", k_base), ("side", k_side)):
             if name == "base" or k is not None:
                 require_within(f"{name} stiffness k_n", k, 1e4, 1e14, "N/m3")
-        if k_side is not None and e.side >= 0:
-            raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
+        if k_side is not None:
+            e.require_rebound()
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
             if law.points not in (None, points):

@@ -35,6 +35,11 @@ class Restitution:
         """e_1s = e_2s e_side e_2s: base, side, base in quick succession (Eq. 4) [-]."""
         return self.base**2 * self.side
 
+    def require_rebound(self) -> None:
+        """Raise ValueError unless the wall rebounds from the side stop."""
+        if self.side >= 0:
+            raise ValueError(f"side restitution = {self.side:g} is no rebound; the valid range is -1 <= e_side < 0")
+
     @classmethod
     def from_geometry(cls, wall: Block | float) -> Restitution:
         """Conservation of angular momentum through each impact (Eqs. 2-3).

@@ -79,14 +79,14 @@ def matched_contacts(
     require_kind("e", e, Restitution)
     require_within("amplitude", amplitude, 0.01, 0.95)
     require_within("accuracy", accuracy, 1e-8, 0.1)
+    if k_side is not None:
+        e.require_rebound()
     one = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude)
     options = {"accuracy": accuracy, "friction": friction, "side_friction": side_friction}
     base = Match(one, e, points, **options)  # type: ignore[arg-type]
     found = _found("base", base, BASE_BOUNDS, whole=True)
     xi_side = 0.0
     if k_side is not None:
-        if e.side >= 0:
-            raise ValueError(f"side restitution = {e.side:g} is no rebound; the valid range is -1 <= e_side < 0")
         side = Match(one, e, points, found.xi, **options)  # type: ignore[arg-type]
         xi_side = _found("side", side, SIDE_BOUNDS, whole=False).xi
     return Contacts.from_damping(
