@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from .block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
-from .quantities import require_array, require_kind, require_within
+from .quantities import require_array, require_kind, require_stiffness, require_within
 from .restitution import Restitution
 
 LEAST, HIGHEST = 1e-3, 0.3
@@ -95,7 +95,7 @@ class DampingLaw:
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
         for symbol, k in (("k_n", k_n), ("k_side", k_n if k_side is None else k_side)):
-            require_within(symbol, k, 1e4, 1e14, "N/m3")
+            require_stiffness(symbol, k)
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
         require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
@@ -121,7 +121,7 @@ class DampingLaw:
         They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
         """
         require_kind("wall", wall, Block)
-        require_within("k_n", k_n, 1e4, 1e14, "N/m3")
+        require_stiffness("k_n", k_n)
         require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         loss = getattr(self.base, "loss", None)
         if loss is None:
@@ -145,7 +145,7 @@ class DampingLaw:
         """
         require_kind("e", e, Restitution)
         if k_side is not None:
-            require_within("k_side", k_side, 1e4, 1e14, "N/m3")
+            require_stiffness("k_side", k_side)
         low, high = self.reach(wall, k_n, amplitude)
         margin = MARGIN * (high - low)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)

@@ -13,7 +13,7 @@ import numpy as np
 
 from .block import Block
 from .damping import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
-from .quantities import Array, require_kind, require_real, require_whole, require_within, shown
+from .quantities import Array, require_kind, require_real, require_stiffness, require_whole, require_within, shown
 from .restitution import Restitution
 
 Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
@@ -49,7 +49,7 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     figures. A frequency of the side itself would damp some 26 times too little.
     """
     require_kind("wall", wall, Block)
-    require_within("interface stiffness k_n", k_n, 1e4, 1e14, "N/m3")
+    require_stiffness("interface stiffness k_n", k_n)
     _require_points(points)
     positions, widths = contact_lines(2 * wall.half_base, int(points))
     K_rot = float(np.sum(k_n * widths * wall.length * positions**2))
@@ -88,7 +88,7 @@ class Interface:
         require_within("reference frequency", self.frequency, 1e-3, 1e9, "rad/s")
         if self.friction is not None:
             require_within("friction", self.friction, 0.0, 10.0)
-        require_within("interface stiffness k_n", self.k_n, 1e4, 1e14, "N/m3")
+        require_stiffness("interface stiffness k_n", self.k_n)
         require_within("damping ratio xi", self.xi, 0.0, 100.0)
         if self.xi > 1:
             warnings.warn(f"xi = {self.xi:g} is {self.xi:.0%} of critical; damping ratios are fractions", stacklevel=3)
@@ -178,9 +178,9 @@ class Contacts:
         require_kind("wall", wall, Block)
         _require_points(points)
         points = int(points)
-        require_within("base stiffness k_n", k_base, 1e4, 1e14, "N/m3")
+        require_stiffness("base stiffness k_n", k_base)
         if k_side is not None:
-            require_within("side stiffness k_n", k_side, 1e4, 1e14, "N/m3")
+            require_stiffness("side stiffness k_n", k_side)
         omega = reference_frequency(wall, k_base, points)
         base = Interface(k_base, xi_base, 2 * wall.half_base, wall.length, omega, points, friction)
         side = None
@@ -237,7 +237,7 @@ class Contacts:
             raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
         for name, k in (("base", k_base), ("side", k_side)):
             if name == "base" or k is not None:
-                require_within(f"{name} stiffness k_n", k, 1e4, 1e14, "N/m3")
+                require_stiffness(f"{name} stiffness k_n", k)
         if k_side is not None:
             e.require_rebound()
         if isinstance(law, DampingLaw):

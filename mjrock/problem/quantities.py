@@ -60,6 +60,11 @@ def require_within(name: str, value: object, low: float, high: float, unit: str 
     return number
 
 
+def require_stiffness(name: str, value: object) -> float:
+    """Return an interface stiffness as a float; it is within 1e4 to 1e14 N/m3, see `require_within`."""
+    return require_within(name, value, 1e4, 1e14, "N/m3")
+
+
 def require_whole(name: str, value: object, low: int, high: int) -> int:
     """Return `value` as an integer.
 
