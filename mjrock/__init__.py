@@ -13,12 +13,15 @@ from .engine.simulation import automatic_timestep, simulate, simulate_batch
 from .engine.wall import wall_scene
 from .problem.block import Block
 from .problem.case import Case
+from .problem.contacts import Contacts
 from .problem.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+from .problem.effects import AddedMass, Load, SideStop, Thrust, Tie
 from .problem.forms import PowerLaw
-from .problem.interface import Contacts, Interface, reference_frequency
+from .problem.interface import Interface, reference_frequency
 from .problem.motion import GroundMotion
 from .problem.quantities import GRAVITY
 from .problem.restitution import Restitution
+from .problem.section import Opening
 from .reference.compliant import solve_compliant
 from .result.compare import Comparison, compare
 from .result.history import Impact
@@ -37,6 +40,7 @@ __all__ = [
     "CALIBRATED_BED",
     "GRAVITY",
     "PUBLISHED",
+    "AddedMass",
     "Analysis",
     "Block",
     "Case",
@@ -49,14 +53,19 @@ __all__ = [
     "Impact",
     "Interface",
     "Ledger",
+    "Load",
+    "Opening",
     "Outcome",
     "Plan",
     "PowerLaw",
     "Response",
     "Restitution",
     "Scene",
+    "SideStop",
     "SimulationError",
     "Store",
+    "Thrust",
+    "Tie",
     "__version__",
     "as_theory",
     "automatic_timestep",

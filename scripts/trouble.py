@@ -19,6 +19,7 @@ from tqdm import tqdm
 import cli
 import mjrock as mr
 from mjrock import Outcome
+from mjrock.problem.uplift import Uplift
 
 UNPAID = {False: 0.02, True: 0.10}
 """Most energy that the ledger may have too much at any time, over the energy of release, inside and outside Table 1:
@@ -123,7 +124,7 @@ def broken_promise(scene: Scene, *, wide: bool) -> str | None:
         return "the motion is not finite"
     assert run.ledger is not None
     standing = np.abs(run.theta) <= wall.alpha
-    scale = max(float(run.energy[0]), contacts.uplift_energy(wall))
+    scale = max(float(run.energy[0]), Uplift.of(case, contacts).energy)
     unpaid = float(run.ledger.residual[standing].max(initial=0.0)) / scale
     if unpaid > UNPAID[wide]:
         return f"the ledger has {unpaid:.2%} of the release energy too much"

@@ -216,7 +216,7 @@ def measure(
         except (mr.SimulationError, StepError):
             return Point(label, method, setting, 0, math.nan, math.nan, math.nan, math.nan)
         steps = response.stats.get("steps", response.stats.get("evaluations", 0))
-        wanted = restitution_of(peak_energies(reference.case, reference.peaks))[:rebounds]
+        wanted = restitution_of(*peak_energies(reference.case, reference.peaks))[:rebounds]
         found = np.append(response.restitution, np.full(rebounds, np.nan))[: len(wanted)]
         e_errors.append(float(np.max(np.abs(np.nan_to_num(found / wanted - 1, nan=1.0)))))
         rms.append(mr.compare(reference, response).rms)

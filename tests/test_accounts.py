@@ -15,6 +15,7 @@ from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fixed_steps
 from mjrock.engine.wall import wall_scene
+from mjrock.problem.uplift import Uplift
 
 SQUAT = mr.Block.from_size(2.0, 2.0)
 """A block that slides before it rocks."""
@@ -137,7 +138,7 @@ def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
     for case, made_of, most in (
         (two_sided, contacts, mr.simulate(two_sided, contacts, 1e-3).energy[0]),
         (shaken, ice, 2 * slid.max() - slid[-1]),
-        (still, ice, ice.uplift_energy(SQUAT)),
+        (still, ice, Uplift.of(still, ice).energy),
     ):
         gain = share * engine_run.ENERGY_GAIN * most
         monkeypatch.setattr(engine_run, "energy_gain", lambda *_, gain=gain: (gain, 0.1))

@@ -17,7 +17,7 @@ from ..compiled import compiled, jitable
 from ..problem.quantities import Array, Integers
 from ..result.ledger import Ledger
 from .contact import row
-from .ground import Ground, mean_acceleration
+from .ground import Ground, Shaking, mean_acceleration
 from .kinematics import Points, along, gap, spring_energy, take_frame
 from .scene import Scene
 from .steps import Steps
@@ -25,15 +25,18 @@ from .steps import Steps
 
 def ground_work(scene: Scene, steps: Steps) -> Array:
     """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
-    work = np.empty(len(steps.t))
-    _ground_work(Ground.of(scene.motion), steps.t, steps.h, steps.widths, steps.velocity[:, 0::3] @ scene.mass, work)
+    work, ground = np.zeros(len(steps.t)), Ground.of(scene.motion, scene.vertical)
+    for first, shaking in enumerate(ground):
+        if len(shaking.accel):
+            momentum = steps.velocity[:, first::3] @ scene.mass
+            _ground_work(shaking, steps.t, steps.h, steps.widths, momentum, work)
     return work
 
 
 @compiled
-def _ground_work(ground: Ground, t: Array, h: Array, width: Array, momentum: Array, work: Array) -> None:
+def _ground_work(shaking: Shaking, t: Array, h: Array, width: Array, momentum: Array, work: Array) -> None:
     for n in range(len(t)):
-        work[n] = -mean_acceleration(ground, t[n], h[n]) * momentum[n] * width[n]
+        work[n] -= mean_acceleration(shaking, t[n], h[n]) * momentum[n] * width[n]
 
 
 def ledger(scene: Scene, steps: Steps) -> Ledger:
@@ -69,7 +72,7 @@ def ledger(scene: Scene, steps: Steps) -> Ledger:
         dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate(groups)},
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, steps)),
-        ties=dict(zip(scene.tie_names, taken.T, strict=True)),
+        ties=dict(zip(scene.tie_names, (taken - taken[0]).T, strict=True)),
     )
 
 

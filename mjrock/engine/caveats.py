@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import warnings
 
-import numpy as np
-
-from ..problem.interface import Contacts
+from ..problem.contacts import Contacts
 from ..result.response import Response
 from .pace import SMOOTH
 from .run import Run, sound_timestep
@@ -59,7 +57,7 @@ def warn_if_open(response: Response, run: Run, advice: str) -> None:
     """Warn of a ledger with energy that nothing has put in, with advice."""
     if response.ledger is None:
         return
-    standing = np.abs(response.theta) <= run.case.block.alpha
+    standing = run.case.returns_from(response.theta)
     unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
     if unpaid > OPEN:
         warnings.warn(

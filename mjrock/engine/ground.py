@@ -1,4 +1,4 @@
-"""The moving ground, as seen from it: a force -m a_g on every body.
+"""The moving ground, as seen from it: a force -m a_g on every body, horizontal and vertical.
 
 The leapfrog gets its mean over each window, from half a step before the pose to half a step after it. The bodies then
 receive the impulse of the ground exactly, whatever the step and wherever the record jumps.
@@ -15,8 +15,8 @@ from ..problem.motion import GroundMotion
 from ..problem.quantities import Array
 
 
-class Ground(NamedTuple):
-    """A ground motion as arrays for compiled functions; empty ones stand for a base at rest.
+class Shaking(NamedTuple):
+    """A ground motion in one direction as arrays for compiled functions; empty ones stand for a base at rest.
 
     Args:
         accel, velocity: at the samples [m/s2, m/s], shape (samples,).
@@ -28,39 +28,55 @@ class Ground(NamedTuple):
     dt: float
 
     @classmethod
-    def of(cls, motion: GroundMotion | None) -> Ground:
+    def of(cls, motion: GroundMotion | None) -> Shaking:
         """The arrays of a motion."""
         if motion is None:
             return cls(np.empty(0), np.empty(0), 1.0)
         return cls(motion.accel.copy(), motion.velocities, motion.dt)
 
 
+class Ground(NamedTuple):
+    """The motions of the ground, horizontal away from the side stop, and vertical upwards."""
+
+    x: Shaking
+    z: Shaking
+
+    @classmethod
+    def of(cls, motion: GroundMotion | None, vertical: GroundMotion | None = None) -> Ground:
+        """The arrays of both motions."""
+        return cls(Shaking.of(motion), Shaking.of(vertical))
+
+
 @jitable
-def ground_velocity(ground: Ground, t: float) -> float:
+def ground_velocity(shaking: Shaking, t: float) -> float:
     """Exact integral of the acceleration from zero to t, constant after the last sample [m/s]."""
-    position, last = t / ground.dt, len(ground.accel) - 1
+    position, last = t / shaking.dt, len(shaking.accel) - 1
     if position <= 0:
         return 0.0
     if position >= last:
-        return ground.velocity[last]
+        return shaking.velocity[last]
     i = int(position)
     s = position - i
-    return ground.velocity[i] + ground.dt * s * (ground.accel[i] + 0.5 * s * (ground.accel[i + 1] - ground.accel[i]))
+    rise = shaking.accel[i + 1] - shaking.accel[i]
+    return shaking.velocity[i] + shaking.dt * s * (shaking.accel[i] + 0.5 * s * rise)
 
 
 @jitable
-def mean_acceleration(ground: Ground, t: float, h: float) -> float:
+def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
     """Mean acceleration of the ground over the window of a step [m/s2]."""
-    if len(ground.accel) == 0:
+    if len(shaking.accel) == 0:
         return 0.0
-    return (ground_velocity(ground, t + 0.5 * h) - ground_velocity(ground, t - 0.5 * h)) / h
+    return (ground_velocity(shaking, t + 0.5 * h) - ground_velocity(shaking, t - 0.5 * h)) / h
 
 
 @jitable
 def push(ground: Ground, masses: Array, t: float, h: float, applied: Array) -> None:
     """Write the force of the moving ground on every body into `applied` [N], shape (3 n,)."""
-    if len(ground.accel) == 0:
-        return
-    mean = mean_acceleration(ground, t, h)
-    for j in range(0, len(masses), 3):
-        applied[j] = -masses[j] * mean
+    if len(ground.x.accel) > 0:
+        mean = mean_acceleration(ground.x, t, h)
+        for j in range(0, len(masses), 3):
+            applied[j] = -masses[j] * mean
+    if len(ground.z.accel) > 0:
+        mean = mean_acceleration(ground.z, t, h)
+        for j in range(1, len(masses), 3):
+            applied[j] = -masses[j] * mean

@@ -130,6 +130,8 @@ def _world(scene: Scene) -> Iterator[str]:
     for j, (name, rest, outline) in enumerate(zip(scene.names, scene.rest, scene.outlines, strict=True)):
         mass, (width, height) = scene.mass[j], np.ptp(outline, axis=0)
         across = [mass * (scene.length**2 + side**2) / 12 for side in (height, width)]
+        if not abs(across[0] - across[1]) <= scene.inertia[j] <= sum(across):  # of a rectangle; any will do that can be
+            across = [scene.inertia[j]] * 2
         prefix = "" if len(scene.names) == 1 else f"{name}_"
         yield f"  <body name={quoteattr(name)} pos={_value((rest[0], 0.0, rest[1] + radius))}>"
         yield "    " + _tag("inertial", pos=(0, 0, 0), mass=mass, diaginertia=(across[0], scene.inertia[j], across[1]))

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from ..problem.case import Case
-from ..problem.interface import Contacts
+from ..problem.contacts import Contacts
 from ..problem.quantities import Array, require_kind, require_within
 from .contact import planar_weight
 from .memory import Memory

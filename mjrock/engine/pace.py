@@ -86,8 +86,7 @@ class Pace(NamedTuple):
         longest = math.sqrt(LONG * accuracy) / scene.rocking_frequency
         longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
         longest = min(longest, TAUT / max(scene.tie_frequency, 1e-300))
-        if scene.motion is not None:
-            longest = min(longest, scene.motion.dt)
+        longest = min([longest, *(motion.dt for motion in (scene.motion, scene.vertical) if motion is not None)])
         ringing = np.where(scene.points.bears > 0, RINGING_BORNE, RINGING_OPEN)
         return cls(
             short,

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..problem.case import Case
 from ..problem.quantities import Array
+from ..problem.uplift import Uplift
 from ..result.history import rocking_history
-from ..result.response import Response, ending
+from ..result.response import Plastic, Response, ending
 from ..result.samples import interpolated
 from .accounts import ground_work, ledger
 from .kinematics import gaps
@@ -50,23 +51,28 @@ class Run:
         StepError: if energy appears from nowhere.
     """
 
-    def __init__(self, case: Case, uplift: tuple[float, float], scene: Scene, steps: Steps, *, released: bool) -> None:
+    def __init__(self, case: Case, uplift: Uplift, scene: Scene, steps: Steps, *, released: bool) -> None:
         self.case, self.uplift, self.scene, self.steps = case, uplift, scene, steps
         t, self.theta, self.omega = steps.t, steps.pose[:, 2], steps.velocity[:, 2]
-        self.slip = steps.pose[:, 0] - case.block.pose(self.theta)[:, 0]
-        self.energy = scene.energy(steps.pose, steps.velocity)
+        self.slip = steps.pose[:, 0] - case.wall.pose(self.theta)[:, 0]
+        stored, taken = scene.accounts(steps.pose, steps.velocity)
+        self.energy = stored.sum(axis=1) - scene.rest_energies.sum()
+        self.plastic = {
+            name: Plastic(float(energy) / strength, float(energy))
+            for name, energy, strength in zip(scene.tie_names, taken[-1], scene.tie_strength.tolist(), strict=True)
+        }
         times, self.peaks, self.impacts = rocking_history(
             case, t, self.theta, self.omega, self.energy, uplift, released=released
         )
 
         # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
-        standing = np.flatnonzero(np.abs(self.theta) <= case.block.alpha)
+        standing = np.flatnonzero(case.returns_from(self.theta))
         count = int(standing[-1]) + 1 if standing.size else 1
         self.slid = float(np.abs(self.slip[:count] - self.slip[0]).max())
         work = ground_work(scene, steps)[:count]
         own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
         gain, when = energy_gain(times[times <= t[count - 1]], t[:count], own)
-        self.scale = max(float(self.energy[0]) + float(np.abs(work).sum()), uplift[1])
+        self.scale = max(float(self.energy[0]) + float(np.abs(work).sum()), uplift.energy)
         if not gain <= ENERGY_GAIN * self.scale:
             raise StepError(
                 f"{gain:.3g} J, {gain / self.scale:.2%} of the energy there was, appeared from nowhere", when
@@ -83,7 +89,7 @@ class Run:
             t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
             pose, velocity = interpolated(steps.t, steps.pose, steps.velocity, t)
             end = pose[-1], velocity[-1]
-        outcome, message = ending(case, steps.t, self.theta, self.energy, self.uplift[1])
+        outcome, message = ending(case, steps.t, self.theta, self.energy, self.uplift.energy)
         deepest = -gaps(scene.points, steps.pose).min(axis=0)
         return Response(
             case=case,
@@ -97,6 +103,7 @@ class Run:
             message=message,
             compliant=(np.interp(t, steps.t, self.energy), pose.reshape(len(t), -1, 3)),
             ledger=ledger(scene, steps).at(t) if want_ledger else None,
+            plastic=self.plastic,
             end=(end[0].reshape(-1, 3), end[1].reshape(-1, 3)),
             stats={
                 "steps": len(steps.t),

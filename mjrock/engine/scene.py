@@ -67,7 +67,7 @@ class Scene:
         settled: pose of the bodies at rest under their weight, shape (n, 3). None searches for it.
         release: pose and velocity at the release, shape (n, 3) each. None stands for rest at `settled`.
         duration: how long to follow the motion [s].
-        motion: acceleration of the ground, or None.
+        motion, vertical: acceleration of the ground, horizontal and upwards, or None.
         title: what the scene is, in words, for the model text.
         facts: numbers and texts that the model records.
 
@@ -106,6 +106,7 @@ class Scene:
     release: tuple[Array, Array] | None = None
     duration: float = 1.0
     motion: GroundMotion | None = None
+    vertical: GroundMotion | None = None
     title: str = "Rigid bodies on compliant contacts"
     facts: Mapping[str, float | str] = field(default_factory=dict)
 
@@ -124,15 +125,22 @@ class Scene:
         """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3)."""
         return lowered(self._points, self.forces, self.masses, pose)
 
-    def released(self, pose: Array, velocity: Array, duration: float, motion: GroundMotion | None) -> Scene:
-        """This scene with another release, shape (n, 3) each, duration [s] and ground motion.
+    def released(
+        self,
+        pose: Array,
+        velocity: Array,
+        duration: float,
+        motion: GroundMotion | None,
+        vertical: GroundMotion | None = None,
+    ) -> Scene:
+        """This scene with another release, shape (n, 3) each, duration [s] and ground motions.
 
         What follows from the scene at rest is found once and shared.
         """
         for name in SHARED:
             getattr(self, name)
         made = copy(self)
-        made.__dict__.update(release=(pose, velocity), duration=duration, motion=motion)
+        made.__dict__.update(release=(pose, velocity), duration=duration, motion=motion, vertical=vertical)
         for name in ("started", "release_energy"):
             made.__dict__.pop(name, None)
         return made
@@ -287,7 +295,7 @@ class Scene:
 
         Springs and dashpots are set with each step, the release with each run, and titles and facts move nothing.
         """
-        set_anew = {"k", "c", "settled", "release", "duration", "motion", "title", "facts"}
+        set_anew = {"k", "c", "settled", "release", "duration", "motion", "vertical", "title", "facts"}
         digest = hashlib.sha256()
         for name in (one.name for one in fields(self) if one.name not in set_anew):
             parts = getattr(self, name) if name == "outlines" else (getattr(self, name),)

@@ -9,7 +9,7 @@ from os import cpu_count
 
 from ..problem.block import Block
 from ..problem.case import Case
-from ..problem.interface import Contacts
+from ..problem.contacts import Contacts
 from ..problem.quantities import (
     ON_ITS_FACE,
     require_array,
@@ -19,6 +19,7 @@ from ..problem.quantities import (
     require_within,
     shown,
 )
+from ..problem.uplift import Uplift
 from ..result.response import Response, State
 from .caveats import warn_if_coarse, warn_if_open, warn_if_slid
 from .mjcf import pair_rows
@@ -126,8 +127,8 @@ def simulate_batch(
         return []
     first = cases[0]
     for i, case in enumerate(cases):
-        if (case.block, case.side_stop) != (first.block, first.side_stop):
-            raise ValueError(f"cases[{i}] has another wall or other sides than cases[0]; a batch has one geometry")
+        if any(getattr(case, name) != getattr(first, name) for name in ("block", "side_stop", "effects")):
+            raise ValueError(f"cases[{i}] has another wall, sides or effects than cases[0]; a batch has one geometry")
     return _simulate_fixed(cases, contacts, timestep, newmark_beta, output_step, ledger, None)
 
 
@@ -144,7 +145,7 @@ def _simulate_fitted(
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     started = time.perf_counter()
-    scene, uplift = wall_scene(case, contacts), _uplift(case, contacts)
+    scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts)
     used = accuracy
     while True:
         h = short_step(scene, used)
@@ -183,7 +184,7 @@ def _simulate_fixed(
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     longest = max(case.duration for case in cases)
     require_size("the steps of this run", longest / timestep, "take a longer timestep, or steps that fit the motion")
-    scenes, uplift = [wall_scene(case, contacts) for case in cases], _uplift(cases[0], contacts)
+    scenes, uplift = [wall_scene(case, contacts) for case in cases], Uplift.of(cases[0], contacts)
     warn_if_coarse(scenes[0], timestep)
     rows = pair_rows(scenes[0], timestep, newmark_beta)
     stride = max(1, round(output_step / timestep)) if output_step else 1
@@ -217,11 +218,6 @@ def _simulate_fixed(
         return [one(case, scene) for case, scene in zip(cases, scenes, strict=True)]
     with ThreadPoolExecutor(threads) as pool:
         return list(pool.map(one, cases, scenes))
-
-
-def _uplift(case: Case, contacts: Contacts) -> tuple[float, float]:
-    """Rotation [rad] and energy [J] below which the wall does not rock."""
-    return contacts.uplift_rotation(case.block), contacts.uplift_energy(case.block)
 
 
 def _require_asked(case: object, contacts: object, output_step: object, ledger: object) -> None:

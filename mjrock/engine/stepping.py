@@ -32,7 +32,7 @@ def fitted_steps(engine: Engine, scene: Scene, accuracy: float) -> Steps:
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    pace, ground, joints = Pace.of(scene, accuracy), Ground.of(scene.motion), Joints.of_scene(scene)
+    pace, ground, joints = Pace.of(scene, accuracy), Ground.of(scene.motion, scene.vertical), Joints.of_scene(scene)
     ties = scene.ties._replace(reach=np.array(scene.ties.reach))  # they yield in this run alone
     state = State.of(engine.memory, Springs.of(scene.points, ties))
     energy = max(2 * scene.release_energy, pace.least_energy)
@@ -58,7 +58,7 @@ def fixed_steps(engine: Engine, scene: Scene, timestep: float, newmark_beta: flo
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    last, ground, done = max(1, round(scene.duration / timestep)), Ground.of(scene.motion), 0
+    last, ground, done = max(1, round(scene.duration / timestep)), Ground.of(scene.motion, scene.vertical), 0
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal done

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from ..problem.block import Block
 from ..problem.case import Case
-from ..problem.interface import Contacts
+from ..problem.contacts import Contacts
+from ..problem.effects import AddedMass, Effect, Load, Thrust, Tie
 from ..problem.quantities import Array, require_kind
 from .scene import Scene
 from .tables import GROUND
@@ -61,51 +63,58 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
 
     The wall is released tilted about its toe, on a base that is compressed until it carries the weight. A wall set down
     on undeformed springs would fall by m g / k and bounce. It would lose in its base an energy of the order of what an
-    impact is measured by, 1 % of the release energy on the paper's wall.
+    impact is measured by, 1 % of the release energy on the paper's wall. A wall that is not tilted and not moving is
+    released from its equilibrium under all effects.
 
     The body is `wall`. The groups of contacts are `base`, from the inner to the outer edge, and `side`, from the bottom
-    to the top.
+    to the top. The ties are `tie_0`, `tie_1` and so on in the order of the case, the forces `load_0` and `thrust_0`.
 
     Raises:
-        ValueError: if the contacts do not fit the case.
+        ValueError: if the contacts do not fit the case, or cannot carry it.
     """
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts)
-    wall, scene = case.block, standing_wall(case.block, contacts, case.side_stop)
-    tilted = scene.lowered(wall.pose(np.array([case.theta0])))
-    velocity = case.omega0 * wall.turning(case.theta0, case.direction)[None]
-    return scene.released(tilted, velocity, case.duration, case.motion)
+    wall, scene = case.wall, standing_wall(case.block, contacts, case.stop_top, case.effects)
+    if case.theta0 == case.omega0 == 0:
+        pose, velocity = scene.at_rest, np.zeros((1, 3))
+    else:
+        pose = scene.lowered(wall.pose(np.array([case.theta0])))
+        velocity = case.omega0 * wall.turning(case.theta0, case.direction)[None]
+    return scene.released(pose, velocity, case.duration, case.motion, case.vertical)
 
 
 @lru_cache(maxsize=64)
-def standing_wall(wall: Block, contacts: Contacts, side_stop: bool) -> Scene:
-    """The scene of a wall at rest, which all cases of one wall on the same contacts share.
+def standing_wall(block: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...]) -> Scene:
+    """The scene of a wall at rest, which all cases of one wall with the same effects on the same contacts share.
 
     Raises:
-        ValueError: if the contacts do not fit the wall.
+        ValueError: if the contacts do not fit the wall, or cannot carry it.
     """
-    contacts.require_fit(wall, side_stop=side_stop)
-    base, b, h = contacts.base, wall.b, wall.h
-    places = [(x, -h) for x in base.positions]
+    contacts.require_fit(block, side_stop=stop_top is not None)
+    case = Case(block, 0.0, 1.0, side_stop=stop_top is not None, effects=effects)
+    wall, base = case.wall, contacts.base
+    require_carried(case, contacts)
+    centroid = np.array([wall.centroid_offset, wall.centroid_height])
+    places = [(x - centroid[0], -centroid[1]) for x in base.positions]
     faces, normals, groups = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, ["base"] * base.points
-    k, c, friction = base.stiffness, base.damping, base_friction(wall, contacts, side_stop)
+    k, c, friction = base.stiffness, base.damping, base_friction(wall, contacts, stop_top is not None)
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
-    if side_stop:
-        side = contacts.side
-        assert side is not None
-        places += [(-b, z) for z in side.positions]
-        faces, normals = faces + [(-b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
+    if stop_top is not None:
+        side = contacts.side_up_to(stop_top)
+        places += [(-wall.b - centroid[0], z) for z in side.positions + (0.5 * stop_top - centroid[1])]
+        faces, normals = faces + [(-wall.b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
         groups += ["side"] * side.points
         k, c = np.concatenate([k, side.stiffness]), np.concatenate([c, side.damping])
         friction = np.concatenate([friction, np.full(side.points, side.friction or 0.0)])
         facts |= {"k_n_side": side.k_n, "xi_side": side.xi}
     facts |= {"reference_frequency": base.frequency, "law": contacts.law}
+    even = wall.centroid_offset == 0 and not set(map(type, effects)) - {AddedMass}
     return Scene(
         names=("wall",),
         mass=np.array([wall.mass]),
         inertia=np.array([wall.inertia]),
-        rest=np.array([[0.0, h]]),
-        outlines=(np.array([(-b, -h), (b, -h), (b, h), (-b, h)]),),
+        rest=centroid[None],
+        outlines=(wall.outline,),
         length=wall.length,
         point_body=np.zeros(len(places), dtype=np.int64),
         point=np.array(places),
@@ -116,10 +125,64 @@ def standing_wall(wall: Block, contacts: Contacts, side_stop: bool) -> Scene:
         c=c,
         friction=friction,
         group=tuple(groups),
-        settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]),
-        title=(
-            f"A masonry wall, {2 * b:g} m thick, {2 * h:g} m high, {wall.length:g} m long, {wall.density:g} kg/m3, "
-            f"rocking {'against a side stop' if side_stop else 'on both edges'}"
-        ),
+        settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
+        title=_title(wall, stop_top),
         facts=facts,
+        **attachments(case, centroid),
+    )
+
+
+def attachments(case: Case, centroid: Array) -> dict[str, Any]:
+    """The ties, loads and thrusts of a case as arrays of a scene; nothing for a case without them.
+
+    Args:
+        case: the case.
+        centroid: from the middle of the base [m], shape (2,).
+    """
+    made: dict[str, Any] = {}
+    ties, pulls = case.each(Tie), case.pulls
+    if ties:
+        held = np.array([(pull.offset, pull.height) for pull in pulls])
+        made = {
+            "tie_names": tuple(f"tie_{i}" for i in range(len(ties))),
+            "tie_body": np.zeros(len(ties)),
+            "tie_point": held - centroid,
+            "anchor_body": np.full(len(ties), GROUND),
+            "anchor": held + [(-pull.length, pull.rise) for pull in pulls],
+            "tie_k": np.array([pull.stiffness for pull in pulls]),
+            "tie_length": np.array([pull.reach for pull in pulls]),
+            "tie_strength": np.array([pull.strength for pull in pulls]),
+        }
+    forces = [(f"load_{i}", (one.offset, one.height), (0.0, -one.force)) for i, one in enumerate(case.each(Load))]
+    forces += [(f"thrust_{i}", (0.0, one.height), (one.force, 0.0)) for i, one in enumerate(case.each(Thrust))]
+    if forces:
+        names, places, sizes = zip(*forces, strict=True)
+        made |= {
+            "force_names": names,
+            "force_body": np.zeros(len(forces)),
+            "force_point": np.array(places) - centroid,
+            "force": np.array(sizes),
+        }
+    return made
+
+
+def require_carried(case: Case, contacts: Contacts) -> None:
+    """Raise ValueError unless the springs of the base hold the wall upright with its masses and loads."""
+    toppling = 0.5 * (case.restoring.outer.Q + case.restoring.inner.Q)
+    if not contacts.base.K_rot > toppling:
+        least = contacts.base.k_n * toppling / contacts.base.K_rot
+        raise ValueError(
+            f"base stiffness k_n = {contacts.base.k_n:g} N/m3 cannot hold the wall upright with its masses and loads; "
+            f"the valid range is k_n > {least:.3g} N/m3"
+        )
+
+
+def _title(wall: Block, stop_top: float | None) -> str:
+    """What the scene is, in words."""
+    against = "against a side stop" if stop_top is not None else "on both edges"
+    if stop_top is not None and stop_top < 2 * wall.h:
+        against += f" {stop_top:g} m high"
+    return (
+        f"A masonry wall, {2 * wall.b:g} m thick, {2 * wall.h:g} m high, {wall.length:g} m long, "
+        f"{wall.density:g} kg/m3, rocking {against}"
     )

@@ -14,7 +14,7 @@ from .style import style_of
 def rotation(ax: Axes, responses: Sequence[Response]) -> Axes:
     """Rotation in multiples of alpha against time."""
     for response in responses:
-        ax.plot(response.t, response.theta / response.case.block.alpha, **style_of(response))
+        ax.plot(response.t, response.theta / response.case.wall.alpha, **style_of(response))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set_xlabel("time $t$ [s]")
     ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")

@@ -159,7 +159,7 @@ class DampingLaw:
 
     def _outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:
         """The values that lie outside the fitted ranges, in words."""
-        scale = DENSITY / wall.density if self.scalable else 1.0
+        scale = DENSITY * 4 * wall.b * wall.h * wall.base_length / wall.mass if self.scalable else 1.0
         covered = {
             "h/b [-]": (wall.slenderness, self.slenderness_range),
             "k_n [N/m3]": (k_n * scale, self.k_n_range),

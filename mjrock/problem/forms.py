@@ -49,7 +49,7 @@ class Groups:
     @classmethod
     def of(cls, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5) -> Groups:
         """The groups of `wall` on a base of `k_n` [N/m3] against a side of `k_side`, the same where it is None."""
-        softness = wall.weight / (2 * k_n * wall.length * wall.half_base**2) / wall.alpha
+        softness = wall.weight / (2 * k_n * wall.base_length * wall.half_base**2) / wall.alpha
         return cls(
             slenderness=wall.slenderness,
             k_n=k_n,

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from .block import Block
-from .quantities import require_real
+from .quantities import require_real, require_within
 
 
 @dataclass(frozen=True)
@@ -41,23 +41,32 @@ class Restitution:
             raise ValueError(f"side restitution = {self.side:g} is no rebound; the valid range is -1 <= e_side < 0")
 
     @classmethod
-    def from_geometry(cls, wall: Block | float) -> Restitution:
+    def from_geometry(cls, wall: Block | float, stop_top: float | None = None) -> Restitution:
         """Conservation of angular momentum through each impact (Eqs. 2-3).
 
+        Eqs. 2-3 are written for a full rectangle. With the centroid at the height z, its distances d_1 from the edge
+        before the impact and d_2 from the edge after it, and I about the centroid, the momentum about the new edge
+        gives I + m (z^2 - d_1 d_2) over I + m (z^2 + d_2^2). Where d_1 and d_2 differ, e_2s is the root of the product
+        of both directions, which is the root of the energy that is left in either. About the highest point of a side
+        stop that reaches to H_s, at the distance d_s of the inner face, it gives e_side =
+        [I + m (d_2 d_s + z (z - H_s))] / [I + m (d_s^2 + (z - H_s)^2)].
+
         Args:
-            wall: the wall, or alpha = arctan(b/h) [rad] of a wall whose edges are not inset. Eqs. 2-3 are written for
-                such a wall. With edges at b' < b below and the corner at b above, the momentum about the edge, and then
-                about the top corner, gives e_2s = (I + m (h^2 - b'^2)) / (I + m (h^2 + b'^2)) and e_side =
-                (I + m (b b' - h^2)) / (I + m (b^2 + h^2)).
+            wall: the wall, or alpha = arctan(b/h) [rad] of a full rectangle whose edges are not inset.
+            stop_top: height that the side stop reaches [m], up to that of the wall, which None stands for. A stop that
+                reaches less than about two thirds of the height gives an e_side above 0: the wall turns on over it.
 
         Raises:
-            ValueError: if alpha is too large for Eq. 2 to leave any velocity, that is from 54.7 degrees.
+            ValueError: if alpha is too large for Eq. 2 to leave any velocity, that is from 54.7 degrees, or the stop
+                does not end on the wall.
         """
-        if isinstance(wall, Block) and wall.inset:
-            low, b, h, own = wall.half_base, wall.b, wall.h, wall.inertia / wall.mass
-            return cls(
-                base=(own + h**2 - low**2) / (own + h**2 + low**2), side=(own + b * low - h**2) / (own + b**2 + h**2)
-            )
+        if isinstance(wall, Block):
+            if stop_top is not None:
+                require_within("top of the side stop", stop_top, 0.01, 2 * wall.h * (1 + 1e-12), "m")
+            if wall.inset or not wall.is_plain or (stop_top is not None and stop_top < 2 * wall.h):
+                return cls(base=_base(wall), side=_side(wall, 2 * wall.h if stop_top is None else stop_top))
+        elif stop_top is not None:
+            raise TypeError("a side stop needs the wall, and not its alpha alone")
         alpha = wall.alpha if isinstance(wall, Block) else require_real("alpha", wall)
         if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
             raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
@@ -81,3 +90,17 @@ class Restitution:
                 f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 for this wall"
             )
         return cls(base=base, side=lumped / base**2)
+
+
+def _base(wall: Block) -> float:
+    """e_2s of any wall, see `Restitution.from_geometry`."""
+    outer, inner = (wall.half_base - side * wall.centroid_offset for side in (1, -1))
+    kept = wall.inertia + wall.mass * (wall.centroid_height**2 - outer * inner)
+    return kept / math.sqrt(wall.inertia_about(1) * wall.inertia_about(-1))
+
+
+def _side(wall: Block, top: float) -> float:
+    """e_side of any wall against a stop that reaches to `top`, see `Restitution.from_geometry`."""
+    edge, face = wall.half_base + wall.centroid_offset, wall.b + wall.centroid_offset
+    z, below = wall.centroid_height, wall.centroid_height - top
+    return (wall.inertia + wall.mass * (edge * face + z * below)) / (wall.inertia + wall.mass * (face**2 + below**2))

@@ -50,7 +50,7 @@ class Comparison:
     @property
     def rebound_peaks(self) -> Array:
         """Rotation maxima after each impact as shares of alpha [-], shape (n, 2)."""
-        alpha = self.reference.case.block.alpha
+        alpha = self.reference.case.wall.alpha
         skip = 0 if self.reference.case.released_outwards else 1
         return _columns(*(r.peaks[skip:] / alpha for r in (self.reference, self.candidate)))
 
@@ -140,7 +140,7 @@ def compare(reference: Response, candidate: Response) -> Comparison:
         raise ValueError(f"the responses answer different cases: {reference.case} and {candidate.case}")
     common = reference.t <= min(reference.t[-1], candidate.t[-1]) * (1 + 1e-12)
     difference = np.interp(reference.t[common], candidate.t, candidate.theta) - reference.theta[common]
-    rms = float(np.sqrt(np.mean(difference**2))) / reference.case.block.alpha
+    rms = float(np.sqrt(np.mean(difference**2))) / reference.case.wall.alpha
     return Comparison(reference, candidate, rms)
 
 

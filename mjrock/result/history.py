@@ -39,18 +39,21 @@ class Impact(NamedTuple):
         return self.energy_before - self.energy_after
 
 
-def peak_energies(case: Case, peaks: Array) -> Array:
-    """Energy of the rigid wall at its rotation peaks [J], shape (m,). The release counts with its velocity."""
-    energy: Array = case.block.potential_energy(np.asarray(peaks, dtype=float))
-    if len(energy) and not case.released_outwards and peaks[0] == case.release_peak:
-        energy[0] = case.release_energy
-    return energy
+def peak_energies(case: Case, peaks: Array) -> tuple[Array, Array]:
+    """Energy of the rigid wall at its rotation peaks, on leaving each and on the way to it [J], shape (m,) each.
+
+    The release counts with its velocity. Peaks have their sign where the wall is lopsided.
+    """
+    leaving, reaching = (energy.copy() for energy in case.peak_energies(np.asarray(peaks, dtype=float)))
+    if len(leaving) and not case.released_outwards and abs(peaks[0]) == case.release_peak and case.omega0:
+        leaving[0] += case.release_energy - float(case.restoring.energy(case.release_peak))
+    return leaving, reaching
 
 
-def restitution_of(energy: Array) -> Array:
-    """|e| between successive energies [-]. It is NaN after a peak of no energy."""
+def restitution_of(leaving: Array, reaching: Array) -> Array:
+    """|e| between successive peaks, from their energies [-]. It is NaN after a peak of no energy."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.sqrt(energy[1:] / energy[:-1])
+        return np.sqrt(reaching[1:] / leaving[:-1])
 
 
 def rocking_history(
@@ -77,7 +80,7 @@ def rocking_history(
         Peak times [s], peaks |theta| [rad], and the impacts. In free rocking an impact is found from the peaks before
         and after it. On a shaken base it is found from the velocities at which the wall passes the uplift rotation.
     """
-    times, sizes = _maxima(t, theta, omega, one_sided=case.side_stop)
+    times, sizes = _maxima(t, theta, omega, one_sided=case.one_sided)
     rocking = sizes > uplift[0]
     prepended = released and not case.released_outwards and case.release_energy > 0
     if prepended:
@@ -86,7 +89,7 @@ def rocking_history(
     times, sizes = times[rocking], sizes[rocking]
     if prepended:
         times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
-    if case.motion is None:
+    if not case.shaken:
         impacts = _between_peaks(case, t, theta, omega, times, sizes, residual, uplift[0])
     else:
         impacts = _between_passes(case, t, theta, omega, energy, uplift)
@@ -110,9 +113,9 @@ def _between_peaks(
     An impact after which the wall no longer rocks is the last one. Its energy after the impact is that of the largest
     rotation in `residual`, the maxima that follow, or of the motion with which the run ends.
     """
-    wall = case.block
     left_over = _left_over(case, theta, omega, residual, threshold)
-    energies = peak_energies(case, sizes)
+    signs = np.sign(np.interp(times, t, theta))
+    leaving_peak, reaching_peak = peak_energies(case, np.where(signs < 0, -sizes, sizes))
     impacts = []
     for i, start in enumerate(times):
         last = i == len(times) - 1
@@ -130,13 +133,13 @@ def _between_peaks(
         else:
             j = first + int(np.argmin(segment))
             when = t[j]
-        before, after = float(energies[i]), left_over if last else float(energies[i + 1])
+        before, after = float(leaving_peak[i]), left_over if last else float(reaching_peak[i + 1])
         arriving, leaving = -s, s if case.side_stop else (-s if last else math.copysign(1.0, theta[stop]))
         impacts.append(
             Impact(
                 t=float(when),
-                omega_before=arriving * math.sqrt(2 * max(0.0, before) / wall.toe_inertia),
-                omega_after=leaving * math.sqrt(2 * max(0.0, after) / wall.toe_inertia),
+                omega_before=arriving * math.sqrt(2 * max(0.0, before) / case.wall.inertia_about(-arriving)),
+                omega_after=leaving * math.sqrt(2 * max(0.0, after) / case.wall.inertia_about(leaving)),
                 energy_before=before,
                 energy_after=after,
             )
@@ -146,11 +149,11 @@ def _between_peaks(
 
 def _left_over(case: Case, theta: Array, omega: Array, residual: Array, threshold: float) -> float:
     """Energy that the wall has after its last impact [J]. It is NaN if the run ends during that impact."""
-    wall = case.block
     if residual.size:
-        return float(wall.potential_energy(float(residual.max())))
+        return float(case.restoring.energy(float(residual.max())))
     if abs(theta[-1]) > threshold:  # the run ends while the wall turns outwards
-        return float(wall.potential_energy(float(theta[-1]))) + 0.5 * wall.toe_inertia * float(omega[-1]) ** 2
+        kinetic = 0.5 * case.wall.inertia_about(float(theta[-1])) * float(omega[-1]) ** 2
+        return float(case.restoring.energy(float(theta[-1]))) + kinetic
     return math.nan
 
 
@@ -163,14 +166,13 @@ def _between_passes(
     rigid wall as it exceeds it again, to either side. A wall whose energy drops below that of uplift in between has
     come to rest. The energy after the impact is then that lowest energy.
     """
-    wall, (threshold, least) = case.block, uplift
+    wall, (threshold, least) = case.wall, uplift
     outside = np.where(np.abs(theta) > threshold, np.sign(theta), 0.0)
     if case.side_stop:
         outside = np.maximum(outside, 0.0)
     changes = np.flatnonzero(np.diff(outside))
     entries = changes[outside[changes] != 0]
     exits = changes[outside[changes + 1] != 0]
-    rigid = wall.potential_energy(threshold)
     impacts = []
     for i in entries:
         s = outside[i]
@@ -179,11 +181,14 @@ def _between_passes(
         low = float(energy[i : j + 1].min())
         behind = np.flatnonzero(s * theta[i : j + 2] <= 0)
         crossed = i + int(behind[0]) if behind.size else j
-        before = rigid + 0.5 * wall.toe_inertia * float(omega[i]) ** 2
+        before = float(case.restoring.energy(s * threshold)) + 0.5 * wall.inertia_about(s) * float(omega[i]) ** 2
         if low < least or not leaves.size:
             after, side = max(0.0, low), s
         else:
-            after, side = rigid + 0.5 * wall.toe_inertia * float(omega[j + 1]) ** 2, outside[j + 1]
-        arriving, leaving = (math.sqrt(2 * value / wall.toe_inertia) for value in (before, after))
+            side = outside[j + 1]
+            after = float(case.restoring.energy(side * threshold))
+            after += 0.5 * wall.inertia_about(side) * float(omega[j + 1]) ** 2
+        arriving = math.sqrt(2 * before / wall.inertia_about(s))
+        leaving = math.sqrt(2 * after / wall.inertia_about(side))
         impacts.append(Impact(float(t[crossed]), -s * arriving, side * leaving, before, after))
     return tuple(impacts)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import enum
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,6 +28,18 @@ class Outcome(enum.Enum):
     TIME_ENDED = "time ended"
 
 
+class Plastic(NamedTuple):
+    """How far a tie has yielded by the end of a run.
+
+    Args:
+        elongation: plastic elongation [m].
+        energy: the energy that this took [J].
+    """
+
+    elongation: float
+    energy: float
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Response:
     """The motion that a solver found.
@@ -42,6 +56,7 @@ class Response:
         peaks: rotation maxima |theta| [rad], the release first, shape (m,).
         outcome: how the run ended.
         message: the same in words, for the user.
+        plastic: what ties have yielded, by tie.
         compliant: energy [J], shape (n,), and pose, shape (n, bodies, 3), where contacts are compliant. None for the
             rigid wall of rocking theory, whose energy and pose follow from its rotation.
         ledger: every part of the energy, or None where none was asked for.
@@ -63,6 +78,17 @@ class Response:
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
     end: State | None = None
+    plastic: Mapping[str, Plastic] = field(default_factory=dict)
+
+    @property
+    def peak_over_alpha(self) -> float:
+        """Largest rotation over alpha [-]; infinite for a wall that has overturned.
+
+        The largest rotation may be that of the last sample, where a run ends on its way out.
+        """
+        if self.outcome is Outcome.OVERTURNED:
+            return math.inf
+        return float(max(self.peaks.max(initial=0.0), np.abs(self.theta[-1]))) / self.case.wall.alpha
 
     @cached_property
     def energy(self) -> Array:
@@ -70,9 +96,7 @@ class Response:
         (n,)."""
         if self.compliant is not None:
             return self.compliant[0]
-        wall = self.case.block
-        energy: Array = wall.potential_energy(self.theta) + 0.5 * wall.toe_inertia * self.omega**2
-        return energy
+        return self.case.energy(self.theta, self.omega)
 
     @cached_property
     def pose(self) -> Array:
@@ -80,7 +104,7 @@ class Response:
 
         x points away from the side stop, z upwards. A wall is one body.
         """
-        return self.case.block.pose(self.theta)[:, None] if self.compliant is None else self.compliant[1]
+        return self.case.wall.pose(self.theta)[:, None] if self.compliant is None else self.compliant[1]
 
     @property
     def energy_residual(self) -> Array | None:
@@ -94,11 +118,11 @@ class Response:
         e_n = sqrt(V_(n+1) / V_n), with V the potential energy of the rigid wall at a rotation peak, or its whole energy
         at the release. Every solver is measured with this one rule. It is exact for a rigid wall, and it does not count
         the energy that a compliant base stores under a pivoting wall as a loss. On a shaken base the ground does work
-        between two peaks. There |e| is that of the impacts, shape (len(impacts),).
+        between two peaks. There, with ties and for a lopsided wall, |e| is that of the impacts, shape (len(impacts),).
         """
-        if self.case.motion is not None:
+        if self.case.shaken or self.case.pulls or self.case.lopsided:
             return np.array([impact.restitution for impact in self.impacts])
-        return restitution_of(peak_energies(self.case, self.peaks))
+        return restitution_of(*peak_energies(self.case, self.peaks))
 
     @property
     def settled_restitution(self) -> Array:
@@ -109,17 +133,17 @@ class Response:
         same at every peak. It counts for more the smaller the rebound is. Both are the same in rocking theory.
 
         Raises:
-            ValueError: on a shaken base, where the ground does work between two peaks.
+            ValueError: on a shaken base, where the ground does work between two peaks, and with ties.
         """
-        if self.case.motion is not None:
-            raise ValueError("on a shaken base the ground does work between two peaks; see impacts")
+        if self.case.shaken or self.case.pulls:
+            raise ValueError("on a shaken base the ground does work between two peaks, and ties may; see impacts")
         bounds = [0.0, *(impact.t for impact in self.impacts), float(self.t[-1])]
         energies = []
         for i in range(len(self.peaks)):
             first, last = np.searchsorted(self.t, bounds[i : i + 2])
             turn = first + int(np.argmax(np.abs(self.theta[first : last + 1])))
             energies.append(self.energy[0] if i == 0 and self.peaks[0] == self.case.release_peak else self.energy[turn])
-        return restitution_of(np.array(energies))
+        return restitution_of(np.array(energies), np.array(energies))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Response):
@@ -133,7 +157,7 @@ class Response:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        largest = float(np.abs(self.theta).max()) / self.case.block.alpha
+        largest = float(np.abs(self.theta).max()) / self.case.wall.alpha
         return (
             f"<Response of {self.solver}: {len(self.t)} samples over {self.t[-1]:.4g} s, {len(self.impacts)} impacts, "
             f"largest rotation {largest:.3g} alpha, {self.outcome.value}>"
@@ -144,9 +168,9 @@ def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: flo
     """How a run on compliant contacts ended, and the same in words.
 
     The wall is at rest when its energy above the settled wall no longer lifts an edge off the base. It has overturned
-    when it lies on its face or ends beyond alpha, where its weight no longer brings it back.
+    when it lies on its face or ends beyond the rotation from which weight, loads, thrusts and ties bring it back.
     """
-    if abs(theta[-1]) > case.block.alpha:
+    if not case.returns_from(theta[-1:])[0]:
         outcome = Outcome.OVERTURNED
     elif energy[-1] < uplift_energy:
         outcome = Outcome.AT_REST
@@ -157,7 +181,7 @@ def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: flo
 
 def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
     """The ending in words."""
-    share = abs(theta_end) / case.block.alpha
+    share = abs(theta_end) / case.wall.alpha
     match outcome:
         case Outcome.AT_REST:
             return f"The wall came to rest; last looked at {t_end:.4g} s."

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..engine.simulation import simulate
 from ..problem.case import Case
-from ..problem.interface import Contacts
+from ..problem.contacts import Contacts
 from ..problem.restitution import Restitution
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
@@ -84,7 +84,7 @@ class Analysis:
         if getattr(self, needed) is None:
             raise ValueError(f"the solver {self.solver} needs {needed}")
         if self.contacts is not None and self.solver != "analytical":
-            self.contacts.require_fit(self.case.block, side_stop=self.case.side_stop)
+            self.contacts.require_fit(self.case.block, side_stop=self.case.one_sided)
         valid = OPTIONS[self.solver]
         unknown = self.options.keys() - set(valid)
         if unknown:
@@ -111,7 +111,7 @@ class Analysis:
             self.solver,
             law,
             response.outcome.value,
-            float(largest) / self.case.block.alpha,
+            float(largest) / self.case.wall.alpha,
             len(response.impacts),
             *restitution[:3],
             float(response.t[-1]),

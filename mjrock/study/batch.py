@@ -26,7 +26,7 @@ def geometry(task: Task) -> str | None:
         return None
     if task.options.keys() - BATCHED:
         return None
-    return fingerprint(task.case.block, task.case.side_stop, task.contacts, task.options)
+    return fingerprint(task.case.block, task.case.side_stop, task.case.effects, task.contacts, task.options)
 
 
 def batch_rows(batch: Sequence[tuple[Task, Path | None]]) -> tuple[list[Row], float]:

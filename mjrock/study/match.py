@@ -19,9 +19,9 @@ from scipy.optimize import brentq, minimize_scalar
 from ..engine.simulation import simulate
 from ..problem.block import Block
 from ..problem.case import Case
+from ..problem.contacts import Contacts
 from ..problem.damping import DENSITY, HIGHEST, LEAST
 from ..problem.forms import Groups
-from ..problem.interface import Contacts
 from ..problem.quantities import require_within
 from ..problem.restitution import Restitution
 from ..result.compare import compare

@@ -10,7 +10,7 @@ import warnings
 from dataclasses import dataclass
 
 from ..problem.block import Block
-from ..problem.interface import Contacts
+from ..problem.contacts import Contacts
 from ..problem.quantities import require_flag, require_kind, require_whole, require_within
 from ..problem.restitution import Restitution
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, Match, highest_branch
@@ -134,7 +134,7 @@ def as_theory(
     left = (e.lumped if side_stop else e.base) ** (2 * rebounds)
     last = wall.rotation_at(left * float(wall.potential_energy(amplitude * wall.alpha)))
     uplift = min(last / RIGID, FLAT * wall.alpha)
-    k_n = wall.weight / (2 * wall.length * wall.half_base**2 * uplift)
+    k_n = wall.weight / (2 * wall.base_length * wall.half_base**2 * uplift)
     xi_base, xi_side = TOUCH_DOWN / wall.slenderness, 0.0
     if side_stop:
         side = Match(Standing(wall, k_n, k_n, amplitude), e, 2, xi_base)  # type: ignore[arg-type]

@@ -11,10 +11,11 @@ import time
 import numpy as np
 
 from ..problem.case import Case
-from ..problem.quantities import require_kind, require_size, require_within
+from ..problem.pulling import stored
+from ..problem.quantities import GRAVITY, Array, require_kind, require_size, require_within
 from ..problem.restitution import Restitution
 from ..result.history import Impact
-from ..result.response import Outcome, Response, describe
+from ..result.response import Outcome, Plastic, Response, describe
 from .forced import rock_forced
 from .free import rock_freely
 from .rocking import Rocking
@@ -31,6 +32,10 @@ def solve_analytical(
 ) -> Response:
     """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
 
+    Loads, thrusts, ties, added masses, openings, insets and vertical ground motion enter Eq. 1 as
+    `mjrock.theory.law` says. Ties carry no impulse. A side stop that reaches only so high changes the restitution
+    alone: give `Restitution.from_geometry(wall, stop_top)` or a measured one.
+
     A rebound with less than `rest` of the energy of release leaves the wall at rest. Under ground motion that share is
     of the energy that overturns the wall, and a wall at rest is lifted when |a_g| > g tan(alpha) towards a free side.
 
@@ -44,7 +49,8 @@ def solve_analytical(
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
 
     Raises:
-        ValueError: for a tolerance or step out of range, or a side stop from which the wall does not rebound.
+        ValueError: for a tolerance or step out of range, a side stop from which the wall does not rebound, or a
+            vertical motion that lifts the wall off its base.
         RuntimeError: if the integration fails.
     """
     require_kind("case", case, Case)
@@ -54,11 +60,10 @@ def solve_analytical(
     require_within("output_step", output_step, 1e-7, 1e6, "s")
     require_within("rest", rest, 1e-30, 0.1)
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
-    if case.side_stop and not -1 <= e.lumped < 0:
-        raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
+    _require_solvable(case, e)
     started = time.perf_counter()
     found = _rocking(case, e, rtol, atol, rest)
-    if found.fell or abs(found.theta) > case.block.alpha:
+    if found.fell or not case.returns_from(np.array([found.theta]))[0]:
         outcome = Outcome.OVERTURNED
     else:
         outcome = Outcome.AT_REST if found.at_rest else Outcome.TIME_ENDED
@@ -66,6 +71,7 @@ def solve_analytical(
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
     theta, omega = found.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
+    compliant, plastic = _with_ties(case, found, samples, theta, omega)
     return Response(
         case=case,
         solver="analytical",
@@ -75,6 +81,8 @@ def solve_analytical(
         impacts=tuple(map(Impact._make, found.impacts.tolist())),
         peaks=np.append(released, found.peaks),
         outcome=outcome,
+        compliant=compliant,
+        plastic=plastic,
         message=describe(outcome, case, t_end, float(theta[-1])),
         stats={
             "wall_time": time.perf_counter() - started,
@@ -86,10 +94,40 @@ def solve_analytical(
     )
 
 
+def _require_solvable(case: Case, e: Restitution) -> None:
+    """Raise ValueError for a case that rocking theory has no answer to."""
+    if case.side_stop and not -1 <= e.lumped < 0:
+        raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
+    if case.vertical is not None and case.vertical.accel.min() <= -GRAVITY:
+        raise ValueError(
+            f"the vertical ground motion reaches {case.vertical.accel.min():.4g} m/s2, which lifts the wall off its "
+            f"base; the valid range of rocking theory is above {-GRAVITY:g} m/s2, and simulate has none"
+        )
+
+
 def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> Rocking:
     """The motion from impact to impact, free or forced."""
-    wall, restitution = case.block, e.lumped if case.side_stop else e.base
-    if case.motion is None:
-        return rock_freely(case, restitution, rest * case.release_energy, rtol, atol)
-    least = rest * float(wall.potential_energy(wall.alpha))
-    return rock_forced(case, case.motion, restitution, least, rtol)
+    restitution = e.lumped if case.side_stop else e.base
+    shaken = case.motion is not None or case.vertical is not None
+    outer, inner = case.restoring
+    weaker = outer if case.side_stop or outer.P <= inner.P else inner
+    least = rest * (float(weaker.energy(weaker.alpha)) if shaken else case.release_energy)
+    if shaken or case.pulls:
+        return rock_forced(case, restitution, least, rtol)
+    return rock_freely(case, restitution, least, rtol, atol)
+
+
+def _with_ties(
+    case: Case, found: Rocking, t: Array, theta: Array, omega: Array
+) -> tuple[tuple[Array, Array] | None, dict[str, Plastic]]:
+    """Energy [J] and pose at the samples, and what the ties have yielded, of a wall with ties; else nothing."""
+    if not case.pulls or found.plastic is None:
+        return None, {}
+    times, yielded = found.plastic
+    plastic = np.column_stack([np.interp(t, times, own) for own in yielded.T])
+    energy = case.energy(theta, omega) + stored(case.pulls, theta, plastic)
+    ends = [
+        Plastic(float(gone), float(gone) * pull.strength if gone else 0.0)
+        for gone, pull in zip(yielded[-1], case.pulls, strict=True)
+    ]
+    return (energy, case.wall.pose(theta)[:, None]), {f"tie_{i}": end for i, end in enumerate(ends)}

@@ -1,8 +1,11 @@
 """Free rocking: Eq. 1 over a base at rest, from one event to the next, by SciPy.
 
-    theta'' = -p^2 sin(s alpha - theta),
+    theta'' = -s [P cos(theta) - s Q sin(theta)] / I_0,
 
-s = +1 or -1 the side to which the wall rocks. An arc ends where the wall turns (omega = 0), meets the upright position
+s = +1 or -1 the side to which the wall rocks, and P and Q the restoring moment of its weight, loads and thrusts about
+the toe of that side. Without effects this is -p^2 sin(s alpha - theta).
+
+An arc ends where the wall turns (omega = 0), meets the upright position
 (theta = 0), lies on its face, or where the time is over. It is split where the wall turns, so that each of these events
 is crossed once, from a state that is clearly on one side of it.
 """
@@ -45,7 +48,7 @@ class Arcs:
     """Arcs over a base at rest (scipy, DOP853)."""
 
     def __init__(self, case: Case, rtol: float, atol: float) -> None:
-        self.alpha, self.p2, self.end = case.block.alpha, case.block.p**2, case.duration
+        self.restoring, self.wall, self.end = case.restoring, case.wall, case.duration
         self.rtol, self.atol = rtol, atol
         self.evaluations = 0
         self.known: list[tuple[float, float, Callable[[Array], Array]]] = []
@@ -56,9 +59,11 @@ class Arcs:
         Raises:
             RuntimeError: if the integration fails.
         """
+        moment, inertia = self.restoring.towards(s), self.wall.inertia_about(s)
+        P, Q = moment.P / inertia, moment.Q / inertia
 
         def rocking(t: float, y: Array) -> tuple[float, float]:
-            return y[1], -s * self.p2 * math.sin(self.alpha - s * y[0])
+            return y[1], -s * (P * math.cos(y[0]) - s * Q * math.sin(y[0]))
 
         turns = s * state[2] > 0
         arc = solve_ivp(
@@ -100,7 +105,8 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
 
     Args:
         case: the wall and its release.
-        e: restitution of an impact [-], negative where the wall leaves to the side that it came from.
+        e: restitution of an impact [-], as the root of the energy that is left; negative where the wall leaves to the
+            side that it came from.
         least: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol, atol: tolerances of the integration, on rotation [rad] and velocity [rad/s].
 
@@ -110,7 +116,6 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
     arcs = Arcs(case, rtol, atol)
     state, s, event = (0.0, case.theta0, case.omega0), case.direction, Event.TIME
     impacts: list[Impact] = []
-    inertia = case.block.toe_inertia
     peaks: list[float] = []
     at_rest = case.release_energy == 0
     while state[0] < case.duration and not at_rest and event is not Event.FALL:
@@ -118,8 +123,9 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
         if event is Event.PEAK:
             peaks.append(abs(state[1]))
         elif event is Event.IMPACT:
-            before, after = state[2], e * state[2]
-            impacts.append(Impact(state[0], before, after, 0.5 * inertia * before**2, 0.5 * inertia * after**2))
+            arriving, leaving = case.wall.inertia_about(s), case.wall.inertia_about(math.copysign(1.0, e * state[2]))
+            before, after = state[2], e * state[2] * math.sqrt(arriving / leaving)
+            impacts.append(Impact(state[0], before, after, 0.5 * arriving * before**2, 0.5 * leaving * after**2))
             at_rest = impacts[-1].energy_after <= least
             s, state = math.copysign(1.0, after), (state[0], 0.0, after)
     return Rocking(

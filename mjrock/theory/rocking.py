@@ -21,6 +21,7 @@ class Rocking:
         sample: rotation [rad] and angular velocity [rad/s] at increasing times [s].
         arcs: how many arcs, or steps, the motion is made of.
         evaluations: evaluations of Eq. 1.
+        plastic: times [s] and elongations that ties have yielded by then [m], shapes (n,) and (n, ties); or None.
     """
 
     impacts: Array
@@ -32,3 +33,4 @@ class Rocking:
     sample: Callable[[Array], tuple[Array, Array]]
     arcs: int
     evaluations: int
+    plastic: tuple[Array, Array] | None = None

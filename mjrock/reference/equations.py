@@ -1,0 +1,195 @@
+"""The equations of motion of a wall on compliant contacts, written for SciPy.
+
+They share no kinematics with the engine that they check. Each contact point carries f = max(0, -(k r + c dr/dt)) while
+its gap r is negative, so never a tension.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq, fsolve
+
+from ..problem.case import Case
+from ..problem.contacts import Contacts
+from ..problem.effects import Load, Thrust, Tie
+from ..problem.quantities import GRAVITY, Array
+
+
+class Wall:
+    """The equations of motion of a wall on its contacts.
+
+    The state is (x, z, theta, and their rates): the displacement of the centroid from the upright wall on an undeformed
+    base [m], x away from the side stop and z upwards, and the rotation [rad], positive towards +x.
+
+    Raises:
+        ValueError: for a tie that yields.
+    """
+
+    def __init__(self, case: Case, contacts: Contacts) -> None:
+        for i, tie in enumerate(case.each(Tie)):
+            if tie.strength < math.inf:
+                raise ValueError(
+                    f"solve_compliant has no ties that yield, and tie {i} has strength = {tie.strength:g} N; give it "
+                    "none, or take simulate or solve_analytical"
+                )
+        wall, self.case = case.wall, case
+        self.mass, self.inertia, self.weight = wall.mass, wall.inertia, wall.weight
+        self.base, self.up, off = contacts.base, wall.centroid_height, wall.centroid_offset
+        self.edges = wall.half_base - off, -wall.half_base - off
+        self.at = self.base.positions - off
+        self.face = wall.b + off
+        self.side = None if case.stop_top is None else contacts.side_up_to(case.stop_top)
+        if self.side is not None:
+            self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
+        self.forces = [(one.offset - off, one.height - self.up, 0.0, -one.force) for one in case.each(Load)]
+        self.forces += [(-off, one.height - self.up, one.force, 0.0) for one in case.each(Thrust)]
+        self.ties = [(tie.height - self.up, tie) for tie in case.each(Tie)]
+        self.rest = self._rest()
+
+    def base_gap(self, z: Any, theta: Any) -> Any:
+        """Height of each contact line of the base above the base [m]."""
+        return z + self.up * (1 - np.cos(theta)) - self.at * np.sin(theta)
+
+    def side_gap(self, x: Any, theta: Any) -> Any:
+        """Distance of each contact line of the inner face from the side stop [m]."""
+        return x + self.face * (1 - np.cos(theta)) + self.heights * np.sin(theta)
+
+    def released(self) -> Array:
+        """The state at release: tilted about the toe, the base compressed until its springs carry the weight.
+
+        A wall that is not tilted and does not move is released from its equilibrium.
+        """
+        case = self.case
+        if case.theta0 == case.omega0 == 0:
+            return np.append(self.rest, np.zeros(3))
+        toe, theta = self.edges[0 if case.direction > 0 else 1], case.theta0
+        sine, cosine = math.sin(theta), math.cos(theta)
+        rates = case.omega0 * np.array([self.up * cosine + toe * sine, toe * cosine - self.up * sine, 1.0])
+        return np.concatenate([[toe - toe * cosine + self.up * sine, self._lowered(theta), theta], rates])
+
+    def _lowered(self, theta: float) -> float:
+        """How far the wall tilted by `theta` is raised when its springs carry weight and loads [m]."""
+        lowest, carried = self.base_gap(0.0, theta), self.weight - sum(force[3] for force in self.forces)
+
+        def excess(z: float) -> float:
+            return float(self.base.stiffness @ np.maximum(-(lowest + z), 0)) - carried
+
+        crushed = -float(lowest.max()) - 2 * carried / float(self.base.stiffness.sum())
+        return float(brentq(excess, crushed, -float(lowest.min()), xtol=1e-18, rtol=1e-15))
+
+    def _rest(self) -> Array:
+        """Displacement and rotation in equilibrium, the base held by friction, shape (3,)."""
+        if not (self.forces or self.ties or self.case.wall.centroid_offset):
+            return np.array([0.0, self._lowered(0.0), 0.0])
+
+        def pose(found: Array) -> Array:
+            z, theta = found * (self._lowered(0.0), 1e-3)
+            return np.array([self.up * math.sin(theta), z, theta])
+
+        def unbalanced(found: Array) -> Array:
+            rates = self.held(0.0, np.append(pose(found), np.zeros(3)), shaken=False)
+            return rates[4:] * (1 / GRAVITY, self.inertia / (self.weight * self.up))
+
+        best, _, success, why = fsolve(unbalanced, (1.0, 0.0), xtol=1e-13, full_output=True)
+        if success != 1 and np.abs(unbalanced(best)).max() > 1e-9:
+            raise ValueError(f"the wall does not stand on its contacts: {why}")
+        return pose(best)
+
+    def energy(self, history: Array) -> Array:
+        """Kinetic, potential and elastic energy of many states above the wall at rest [J], shape (n,)."""
+        rest = np.append(self.rest, np.zeros(3))[None]
+        energy: Array = self._energy(history) - self._energy(rest)
+        return energy
+
+    def _energy(self, history: Array) -> Array:
+        x, z, theta, vx, vz, omega = history.T
+        doubled = self.mass * (vx**2 + vz**2) + self.inertia * omega**2 + 2 * self.weight * z
+        doubled += np.minimum(self.base_gap(z[:, None], theta[:, None]), 0) ** 2 @ self.base.stiffness
+        if self.side is not None:
+            doubled += np.minimum(self.side_gap(x[:, None], theta[:, None]), 0) ** 2 @ self.side.stiffness
+        for px, pz, fx, fz in self.forces:
+            versine, sine = 1 - np.cos(theta), np.sin(theta)
+            doubled -= 2 * (fx * (x + pz * sine - px * versine) + fz * (z - px * sine - pz * versine))
+        for height, tie in self.ties:
+            doubled += tie.stiffness * np.maximum(self._pulled(height, tie, x, z, theta)[0], 0) ** 2
+        energy: Array = doubled / 2
+        return energy
+
+    def _pulled(self, height: float, tie: Tie, x: Any, z: Any, theta: Any) -> tuple[Any, Any, Any]:
+        """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
+        across = tie.length + x + self.face * (1 - np.cos(theta)) + height * np.sin(theta)
+        up = z + self.face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
+        length = np.hypot(across, up)
+        return length - tie.reach, across / length, up / length
+
+    def base_forces(self, y: Array) -> tuple[Array, Array]:
+        """Signed forces of the base points before clipping [N], and their levers about the centroid [m]."""
+        _, z, theta, _, vz, omega = y
+        gap = self.base_gap(z, theta)
+        lever = self.at * math.cos(theta) - self.up * math.sin(theta)
+        force = -(self.base.stiffness * gap + self.base.damping * (vz - omega * lever))
+        return np.where(gap < 0, force, -self.base.stiffness * gap), lever
+
+    def edge_load(self, t: float, y: Array) -> float:
+        """Positive while an edge of the base is loaded, so that friction holds it [N]."""
+        force, _ = self.base_forces(y)
+        return float(max(force[0], force[-1]))
+
+    def grip(self, y: Array) -> tuple[float, float]:
+        """Height above the centroid of the point where friction acts [m], and its rate [m/s].
+
+        It is at the lower edge, halfway between the two faces that overlap there.
+        """
+        _, z, theta, _, vz, omega = y
+        toe = self.edges[0] if math.copysign(1.0, theta) > 0 else self.edges[1]
+        sine, cosine = math.sin(theta), math.cos(theta)
+        edge, rate = -toe * sine - self.up * cosine, -(toe * cosine - self.up * sine) * omega
+        return 0.5 * (edge - z - self.up), 0.5 * (rate - vz)
+
+    def free(self, t: float, y: Array, shaken: bool = True) -> Array:
+        """Rates of the state of a wall whose base may slide."""
+        x, z, theta, vx, _, omega = y
+        force, lever = self.base_forces(y)
+        force = np.maximum(force, 0)
+        Fx, Fz, moment = 0.0, float(force.sum()), -float(force @ lever)
+        if self.side is not None:
+            gap = self.side_gap(x, theta)
+            height = self.face * math.sin(theta) + self.heights * math.cos(theta)
+            push = -(self.side.stiffness * gap + self.side.damping * (vx + omega * height))
+            push = np.where(gap < 0, np.maximum(push, 0), 0)
+            Fx, moment = float(push.sum()), moment + float(push @ height)
+        pulls = [(-self.face, height, *self._pulled(height, tie, x, z, theta), tie) for height, tie in self.ties]
+        applied = self.forces + [
+            (px, pz, -nx * pull, -nz * pull)
+            for px, pz, stretched, nx, nz, tie in pulls
+            if (pull := tie.stiffness * max(stretched, 0.0)) > 0
+        ]
+        sine, cosine = math.sin(theta), math.cos(theta)
+        for px, pz, fx, fz in applied:
+            Fx, Fz = Fx + fx, Fz + fz
+            moment += fx * (pz * cosine - px * sine) - fz * (px * cosine + pz * sine)
+        if shaken and self.case.motion is not None:
+            Fx -= self.mass * float(self.case.motion(t))
+        if shaken and self.case.vertical is not None:
+            Fz -= self.mass * float(self.case.vertical(t))
+        return np.array([y[3], y[4], y[5], Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
+
+    def held(self, t: float, y: Array, shaken: bool = True) -> Array:
+        """Rates of the state of a wall whose lower edge does not slip."""
+        rates = self.free(t, y, shaken)
+        above, rate = self.grip(y)
+        slipping = rates[3] + rates[5] * above + y[5] * rate
+        friction = -slipping / (1 / self.mass + above**2 / self.inertia)
+        rates[3] += friction / self.mass
+        rates[5] += friction * above / self.inertia
+        return rates
+
+    def caught(self, y: Array) -> Array:
+        """The state after friction has stopped the sliding of an edge."""
+        above, _ = self.grip(y)
+        impulse = -(y[3] + y[5] * above) / (1 / self.mass + above**2 / self.inertia)
+        kick: Array = impulse * np.array([0, 0, 0, 1 / self.mass, 0, above / self.inertia])
+        return y + kick
