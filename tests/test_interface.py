@@ -66,7 +66,7 @@ def test_bad_values_are_named(wall, values, complaint):
 
 def test_contacts_have_to_fit_the_case(wall, contacts, one_sided):
     shorter = dataclasses.replace(one_sided, block=mr.Block(b=wall.b, h=1.5))
-    with pytest.raises(ValueError, match=r"made for a face of 4.2 x 1 m, but the wall of this case has 3 x 1 m"):
+    with pytest.raises(ValueError, match=r"made for a face of 4.2 x 1 m, but that of the wall of this case is 3 x 1 m"):
         mr.simulate(shorter, contacts)
     no_side = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.05)
     for solve in (mr.simulate, mr.solve_compliant):

@@ -183,15 +183,19 @@ class Contacts:
         Raises:
             ValueError: if there is no side.
         """
+        return self._stopping if top == self._stopping.face else replace(self._stopping, face=top)
+
+    @property
+    def _stopping(self) -> Interface:
         if self.side is None:
             raise ValueError("the case has a side stop but the contacts have none; give k_side when making them")
-        return self.side if top == self.side.face else replace(self.side, face=top)
+        return self.side
 
     def require_fit(self, wall: Block, *, side_stop: bool) -> None:
         """Raise ValueError unless these interfaces have the size of `wall`, and a side where the case has a stop."""
         faces = [("base", self.base, (2 * wall.half_base, wall.base_length))]
         if side_stop:
-            faces.append(("side", self.side_up_to(2 * wall.h), (2 * wall.h, wall.length)))
+            faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
         for name, interface, asked in faces:
             made = interface.face, interface.length
             if not np.allclose(made, asked, rtol=1e-9, atol=0):

@@ -8,7 +8,7 @@ P = -F z and Q = F d. A wall with loads and thrusts so rocks as a plain one with
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -67,11 +67,10 @@ class Restoring(NamedTuple):
 
     def energy(self, theta: Real) -> Real:
         """The work that rotations of either sign take [J]."""
-        size: Real = np.abs(theta)
+        size: Any = np.abs(theta)
         if self.outer == self.inner:
-            return self.outer.energy(size)
-        found: Real = np.where(np.asarray(theta) >= 0, self.outer.energy(size), self.inner.energy(size))
-        return found
+            return self.outer.energy(size)  # type: ignore[no-any-return]
+        return np.where(np.asarray(theta) >= 0, self.outer.energy(size), self.inner.energy(size))  # type: ignore[return-value]
 
     def plus(self, moments: list[Restoring]) -> Restoring:
         """The sum of this one and others."""
