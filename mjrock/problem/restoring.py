@@ -70,7 +70,7 @@ class Restoring(NamedTuple):
         size: Any = np.abs(theta)
         if self.outer == self.inner:
             return self.outer.energy(size)  # type: ignore[no-any-return]
-        return np.where(np.asarray(theta) >= 0, self.outer.energy(size), self.inner.energy(size))  # type: ignore[return-value]
+        return np.where(np.asarray(theta) >= 0, self.outer.energy(size), self.inner.energy(size))  # type: ignore[no-any-return]
 
     def plus(self, moments: list[Restoring]) -> Restoring:
         """The sum of this one and others."""
