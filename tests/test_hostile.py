@@ -27,15 +27,35 @@ ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * 
 PLAN = mr.Plan(base_count=2, side_count=2)
 
 CALLS = {
-    "Block": (mr.Block, {"b": 0.3, "h": 2.1, "length": 1.0, "density": 2000.0, "inset": 0.0}),
+    "Block": (mr.Block,
+        {
+            "b": 0.3, "h": 2.1, "length": 1.0, "density": 2000.0, "inset": 0.0, "openings": (), "profile": None,
+            "masses": (),
+        },
+    ),
     "Block.from_size": (mr.Block.from_size, {"thickness": 0.6, "height": 4.2, "length": 1.0, "density": 2e3}),
     "Block.from_slenderness": (mr.Block.from_slenderness, {"slenderness": 7.0, "R": 2.1}),
     "Restitution": (mr.Restitution, {"base": 0.97, "side": -0.5}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
     "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.4, "wall": WALL}),
+    "Opening": (mr.Opening, {"width": 0.5, "height": 1.0, "sill": 0.5}),
+    "Tie": (
+        mr.Tie,
+        {
+            "height": 3.0, "stiffness": 1e6, "slack": 0.01, "strength": 1e4, "length": 5.0, "anchor_height": 3.0,
+            "block": 0,
+        },
+    ),
+    "Thrust": (mr.Thrust, {"height": 3.0, "force": 1e3, "block": 0}),
+    "Load": (mr.Load, {"force": 1e3, "height": 3.0, "offset": 0.1, "block": 0}),
+    "AddedMass": (mr.AddedMass, {"mass": 100.0, "height": 3.0, "offset": 0.1, "block": 0}),
+    "SideStop": (mr.SideStop, {"top": 3.0}),
     "Case": (
         mr.Case,
-        {"block": WALL, "theta0": 0.05, "duration": 1.0, "side_stop": True, "omega0": 0.0, "motion": None},
+        {
+            "block": WALL, "theta0": 0.05, "duration": 1.0, "side_stop": True, "omega0": 0.0, "motion": None,
+            "vertical": None, "effects": (mr.Tie(3.0, 1e6),),
+        },
     ),
     "Interface": (
         mr.Interface,
@@ -95,7 +115,8 @@ HOSTILE = st.one_of(
             None, True, False, "", "0.3", b"1", [], [1.0], (), {}, 1j, 10**400, -(10**400), math.nan, math.inf,
             -math.inf, 0, -1, 1e-300, 1e300, np.nan, np.float32(2.0), np.int64(3), np.array(0.3), np.array([0.1, 0.2]),
             object(),
-            WALL, E, SHORT, CONTACTS, CONTACTS.base, MOTION, RESPONSE, mr.CALIBRATED, print, "no", 2.5,
+            WALL, E, SHORT, CONTACTS, CONTACTS.base, MOTION,
+            mr.Load(1e3, 2.0), mr.SideStop(2.0), [mr.Opening(0.2, 1.0)], RESPONSE, mr.CALIBRATED, print, "no", 2.5,
         ]
     ),
     st.floats(),

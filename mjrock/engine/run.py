@@ -57,9 +57,10 @@ class Run:
         self.slip = steps.pose[:, 0] - case.wall.pose(self.theta)[:, 0]
         stored, taken = scene.accounts(steps.pose, steps.velocity)
         self.energy = stored.sum(axis=1) - scene.rest_energies.sum()
+        ends = [float(np.interp(case.duration, t, own)) for own in taken.T]
         self.plastic = {
-            name: Plastic(float(energy) / strength, float(energy))
-            for name, energy, strength in zip(scene.tie_names, taken[-1], scene.tie_strength.tolist(), strict=True)
+            name: Plastic(energy / strength, energy)
+            for name, energy, strength in zip(scene.tie_names, ends, scene.tie_strength.tolist(), strict=True)
         }
         times, self.peaks, self.impacts = rocking_history(
             case, t, self.theta, self.omega, self.energy, uplift, released=released

@@ -58,13 +58,20 @@ class Restitution:
 
         Raises:
             ValueError: if alpha is too large for Eq. 2 to leave any velocity, that is from 54.7 degrees, or the stop
-                does not end on the wall.
+                does not end on the wall, or is so low that e_side exceeds 1.
         """
         if isinstance(wall, Block):
             if stop_top is not None:
                 require_within("top of the side stop", stop_top, 0.01, 2 * wall.h * (1 + 1e-12), "m")
             if wall.inset or not wall.is_plain or (stop_top is not None and stop_top < 2 * wall.h):
-                return cls(base=_base(wall), side=_side(wall, 2 * wall.h if stop_top is None else stop_top))
+                top = 2 * wall.h if stop_top is None else stop_top
+                base, side = _base(wall), _side(wall, top)
+                if side > 1:
+                    raise ValueError(
+                        f"top of the side stop = {top:g} m is so low that the wall turns on over it, e_side = "
+                        f"{side:.3g}; it rebounds from about two thirds of its height of {2 * wall.h:g} m on"
+                    )
+                return cls(base, side)
         elif stop_top is not None:
             raise TypeError("a side stop needs the wall, and not its alpha alone")
         alpha = wall.alpha if isinstance(wall, Block) else require_real("alpha", wall)

@@ -21,6 +21,7 @@ from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.damping import DENSITY, HIGHEST, LEAST
+from ..problem.effects import SideStop
 from ..problem.forms import Groups
 from ..problem.quantities import require_within
 from ..problem.restitution import Restitution
@@ -60,6 +61,8 @@ class Combination:
     k_base: float = 5e8
     k_side: float = 5e8
     amplitude: float = 0.5
+
+    side_stop: ClassVar[bool | SideStop] = True
 
     @property
     def wall(self) -> Block:
@@ -181,7 +184,7 @@ class Match:
         wall = self.combination.wall
         quarter = math.acosh(1 / (1 - self.combination.amplitude)) / wall.p
         theta0 = self.combination.amplitude * wall.alpha
-        return Case(wall, theta0, quarters * quarter, side_stop=self.xi_base is not None)
+        return Case(wall, theta0, quarters * quarter, side_stop=self.xi_base is not None and self.combination.side_stop)
 
     def restitution(self, xi: float) -> float:
         """|e| of the first rebound with damping ratio `xi`; 0 where the wall does not rock again."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from ..problem.block import Block
 from ..problem.contacts import Contacts
+from ..problem.effects import SideStop
 from ..problem.quantities import require_flag, require_kind, require_whole, require_within
 from ..problem.restitution import Restitution
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, Match, highest_branch
@@ -35,12 +36,14 @@ class Standing:
         wall: the wall.
         k_base, k_side: interface stiffness [N/m3].
         amplitude: theta_0/alpha of the release [-].
+        side_stop: the side that the wall is matched against.
     """
 
     wall: Block
     k_base: float
     k_side: float
     amplitude: float
+    side_stop: bool | SideStop = True
 
 
 def matched_contacts(
@@ -53,6 +56,7 @@ def matched_contacts(
     amplitude: float = 0.5,
     friction: float | None = None,
     side_friction: float | None = None,
+    side_stop: bool | SideStop = True,
     accuracy: float = 1e-4,
 ) -> Contacts:
     """Interfaces whose damping ratios give |e| of the first rebound of this wall, found by simulation.
@@ -66,6 +70,7 @@ def matched_contacts(
         points: contact lines a face.
         amplitude: rotation theta_0/alpha that the wall is released from [-], in (0, 0.95].
         friction, side_friction: coefficients as in `Interface`.
+        side_stop: True for a side over the whole face, or the `SideStop` that reaches only so high.
         accuracy: of the simulations, see `simulate`.
 
     Raises:
@@ -81,7 +86,7 @@ def matched_contacts(
     require_within("accuracy", accuracy, 1e-8, 0.1)
     if k_side is not None:
         e.require_rebound()
-    one = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude)
+    one = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
     options = {"accuracy": accuracy, "friction": friction, "side_friction": side_friction}
     base = Match(one, e, points, **options)  # type: ignore[arg-type]
     found = _found("base", base, BASE_BOUNDS, whole=True)
