@@ -17,7 +17,7 @@ from ..problem.case import Case
 from ..problem.pulling import yielded
 from ..problem.quantities import ON_ITS_FACE, Array, Integers
 from ..result.samples import interpolated
-from .law import Law, Push, nystroem, pushed
+from .law import Law, Push, Ties, Toe, acceleration, nystroem, pushed
 from .rocking import Rocking
 from .ties import take_changes, until_change
 
@@ -87,11 +87,9 @@ class Room(NamedTuple):
 
 
 @jitable
-def free_moment(law: Law, side: float, push: Push) -> float:
-    """Moment that holds a resting wall down on the toe of a side, over its inertia [1/s2]; a negative one lifts it."""
-    i = 0 if side > 0 else 1
-    held: float = law.restoring[i, 0] + law.weight[i, 0] * push.z + side * law.weight[i, 1] * push.x
-    return held
+def free_moment(toe: Toe, x: float, z: float) -> float:
+    """Moment that holds a resting wall down, over its inertia [1/s2]; a negative one lifts it towards the toe."""
+    return toe.P + toe.Wd * z + toe.side * toe.Wz * x
 
 
 @jitable
@@ -99,31 +97,29 @@ def uplift(law: Law, one_sided: bool, t: float, duration: float) -> tuple[float,
     """When a wall that rests at time `t` is lifted, and to which side [s, +1 or -1]. Never is infinity."""
     begun = t
     while t < duration:
-        push, end = pushed(law, t)
-        for side in (1.0, -1.0):
-            if side < 0 and one_sided:
+        push, end = pushed(law.x, law.z, t)
+        for toe in (law.outer, law.inner):
+            if toe.side < 0 and one_sided:
                 continue
-            least = law.restoring[0 if side > 0 else 1, 0]
-            now = free_moment(law, side, push)
-            if now < (-1e-9 * least if t == begun else 0.0):
-                return t, side
+            now = free_moment(toe, push.x, push.z)
+            if now < (-1e-9 * toe.P if t == begun else 0.0):
+                return t, toe.side
             span = min(end, duration) - t
-            later = Push(push.x + push.x_rate * span, 0.0, push.z + push.z_rate * span, 0.0)
-            then = free_moment(law, side, later)
+            then = free_moment(toe, push.x + push.x_rate * span, push.z + push.z_rate * span)
             if then < 0 <= now:
-                return t + span * now / (now - then), side
+                return t + span * now / (now - then), toe.side
         t = end
     return math.inf, 1.0
 
 
 @jitable
-def root(which: int, law: Law, side: float, push: Push, theta: float, omega: float, h: float) -> float:
+def root(which: int, toe: Toe, ties: Ties, push: Push, theta: float, omega: float, h: float) -> float:
     """When within the next `h` rotation (0) or velocity (1) becomes zero [s].
 
     Newton's method, from the root at a constant acceleration, held by bisection. The other arguments are those of
     `nystroem`.
     """
-    k1 = nystroem(law, side, push, theta, omega, 0.0)[2]
+    k1 = acceleration(toe, ties, push.x, push.z, theta, math.sin(theta), math.cos(theta))
     if which == 0:
         closing = math.copysign(math.sqrt(max(0.0, omega * omega - 2 * k1 * theta)), theta)
         start, over, under = theta, 2 * theta, closing - omega
@@ -133,7 +129,7 @@ def root(which: int, law: Law, side: float, push: Push, theta: float, omega: flo
     if not low < tau < high:
         tau = 0.5 * h
     for _ in range(NEWTON):
-        at, speed, _, pulling = nystroem(law, side, push, theta, omega, tau)
+        at, speed, _, pulling = nystroem(toe, ties, push, theta, omega, tau)
         value, slope = (at, speed) if which == 0 else (speed, pulling)
         if start * value > 0:
             low = tau
@@ -158,7 +154,10 @@ def noted(room: Room, t: float, theta: float, omega: float) -> None:
 def met(room: Room, law: Law, rules: Rules, t: float, side: float, omega: float) -> float:
     """Write an impact, and return the angular velocity after it."""
     impact, leaving = room.impacts[room.counts[1]], math.copysign(1.0, rules.e * omega)
-    arriving, departing = law.inertia[0 if side > 0 else 1], law.inertia[0 if leaving > 0 else 1]
+    arriving, departing = (
+        (law.outer if side > 0 else law.inner).inertia,
+        (law.outer if leaving > 0 else law.inner).inertia,
+    )
     after = rules.e * omega * math.sqrt(arriving / departing)
     impact[0], impact[1], impact[2] = t, omega, after
     impact[3], impact[4] = 0.5 * arriving * omega * omega, 0.5 * departing * after * after
@@ -170,6 +169,7 @@ def met(room: Room, law: Law, rules: Rules, t: float, side: float, omega: float)
 def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> Clock:
     """Follow the wall until the room is nearly full, or until it lies on its face or the time is over."""
     t, theta, omega, side, at_rest, fell, ended = clock
+    ties = law.ties
     while room.counts[0] + 4 < len(room.knots) and max(room.counts[1], room.counts[2]) < len(room.peaks) and not ended:
         if at_rest:
             lifted, towards = uplift(law, rules.one_sided, t, rules.duration)
@@ -180,26 +180,27 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> Clock:
                 break
             t, theta, omega, side, at_rest = lifted, 0.0, 0.0, towards, False
         noted(room, t, theta, omega)
-        push, stop = pushed(law, t)
-        h = until_change(law, side, push, theta, omega, min(rules.longest, stop - t, rules.duration - t))
-        new_theta, new_omega, k1, k3 = nystroem(law, side, push, theta, omega, h)
+        toe = law.outer if side > 0 else law.inner
+        push, stop = pushed(law.x, law.z, t)
+        h = until_change(toe, ties, push, theta, omega, min(rules.longest, stop - t, rules.duration - t))
+        new_theta, new_omega, k1, k3 = nystroem(toe, ties, push, theta, omega, h)
         if k1 * k3 < 0 and omega * new_omega >= 0:
             middle = h * k1 / (k1 - k3)  # of the step's extreme velocity
-            if middle > 1e-6 * h and nystroem(law, side, push, theta, omega, middle)[1] * new_omega < 0:
+            if middle > 1e-6 * h and nystroem(toe, ties, push, theta, omega, middle)[1] * new_omega < 0:
                 h = middle  # the wall turns, and turns again within the step
-                new_theta, new_omega, _, _ = nystroem(law, side, push, theta, omega, h)
+                new_theta, new_omega, _, _ = nystroem(toe, ties, push, theta, omega, h)
         turned = omega * new_omega < 0
         if turned:
-            h = root(1, law, side, push, theta, omega, h)
-            new_theta, new_omega = nystroem(law, side, push, theta, omega, h)[0], 0.0
+            h = root(1, toe, ties, push, theta, omega, h)
+            new_theta, new_omega = nystroem(toe, ties, push, theta, omega, h)[0], 0.0
         hit = side * new_theta <= 0
         if hit:
-            h = root(0, law, side, push, theta, omega, h)
-            new_theta, new_omega = 0.0, nystroem(law, side, push, theta, omega, h)[1]
+            h = root(0, toe, ties, push, theta, omega, h)
+            new_theta, new_omega = 0.0, nystroem(toe, ties, push, theta, omega, h)[1]
         elif turned and side * omega > 0:
             room.peaks[room.counts[2]] = abs(new_theta)
             room.counts[2] += 1
-        take_changes(law, side, new_theta, turned)
+        take_changes(toe, ties, new_theta, turned)
         t, theta, omega = t + h, new_theta, new_omega
         noted(room, t, theta, omega)
         fell = side * theta > ON_ITS_FACE
@@ -224,7 +225,7 @@ def rock_forced(case: Case, e: float, least: float, rtol: float) -> Rocking:
     rules = Rules(case.one_sided, e, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = Clock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
-        take_changes(law, case.direction, case.theta0, not case.released_outwards)
+        take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     room, found = Room.empty(), []
     while not clock.ended:
         room.counts[:] = 0

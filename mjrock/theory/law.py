@@ -41,50 +41,80 @@ class Shaken(NamedTuple):
         return cls(np.empty(0), 1.0) if motion is None else cls(motion.accel / GRAVITY, motion.dt)
 
 
-class Law(NamedTuple):
-    """A rigid wall with its effects over a shaken base, as arrays for compiled functions.
+class Toe(NamedTuple):
+    """A wall that rocks about one toe.
 
     Args:
-        inertia: about the outer and the inner toe [kg m2], shape (2,).
-        restoring: P / I_0 and Q / I_0 about the two toes [1/s2], shape (2, 2).
-        weight: W d / I_0 and W z / I_0 about the two toes [1/s2], shape (2, 2).
-        x, z: horizontal and vertical motion of the base.
-        ties: the numbers of each `Pull`, shape (t, 8).
+        side: +1 for the outer toe, -1 for the inner one.
+        inertia: about the toe [kg m2].
+        P, Q: restoring moment of weight, loads and thrusts over the inertia [1/s2].
+        Wd, Wz: moments of the weight over the inertia [1/s2].
+    """
+
+    side: float
+    inertia: float
+    P: float
+    Q: float
+    Wd: float
+    Wz: float
+
+    @classmethod
+    def of(cls, case: Case, side: float) -> Toe:
+        """The wall of a case about one of its toes."""
+        inertia = case.wall.inertia_about(side)
+        moments = (*case.restoring.towards(side), *case.wall.restoring.towards(side))
+        return cls(side, inertia, *(float(moment / inertia) for moment in moments))
+
+
+class Ties(NamedTuple):
+    """The ties of a wall.
+
+    Args:
+        pulls: the numbers of each `Pull`, shape (t, 8).
         doing: what each tie does, shape (t,).
         plastic: elongation that each tie has yielded [m], shape (t,).
     """
 
-    inertia: Array
-    restoring: Array
-    weight: Array
-    x: Shaken
-    z: Shaken
-    ties: Array
+    pulls: Array
     doing: Integers
     plastic: Array
 
     @classmethod
+    def of(cls, case: Case) -> Ties:
+        """The ties of a case."""
+        pulls = np.reshape(np.array(case.pulls, dtype=float), (-1, len(Pull._fields)))
+        return cls(pulls, np.full(len(pulls), SLACK), np.zeros(len(pulls)))
+
+
+class Law(NamedTuple):
+    """A rigid wall with its effects over a shaken base, for compiled functions.
+
+    Args:
+        outer, inner: the wall about its two toes.
+        x, z: horizontal and vertical motion of the base.
+        ties: its ties.
+    """
+
+    outer: Toe
+    inner: Toe
+    x: Shaken
+    z: Shaken
+    ties: Ties
+
+    @classmethod
     def of(cls, case: Case) -> Law:
         """The law of a case."""
-        inertia = np.array([case.wall.inertia_about(1), case.wall.inertia_about(-1)])
-        ties = np.reshape(np.array(case.pulls, dtype=float), (-1, len(Pull._fields)))
         return cls(
-            inertia,
-            np.array(case.restoring) / inertia[:, None],
-            np.array(case.wall.restoring) / inertia[:, None],
-            Shaken.of(case.motion),
-            Shaken.of(case.vertical),
-            ties,
-            np.full(len(ties), SLACK),
-            np.zeros(len(ties)),
+            Toe.of(case, 1.0), Toe.of(case, -1.0), Shaken.of(case.motion), Shaken.of(case.vertical), Ties.of(case)
         )
 
     @property
     def frequency(self) -> float:
         """The largest of p and the frequencies of the ties [rad/s]."""
-        p2 = float(np.hypot(*self.restoring.T).max())
-        stiff = sum(float(pulled(Pull(*tie), 0.0, 1.0)[1] ** 2 * tie[6] / self.inertia.min()) for tie in self.ties)
-        return math.sqrt(max(p2, stiff))
+        p2 = max(math.hypot(toe.P, toe.Q) for toe in (self.outer, self.inner))
+        least = min(self.outer.inertia, self.inner.inertia)
+        stiff = sum(pulled(Pull(*tie), 0.0, 1.0)[1] ** 2 * tie[6] / least for tie in self.ties.pulls)
+        return math.sqrt(max(p2, float(stiff)))
 
 
 class Push(NamedTuple):
@@ -107,12 +137,12 @@ def piece(shaken: Shaken, t: float) -> tuple[float, float, float]:
 
 
 @jitable
-def pushed(law: Law, t: float) -> tuple[Push, float]:
+def pushed(horizontal: Shaken, vertical: Shaken, t: float) -> tuple[Push, float]:
     """The motion of the base from a time on, and the end of the interval in which it is linear [s]."""
-    x, x_rate, x_end = piece(law.x, t)
-    if len(law.z.shares) == 0:
+    x, x_rate, x_end = piece(horizontal, t)
+    if len(vertical.shares) == 0:
         return Push(x, x_rate, 0.0, 0.0), x_end
-    z, z_rate, z_end = piece(law.z, t)
+    z, z_rate, z_end = piece(vertical, t)
     return Push(x, x_rate, z, z_rate), min(x_end, z_end)
 
 
@@ -129,49 +159,48 @@ def turned_by(theta: float, sine: float, cosine: float, delta: float) -> tuple[f
 
 
 @jitable
-def held_back(law: Law, side: float, theta: float) -> float:
+def held_back(toe: Toe, ties: Ties, theta: float) -> float:
     """Acceleration by the ties, each doing in the step what it did at its start [rad/s2]."""
     total = 0.0
-    for i in range(len(law.ties)):
-        if law.doing[i] != SLACK:
-            tie = pull_of(law, i)
-            elongation, lever = pulled(tie, theta, side)
-            force = tie.strength if law.doing[i] == YIELDING else tie.stiffness * (elongation - law.plastic[i])
+    for i in range(len(ties.doing)):
+        if ties.doing[i] != SLACK:
+            tie = pull_of(ties, i)
+            elongation, lever = pulled(tie, theta, toe.side)
+            force = tie.strength if ties.doing[i] == YIELDING else tie.stiffness * (elongation - ties.plastic[i])
             total -= force * lever
-    return total / law.inertia[0 if side > 0 else 1]
+    return total / toe.inertia
 
 
 @jitable
-def pull_of(law: Law, i: int) -> Pull:
+def pull_of(ties: Ties, i: int) -> Pull:
     """Tie i."""
-    tie = law.ties[i]
+    tie = ties.pulls[i]
     return Pull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7])
 
 
 @jitable
-def acceleration(law: Law, side: float, x: float, z: float, theta: float, sine: float, cosine: float) -> float:
+def acceleration(toe: Toe, ties: Ties, x: float, z: float, theta: float, sine: float, cosine: float) -> float:
     """theta'' at accelerations x and z of the base over g [rad/s2]."""
-    i = 0 if side > 0 else 1
-    P, Q, Wd, Wz = law.restoring[i, 0], law.restoring[i, 1], law.weight[i, 0], law.weight[i, 1]
-    a, b = P + Wd * z + side * Wz * x, Q + Wz * z - side * Wd * x
-    total: float = b * sine - side * a * cosine
-    return total + held_back(law, side, theta) if len(law.ties) > 0 else total
+    push = toe.side * x
+    a, b = toe.P + toe.Wd * z + toe.Wz * push, toe.Q + toe.Wz * z - toe.Wd * push
+    total: float = b * sine - toe.side * a * cosine
+    return total + held_back(toe, ties, theta) if len(ties.doing) > 0 else total
 
 
 @jitable
 def nystroem(
-    law: Law, side: float, push: Push, theta: float, omega: float, h: float
+    toe: Toe, ties: Ties, push: Push, theta: float, omega: float, h: float
 ) -> tuple[float, float, float, float]:
     """Rotation and velocity a time `h` later by Nystroem's fourth-order method, and the accelerations at both ends."""
     sine, cosine = math.sin(theta), math.cos(theta)
-    k1 = acceleration(law, side, push.x, push.z, theta, sine, cosine)
+    k1 = acceleration(toe, ties, push.x, push.z, theta, sine, cosine)
     delta = 0.5 * h * (omega + 0.25 * h * k1)
     sine_2, cosine_2 = turned_by(theta, sine, cosine, delta)
     x, z = push.x + 0.5 * h * push.x_rate, push.z + 0.5 * h * push.z_rate
-    k2 = acceleration(law, side, x, z, theta + delta, sine_2, cosine_2)
+    k2 = acceleration(toe, ties, x, z, theta + delta, sine_2, cosine_2)
     delta = h * (omega + 0.5 * h * k2)
     sine_3, cosine_3 = turned_by(theta, sine, cosine, delta)
     x, z = push.x + h * push.x_rate, push.z + h * push.z_rate
-    k3 = acceleration(law, side, x, z, theta + delta, sine_3, cosine_3)
+    k3 = acceleration(toe, ties, x, z, theta + delta, sine_3, cosine_3)
     sixth = h / 6
     return theta + h * (omega + sixth * (k1 + 2 * k2)), omega + sixth * (k1 + 4 * k2 + k3), k1, k3
