@@ -297,6 +297,10 @@ REFUSED = [
     (lambda: released((mr.Thrust(4.0, -4000.0),), side_stop=False), "overturn the wall inwards"),
     (lambda: released((), vertical=3), "vertical = 3 of type int is not a GroundMotion"),
     (
+        lambda: mr.simulate(released(EFFECTS["yielding tie"]), CONTACTS, start=(np.zeros((1, 3)), np.zeros((1, 3)))),
+        "start does not say what ties have yielded",
+    ),
+    (
         lambda: mr.solve_compliant(released(EFFECTS["yielding tie"]), CONTACTS),
         "solve_compliant has no ties that yield, and tie 0 has strength = 2000 N; .* take simulate or solve_analytical",
     ),

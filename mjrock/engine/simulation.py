@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -74,7 +75,7 @@ def simulate(
             all; fitted steps are interpolated, None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.engine.accounts`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
-            then no peak, and the first is the first that is reached.
+            then no peak, and the first is the first that is reached. It does not go with ties that yield.
 
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, or for a value outside
@@ -86,7 +87,7 @@ def simulate(
     """
     _require_asked(case, contacts, output_step, ledger)
     require_within("accuracy", accuracy, 1e-8, 0.1)
-    start = None if start is None else _required_state(start)
+    start = None if start is None else _required_state(start, case)
     if timestep is not None:
         (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, output_step, ledger, start)
         if isinstance(answer, SimulationError):
@@ -232,8 +233,10 @@ def _require_asked(case: object, contacts: object, output_step: object, ledger: 
         require_within("output_step", output_step, 1e-9, case.duration, "s")
 
 
-def _required_state(start: object) -> State:
+def _required_state(start: object, case: Case) -> State:
     """A start as pose and velocity of one wall, each of shape (1, 3) and finite, and not beyond its face."""
+    if any(pull.strength < math.inf for pull in case.pulls):
+        raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
     pose, velocity = (require_array(f"start, {name}", part, (1, 3)) for name, part in zip(PARTS, start, strict=True))

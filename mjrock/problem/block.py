@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from .effects import AddedMass
-from .quantities import GRAVITY, Array, Real, require_kind, require_real, require_within
+from .quantities import GRAVITY, Array, Real, require_kind, require_real, require_within, shown
 from .restoring import Restoring, of_force, pose_of
 from .section import Moments, Opening, Profile, moments, require_openings, require_profile
 
@@ -67,7 +67,7 @@ class Block:
         for name, kind in (("openings", Opening), ("masses", AddedMass)):
             parts = getattr(self, name)
             if not isinstance(parts, Sequence) or isinstance(parts, str):
-                raise TypeError(f"{name} = {parts!r} is no sequence of {kind.__name__}")
+                raise TypeError(f"{name} = {shown(parts)} is no sequence of {kind.__name__}")
             for i, one in enumerate(parts):
                 require_kind(f"{name}[{i}]", one, kind)
             object.__setattr__(self, name, tuple(parts))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
-from .quantities import require_within
+from .quantities import require_within, shown
 
 Profile = tuple[tuple[float, float], ...]
 """Height [m] and thickness [m] from the base to the top, linear in between. Two at one height are a step."""
@@ -69,10 +69,12 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     Raises:
         ValueError: if it does not go from the base of this thickness up to this height, or a value is out of range.
     """
+    if not isinstance(profile, Sequence) or isinstance(profile, str):
+        raise TypeError(f"profile = {shown(profile)} is no sequence of pairs of height and thickness [m]")
     made: list[tuple[float, float]] = []
     for i, pair in enumerate(profile):
         if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
-            raise TypeError(f"profile[{i}] = {pair!r} is no pair of height and thickness [m]")
+            raise TypeError(f"profile[{i}] = {shown(pair)} is no pair of height and thickness [m]")
         z = require_within(f"profile[{i}], height", pair[0], made[-1][0] if made else 0.0, height * (1 + 1e-12), "m")
         made.append((min(z, height), require_within(f"profile[{i}], thickness", pair[1], 1e-3, 20.0, "m")))
     whole = len(made) > 1 and made[0][0] == 0 and abs(made[-1][0] - height) <= 1e-9 * height
