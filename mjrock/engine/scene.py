@@ -125,21 +125,14 @@ class Scene:
         """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3)."""
         return lowered(self._points, self.forces, self.masses, pose)
 
-    def released(
-        self,
-        pose: Array,
-        velocity: Array,
-        duration: float,
-        motion: GroundMotion | None,
-        vertical: GroundMotion | None = None,
-    ) -> Scene:
-        """This scene with another release, shape (n, 3) each, duration [s] and ground motions.
+    def released(self, pose: Array, velocity: Array, duration: float, *shaking: GroundMotion | None) -> Scene:
+        """This scene with another release, shape (n, 3) each, duration [s], and horizontal and vertical ground motion.
 
         What follows from the scene at rest is found once and shared.
         """
         for name in SHARED:
             getattr(self, name)
-        made = copy(self)
+        made, (motion, vertical, *_) = copy(self), (*shaking, None, None)
         made.__dict__.update(release=(pose, velocity), duration=duration, motion=motion, vertical=vertical)
         for name in ("started", "release_energy"):
             made.__dict__.pop(name, None)
