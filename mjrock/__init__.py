@@ -32,6 +32,7 @@ from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
 from .study.grid import Grid
 from .study.matched import as_theory, matched_contacts
+from .study.pushover import pushover
 from .study.store import Store
 from .theory.analytical import solve_analytical
 
@@ -75,6 +76,7 @@ __all__ = [
     "contact_parameters",
     "contact_stiffness",
     "matched_contacts",
+    "pushover",
     "reference_frequency",
     "results",
     "simulate",

@@ -100,6 +100,7 @@ CALLS = {
     "compare": (mr.compare, {"reference": RESPONSE, "candidate": RESPONSE}),
     "wall_mjcf": (mr.wall_mjcf, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
     "wall_scene": (mr.wall_scene, {"case": SHORT, "contacts": CONTACTS}),
+    "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
         {"wall": WALL, "e": E, "k_base": 5e8, "points": 2, "amplitude": 0.5, "friction": None, "accuracy": 1e-2},

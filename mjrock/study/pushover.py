@@ -1,0 +1,168 @@
+"""Push-over: the horizontal acceleration that holds a wall at each rotation, without any motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..engine.tilted import tilted
+from ..engine.wall import wall_scene
+from ..problem.case import Case
+from ..problem.contacts import Contacts
+from ..problem.pulling import pulled, yielded
+from ..problem.quantities import ON_ITS_FACE, Array, require_array, require_kind, require_whole, shown
+from ..problem.uplift import Uplift
+
+MARGIN = 1.02
+"""How far a curve is followed, as a multiple of the rotation from which the rigid wall does not come back [-]."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PushoverCurve:
+    """The static curve of a wall that is pushed outwards.
+
+    Args:
+        case: the wall and its effects.
+        contacts: its interfaces, or None for a rigid wall on a rigid base.
+        rotation: rotations theta [rad], shape (n,).
+        multiplier: horizontal acceleration over g that holds the wall at each, acting on its mass [-], shape (n,).
+        moment: restoring moment of weight, loads, thrusts, ties and base about the held edge [N m], shape (n,).
+        start: multiplier at which the base begins to lift off [-]. For a rigid wall it is lambda_0, at which rocking
+            starts.
+        end: rotation at which the multiplier first falls to zero [rad]; infinite if it does not before the wall lies
+            on its face or its ties lift it off the base.
+        peak: largest multiplier up to `end` [-].
+    """
+
+    case: Case
+    contacts: Contacts | None
+    rotation: Array
+    multiplier: Array
+    moment: Array
+    start: float
+    end: float
+    peak: float
+
+    def __repr__(self) -> str:
+        base = "rigid" if self.contacts is None else f"{self.contacts.base.points} lines"
+        return (
+            f"<PushoverCurve of a wall on a base that is {base}: {len(self.rotation)} points, "
+            f"starts at {self.start:.4g} g, peak {self.peak:.4g} g, ends at {self.end:.4g} rad>"
+        )
+
+
+def pushover(
+    case: Case, contacts: Contacts | None = None, *, rotations: ArrayLike | None = None, points: int = 400
+) -> PushoverCurve:
+    """The static curve of a wall that a horizontal acceleration pushes outwards, away from its side stop.
+
+    The acceleration acts on the mass of the wall, with all added masses, at its centroid. Loads and thrusts have no
+    mass. Ties yield along the curve. The release, the ground motion and the duration of the case play no part.
+
+    A rigid wall has the closed form lambda = [P cos(theta) - Q sin(theta) + T(theta) lever] / (W z'), with P and Q of
+    `case.restoring`, T the pull of the ties, and z' = z cos(theta) + d sin(theta) the height of the centroid. On
+    contacts each point is an equilibrium of their springs at that rotation. The outer edge is held by friction halfway
+    into its overlap with the base. The curve then starts at the rotation of the wall at rest, with a multiplier of
+    zero.
+
+    Args:
+        case: the wall and its effects.
+        contacts: its interfaces; None for a rigid wall on a rigid base.
+        rotations: at which rotations [rad], increasing, 0 to pi/2, shape (n,). None takes the whole curve until the
+            multiplier falls to zero, the wall lies on its face, or its ties lift it off its contacts.
+        points: about how many points the whole curve has, 20 to 100000. Rotations at which a tie begins to pull or to
+            yield come on top.
+
+    Raises:
+        ValueError: for a value outside its range, or if the contacts do not fit the case or cannot carry it.
+    """
+    require_kind("case", case, Case)
+    require_kind("contacts", contacts, Contacts, type(None))
+    require_whole("points", points, 20, 100_000)
+    asked = np.zeros(0) if rotations is None else require_rotations(rotations)
+    if contacts is None:
+        path = np.unique(np.concatenate([_path(case, 0.0, 0.0, int(points)), asked]))
+        multiplier, moment = _rigid(case, path)
+        start = float(multiplier[0])
+    else:
+        scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts).rotation
+        rest = float(scene.at_rest[0, 2])
+        path = np.unique(np.concatenate([_path(case, rest, uplift, int(points)), asked]))
+        held = tilted(scene, path)
+        if asked.size and len(held.pose) < len(path) and asked[-1] > path[len(held.pose) - 1]:
+            raise ValueError(
+                f"rotations reach {asked[-1]:g} rad, and the ties lift the wall off its base at "
+                f"{path[len(held.pose)]:.4g} rad; the valid range ends there"
+            )
+        path = path[: len(held.pose)]
+        multiplier = held.force / case.wall.weight
+        moment = held.force * held.height
+        start = float(multiplier[held.lifted.argmax()]) if held.lifted.any() else math.nan
+    end = _end(path, multiplier)
+    wanted = np.isin(path, asked) if rotations is not None else path < end
+    peak = float(multiplier[path < end].max())
+    path, multiplier, moment = path[wanted], multiplier[wanted], moment[wanted]
+    if rotations is None and end < math.inf:
+        path, multiplier, moment = np.append(path, end), np.append(multiplier, 0.0), np.append(moment, 0.0)
+    return PushoverCurve(case, contacts, path, multiplier, moment, start, end, peak)
+
+
+def require_rotations(rotations: ArrayLike) -> Array:
+    """Rotations as an array.
+
+    Raises:
+        TypeError: if they are no array of real numbers.
+        ValueError: unless there is at least one, and they increase within 0 to pi/2.
+    """
+    try:
+        shape = np.shape(rotations)
+    except ValueError:
+        raise TypeError(f"rotations = {shown(rotations)} is no array of real numbers") from None
+    if len(shape) != 1 or not shape[0]:
+        raise ValueError(f"rotations has the shape {shape}; a row of at least one rotation [rad] is needed")
+    made = require_array("rotations", rotations, shape)
+    if not (made[0] >= 0 and made[-1] <= ON_ITS_FACE and (np.diff(made) > 0).all()):
+        raise ValueError(f"rotations = {shown(rotations)} has to increase within the valid range 0 to pi/2 rad")
+    return made
+
+
+def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:
+    """Multiplier [-] and moment [N m] of a rigid wall at increasing rotations."""
+    moment = case.restoring.outer.at(phi)
+    for pull, plastic in zip(case.pulls, yielded(case.pulls, phi).T, strict=True):
+        elongation, lever = pulled(pull, phi, 1.0)
+        moment = moment + pull.stiffness * np.maximum(elongation - plastic, 0.0) * lever
+    wall = case.wall
+    return moment / (wall.weight * (wall.centroid_height * np.cos(phi) + wall.lever * np.sin(phi))), moment
+
+
+def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
+    """Rotations from rest to beyond overturning [rad], denser about the uplift and where a tie changes."""
+    limit = min(MARGIN * case.overturning_rotation + ON_ITS_FACE / 1000, ON_ITS_FACE)
+    parts = [np.linspace(rest, limit, points if not uplift else points // 2)]
+    if uplift:
+        near = min(max(uplift, 1e-9), limit)
+        parts += [np.linspace(rest, near, points // 8), np.geomspace(near, limit, points // 2)]
+        # the uplift itself is known to second order in the rotation
+        parts += [near * np.array([1 - 1e-3, 1 - 1e-4, 1 + 1e-6, 1 + 1e-4, 1 + 1e-3])]
+    fine = np.linspace(0.0, limit, 20_001)
+    for pull in case.pulls:
+        for elongation in (0.0, pull.strength / pull.stiffness):
+            beyond = np.flatnonzero(pulled(pull, fine, 1.0)[0] > elongation)
+            if beyond.size:
+                parts.append(fine[max(beyond[0] - 1, 0) : beyond[0] + 1])
+    path = np.concatenate(parts)
+    return path[(path >= rest) & (path <= limit)]
+
+
+def _end(rotation: Array, multiplier: Array) -> float:
+    """The rotation at which the multiplier first falls to zero [rad], linear between the points; infinite if none."""
+    falls = np.flatnonzero((multiplier[:-1] > 0) & (multiplier[1:] <= 0))
+    if not falls.size:
+        return math.inf
+    i = falls[0]
+    share = multiplier[i] / (multiplier[i] - multiplier[i + 1])
+    return float(rotation[i] + share * (rotation[i + 1] - rotation[i]))
