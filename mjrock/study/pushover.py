@@ -16,8 +16,9 @@ from ..problem.pulling import pulled, yielded
 from ..problem.quantities import ON_ITS_FACE, Array, require_array, require_kind, require_whole, shown
 from ..problem.uplift import Uplift
 
-MARGIN = 1.02
-"""How far a curve is followed, as a multiple of the rotation from which the rigid wall does not come back [-]."""
+MARGIN = 1.1
+"""How far a curve is followed, as a multiple of the rotation at which that of the rigid wall falls to zero [-]. The
+softest base that carries a wall moves that rotation by some hundredths."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -141,14 +142,14 @@ def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:
 
 def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
     """Rotations from rest to beyond overturning [rad], denser about the uplift and where a tie changes."""
-    limit = min(MARGIN * case.overturning_rotation + ON_ITS_FACE / 1000, ON_ITS_FACE)
+    fine = np.linspace(0.0, ON_ITS_FACE, 20_001)
+    limit = min(MARGIN * _end(fine, _rigid(case, fine)[0]), ON_ITS_FACE)
     parts = [np.linspace(rest, limit, points if not uplift else points // 2)]
     if uplift:
         near = min(max(uplift, 1e-9), limit)
         parts += [np.linspace(rest, near, points // 8), np.geomspace(near, limit, points // 2)]
         # the uplift itself is known to second order in the rotation
         parts += [near * np.array([1 - 1e-3, 1 - 1e-4, 1 + 1e-6, 1 + 1e-4, 1 + 1e-3])]
-    fine = np.linspace(0.0, limit, 20_001)
     for pull in case.pulls:
         for elongation in (0.0, pull.strength / pull.stiffness):
             beyond = np.flatnonzero(pulled(pull, fine, 1.0)[0] > elongation)
