@@ -31,6 +31,7 @@ from .study.analysis import Analysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
 from .study.grid import Grid
+from .study.ida import ida, overturning_intensity
 from .study.matched import as_theory, matched_contacts
 from .study.pushover import pushover
 from .study.store import Store
@@ -75,7 +76,9 @@ __all__ = [
     "compare",
     "contact_parameters",
     "contact_stiffness",
+    "ida",
     "matched_contacts",
+    "overturning_intensity",
     "pushover",
     "reference_frequency",
     "results",

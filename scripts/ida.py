@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,7 +17,6 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
-from mjrock.study.campaign import completed
 from paper import FIGURE_3, K_N
 
 
@@ -29,32 +28,43 @@ def main(argv: Sequence[str] | None = None) -> None:
         polarity for motion in suite.motions(args.records, 2 if args.quick else 12) for polarity in motion.polarities
     ]
     levels = np.linspace(0.1, 1.0, 4 if args.quick else 28)
-
-    def build(solver: str, motion: mr.GroundMotion, pga: float) -> mr.Analysis:
-        return suite.analysis(FIGURE_3, suite.to_peak(motion, pga), solver, k_n=K_N)
-
-    grid = mr.Grid(build, solver=suite.SOLVERS, motion=motions, pga=levels.tolist())
-    found = completed(grid, out / "ida.sqlite", workers=args.workers)
-    fell = [row["outcome"] == mr.Outcome.OVERTURNED.value for row in found]
-    peaks = np.where(fell, math.inf, [row["peak_over_alpha"] for row in found])
-    peaks = peaks.reshape(len(suite.SOLVERS), len(motions), len(levels))
-
+    found = {
+        solver: mr.ida(records(motions, solver), levels, out / "ida.sqlite", workers=args.workers)
+        for solver in suite.SOLVERS
+    }
     figure = Figure(figsize=(8.2, 3.6), layout="constrained")
-    for ax, solver, curves in zip(figure.subplots(1, 2, sharey=True), suite.SOLVERS, peaks, strict=True):
-        plotting.incremental(ax, levels, curves, solver).label_outer()
+    for ax, (solver, one) in zip(figure.subplots(1, 2, sharey=True), found.items(), strict=True):
+        plotting.incremental(ax, one.scales, one.peaks, solver).label_outer()
         ax.legend(frameon=False, fontsize=8, loc="lower right")
     plotting.save(figure, out / "ida.png")
-    capacity = np.where(np.isinf(peaks).any(axis=2), levels[np.isinf(peaks).argmax(axis=2)], math.nan)
+    capacities = zip(*(one.capacity for one in found.values()), strict=True)
     rows = [
         [motion.name, *("-" if math.isnan(c) else f"{c:.3f}" for c in pair)]
-        for motion, pair in zip(motions, capacity.T, strict=True)
+        for motion, pair in zip(motions, capacities, strict=True)
     ]
     header = ["record", *(f"first overturned at PGA [g], {plotting.STYLES[s]['label']}" for s in suite.SOLVERS)]
     text = cli.table(header, rows)
     cli.write(out / "ida.txt", text + "\n")
-    cells = [(r["solver"], r["motion"], r["pga"], r["outcome"], r["peak_over_alpha"]) for r in found]
+    cells = [
+        (row["solver"], row["record"], row["scale"], row["outcome"], row["peak_over_alpha"])
+        for one in found.values()
+        for own in one.rows
+        for row in own
+    ]
     cli.write(out / "ida.csv", cli.csv_text(["solver", "record", "PGA [g]", "outcome", "peak theta/alpha [-]"], cells))
     print(text)
+
+
+def records(motions: Sequence[mr.GroundMotion], solver: str) -> dict[str, Callable[[float], mr.Analysis]]:
+    """What makes the analysis of a peak ground acceleration in g, for each motion by its name."""
+
+    def scaled(motion: mr.GroundMotion) -> Callable[[float], mr.Analysis]:
+        return lambda pga: suite.analysis(FIGURE_3, suite.to_peak(motion, pga), solver, k_n=K_N)
+
+    made = {motion.name: scaled(motion) for motion in motions}
+    if len(made) < len(motions):
+        raise ValueError(f"{len(motions)} motions have {len(made)} names; each record needs a name of its own")
+    return made
 
 
 if __name__ == "__main__":

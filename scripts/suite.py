@@ -15,8 +15,6 @@ import mjrock as mr
 
 STILL = 0.01
 """Peak rotation below which a wall is said to have stayed at rest, in multiples of alpha [-]."""
-FALLEN = 9.0
-"""Peak rotation that stands for overturning, in multiples of alpha [-]."""
 STIFF = 3e9
 """Interface stiffness of base and side for a nearly rigid base [N/m3]: the upper end of the paper's Table 1."""
 READERS = {".at2": mr.GroundMotion.from_at2, ".sac": mr.GroundMotion.from_sac}
@@ -78,8 +76,7 @@ def verdict(row: Mapping[str, Any]) -> str:
 
 
 def in_pairs(rows: Sequence[Mapping[str, Any]]) -> tuple[NDArray[np.str_], NDArray[np.float64]]:
-    """Verdicts and peak rotations in multiples of alpha of rows that follow each other in pairs, shapes (n, 2); a wall
-    that overturns has a peak beyond any other."""
+    """Verdicts and peak rotations in multiples of alpha of rows that follow each other in pairs, shapes (n, 2); the
+    peak of a wall that overturns is infinite."""
     ends = np.reshape([verdict(row) for row in rows], (-1, 2))
-    peaks = np.reshape([row["peak_over_alpha"] for row in rows], (-1, 2))
-    return ends, np.where(ends == "overturns", FALLEN, peaks)
+    return ends, np.reshape([float(row["peak_over_alpha"]) for row in rows], (-1, 2))

@@ -26,6 +26,13 @@ RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
 PLAN = mr.Plan(base_count=2, side_count=2)
 
+
+def pushed(scale):
+    """A case that is pushed outwards by so many times g alpha, and overturns at the larger scales."""
+    motion = mr.GroundMotion(np.full(2, -min(scale, 100.0) * 9.81 * WALL.alpha), 0.5)
+    return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E, options={"rtol": 1e-4})
+
+
 CALLS = {
     "Block": (mr.Block,
         {
@@ -100,6 +107,9 @@ CALLS = {
     "compare": (mr.compare, {"reference": RESPONSE, "candidate": RESPONSE}),
     "wall_mjcf": (mr.wall_mjcf, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
     "wall_scene": (mr.wall_scene, {"case": SHORT, "contacts": CONTACTS}),
+    "overturning_intensity": (
+        mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1},
+    ),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
@@ -197,7 +207,7 @@ def test_every_public_entry_is_tried():
     elsewhere = {
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "SimulationError", "__version__", "PowerLaw", "DampingLaw", "Scene",
-        "Analysis", "Grid", "Store", "campaign", "results", "calibrate", "GroundMotion",
+        "Analysis", "Grid", "Store", "campaign", "ida", "results", "calibrate", "GroundMotion",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

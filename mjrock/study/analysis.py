@@ -105,13 +105,12 @@ class Analysis:
         if history is not None:
             save_history(response, history)
         restitution = [float(value) for value in response.restitution[:3]] + [None] * 3
-        largest = max(response.peaks.max(initial=0.0), abs(response.theta[-1]))  # a run may end on its way out
         law = "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
         values = (
             self.solver,
             law,
             response.outcome.value,
-            float(largest) / self.case.wall.alpha,
+            response.peak_over_alpha,
             len(response.impacts),
             *restitution[:3],
             float(response.t[-1]),

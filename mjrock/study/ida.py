@@ -1,0 +1,173 @@
+"""Incremental dynamic analysis: the peak rotation of a wall under records that are scaled up step by step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..problem.quantities import Array, require_array, require_kind, require_within, shown
+from .analysis import Analysis
+from .campaign import completed
+from .task import Row
+
+Build = Callable[[float], Analysis]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IncrementalAnalysis:
+    """The peaks of every record at every scale.
+
+    Args:
+        records: names of the records.
+        scales: the scales, in the unit that `build` takes, shape (scales,).
+        peaks: largest rotation over alpha, infinite where the wall overturned [-], shape (records, scales).
+        rows: the row of the store for each run, by record and scale.
+    """
+
+    records: tuple[str, ...]
+    scales: Array
+    peaks: Array
+    rows: tuple[tuple[Row, ...], ...]
+
+    @property
+    def capacity(self) -> Array:
+        """The lowest scale at which each record overturns the wall, NaN where none does, shape (records,).
+
+        A record may leave the wall standing again at a higher scale.
+        """
+        fell = np.isinf(self.peaks)
+        return np.where(fell.any(axis=1), self.scales[fell.argmax(axis=1)], math.nan)
+
+    def percentiles(self, shares: Sequence[float] = (16, 50, 84)) -> Array:
+        """Peaks over all records that these shares of the records stay below [-], shape (shares, scales).
+
+        Each is the peak of the nearest record, as there is no mean of a finite peak and overturning.
+
+        Args:
+            shares: 0 to 100 [%].
+        """
+        for i, share in enumerate(shares):
+            require_within(f"shares[{i}]", share, 0.0, 100.0, "%")
+        found: Array = np.percentile(self.peaks, list(shares), axis=0, method="nearest")
+        return found
+
+    def __repr__(self) -> str:
+        fell = np.isfinite(self.capacity)
+        return (
+            f"<IncrementalAnalysis of {len(self.records)} records at {len(self.scales)} scales from "
+            f"{self.scales[0]:g} to {self.scales[-1]:g}: {int(fell.sum())} records overturn the wall>"
+        )
+
+
+def ida(
+    build: Build | Mapping[str, Build], scales: ArrayLike, store: str | Path = "ida.sqlite", **options: Any
+) -> IncrementalAnalysis:
+    """Run a wall under one or several records at every scale, and gather the peaks.
+
+    What the store holds already is not run again. The labels `record` and `scale` tell the rows apart there, unless the
+    analyses have labels of these names.
+
+    Args:
+        build: `build(scale)` makes the `Analysis` of a scale; or one such function for each record, by name.
+        scales: increasing, not negative, in the unit that `build` takes, shape (scales,).
+        store: the SQLite file.
+        options: those of `campaign`, such as `workers`.
+
+    Raises:
+        TypeError: if `build` is no function, or returns no `Analysis`.
+        ValueError: if the scales are none, negative or do not increase, or there are no records; and as `campaign`.
+        RuntimeError: if a run has failed; its row in the store says how.
+    """
+    builds = dict(build) if isinstance(build, Mapping) else {"record": build}
+    if not builds:
+        raise ValueError("build holds no records; at least one is needed")
+    levels = require_scales(scales)
+    tasks = []
+    for name, make in builds.items():
+        require_kind("the name of a record in build", name, str)
+        for scale in levels.tolist():
+            analysis = built(make, scale, f"build[{name!r}]" if isinstance(build, Mapping) else "build")
+            tasks.append(replace(analysis, labels={"record": name, "scale": scale} | dict(analysis.labels)))
+    rows = completed(tasks, store, **options)
+    table = tuple(tuple(rows[i : i + len(levels)]) for i in range(0, len(rows), len(levels)))
+    peaks = np.array([[row["peak_over_alpha"] for row in own] for own in table], dtype=float)
+    return IncrementalAnalysis(tuple(builds), levels, peaks, table)
+
+
+def overturning_intensity(build: Build, low: float, high: float, *, tolerance: float = 1e-3) -> float:
+    """A scale at which a record overturns a wall, while at a scale that is hardly lower it does not.
+
+    The interval from `low` to `high` is halved until it is as narrow as asked. A wall may overturn at a scale and stand
+    at a higher one. There may then be several such scales, and this is one of them; `ida` shows all.
+
+    Args:
+        build: `build(scale)` makes the `Analysis` of a scale.
+        low: a scale at which the wall does not overturn, not negative.
+        high: a scale at which it does, above `low`.
+        tolerance: how far below the answer the wall may be known to stand, over the answer [-], 1e-9 to 0.5.
+
+    Returns:
+        The upper end of the last interval.
+
+    Raises:
+        TypeError: if `build` is no function, or returns no `Analysis`.
+        ValueError: for a value outside its range, or if the wall overturns at `low` or does not at `high`.
+    """
+    low, high = require_within("low", low, 0.0, 1e12), require_within("high", high, 0.0, 1e12)
+    require_within("tolerance", tolerance, 1e-9, 0.5)
+    if not low < high:
+        raise ValueError(f"high = {high:g} is outside the valid range, which is above low = {low:g}")
+    peaks = [built(build, scale, "build").solve().peak_over_alpha for scale in (low, high)]
+    if peaks[0] == math.inf:
+        raise ValueError(f"low = {low:g}: the wall overturns at that scale already; give a lower one")
+    if peaks[1] < math.inf:
+        raise ValueError(
+            f"high = {high:g}: the wall does not overturn at that scale, its largest rotation is "
+            f"{peaks[1]:.4g} alpha; give a higher one"
+        )
+    while high - low > tolerance * high:
+        middle = 0.5 * (low + high)
+        if built(build, middle, "build").solve().peak_over_alpha == math.inf:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def built(build: Build, scale: float, name: str) -> Analysis:
+    """The analysis that a function makes of a scale.
+
+    Raises:
+        TypeError: that names the function, unless it is one and returns an `Analysis`.
+    """
+    if not callable(build):
+        raise TypeError(f"{name} = {shown(build)} is no function of a scale")
+    analysis = build(scale)
+    if not isinstance(analysis, Analysis):
+        raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
+    return analysis
+
+
+def require_scales(scales: ArrayLike) -> Array:
+    """Scales as an array.
+
+    Raises:
+        TypeError: if they are no array of real numbers.
+        ValueError: unless there is at least one, none is negative, and they increase.
+    """
+    try:
+        shape = np.shape(scales)
+    except ValueError:
+        raise TypeError(f"scales = {shown(scales)} is no array of real numbers") from None
+    if len(shape) != 1 or not shape[0]:
+        raise ValueError(f"scales has the shape {shape}; a row of at least one scale is needed")
+    made = require_array("scales", scales, shape)
+    if not (made[0] >= 0 and (np.diff(made) > 0).all()):
+        raise ValueError(f"scales = {shown(scales)} has to increase within the valid range 0 and above")
+    return made
