@@ -36,3 +36,22 @@ def test_a_saved_figure_is_the_same_bytes_again(responses, tmp_path):
 def test_grid_hides_the_panels_it_does_not_need(responses):
     figure = plotting.grid([("one", responses)] * 3)
     assert [ax.get_visible() for ax in figure.axes] == [True, True, True, False]
+
+
+def test_push_over_curves_beside_closed_forms(one_sided, contacts):
+    curves = {"rigid": mr.pushover(one_sided), "corner lines": mr.pushover(one_sided, contacts)}
+    ax = Figure().subplots()
+    assert plotting.pushover(ax, curves, {"rigid": ([0.0], [1 / 7])}) is ax
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (r"rotation $\theta$ [rad]", r"multiplier $\lambda$ [-]")
+    rigid, corners, closed = ax.get_lines()
+    np.testing.assert_array_equal(rigid.get_ydata(), curves["rigid"].multiplier)
+    np.testing.assert_array_equal(corners.get_xdata(), curves["corner lines"].rotation)
+    assert closed.get_color() == rigid.get_color() != corners.get_color()
+    assert len({(line.get_linestyle(), line.get_linewidth()) for line in (rigid, corners)}) == 2
+    ax = plotting.moment_rotation(Figure().subplots(), curves, {"corner lines": ([0.1], [5e3])})
+    assert ax.get_ylabel() == "restoring moment $M$ [kN m]"
+    rigid, corners, closed = ax.get_lines()
+    assert list(rigid.get_xdata()[:2]) == [0, 0]  # a rigid wall takes the whole moment before it turns
+    assert rigid.get_ydata()[:2] == pytest.approx([0, one_sided.wall.weight * one_sided.wall.b / 1e3])
+    np.testing.assert_array_equal(corners.get_ydata(), curves["corner lines"].moment / 1e3)
+    assert closed.get_ydata() == pytest.approx([5.0])

@@ -30,6 +30,7 @@ WRITES = {
     "fragility": {f"fragility.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "pushover": {f"pushover.{ending}" for ending in ("png", "csv", "txt")} | {"pushover_bases.png"},
     "throughput": {"throughput.txt"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},

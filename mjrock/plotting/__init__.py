@@ -4,6 +4,7 @@ from .accuracy import convergence, work_precision
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
 from .histories import comparison, energy, grid, rotation
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
+from .pushing import moment_rotation, pushover
 from .style import STYLES, Drawing, panels, save, single
 
 __all__ = [
@@ -19,11 +20,13 @@ __all__ = [
     "grid",
     "incremental",
     "mode_legend",
+    "moment_rotation",
     "obtained",
     "overturning_map",
     "pairs",
     "panels",
     "parity",
+    "pushover",
     "residuals",
     "rotation",
     "save",

@@ -1,0 +1,59 @@
+"""Pictures of static curves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from ..study.pushover import PushoverCurve
+
+LINES: tuple[dict[str, Any], ...] = (
+    {"color": "0.15", "linestyle": "-", "linewidth": 1.2},
+    {"color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
+    {"color": "#12406b", "linestyle": "--", "linewidth": 1.6},
+    {"color": "#4f8f5b", "linestyle": "-.", "linewidth": 1.6},
+    {"color": "#8a3a68", "linestyle": ":", "linewidth": 1.8},
+)
+"""Lines in the order of the curves, that a black-and-white print still tells apart."""
+Closed = Mapping[str, tuple[ArrayLike, ArrayLike]]
+"""Rotations [rad] and the values of a closed form at them, by the name of its curve."""
+
+
+def pushover(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
+    """Multiplier against rotation, a line a curve, with closed forms as points; no legend."""
+    _drawn(ax, {name: (curve.rotation, curve.multiplier) for name, curve in curves.items()}, closed or {})
+    ax.set_ylabel(r"multiplier $\lambda$ [-]")
+    return ax
+
+
+def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
+    """Restoring moment against rotation, as in Figure 1(c) of the paper; closed forms [N m] as points; no legend.
+
+    The moment of a rigid wall rises at no rotation.
+    """
+    lines = {}
+    for name, curve in curves.items():
+        rotation, moment = curve.rotation, curve.moment / 1e3
+        if curve.contacts is None:
+            rotation, moment = np.append(0.0, rotation), np.append(0.0, moment)
+        lines[name] = rotation, moment
+    points = {name: (at, np.asarray(values, dtype=float) / 1e3) for name, (at, values) in (closed or {}).items()}
+    _drawn(ax, lines, points)
+    ax.set_ylabel("restoring moment $M$ [kN m]")
+    return ax
+
+
+def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
+    for (name, (x, y)), style in zip(lines.items(), LINES, strict=False):
+        ax.plot(x, y, label=name, **style)
+    for i, (name, (x, y)) in enumerate(points.items()):
+        colour = LINES[list(lines).index(name)]["color"] if name in lines else "0.4"
+        label = "closed forms" if i == 0 else None
+        ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
+    ax.set_xlim(left=0)
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel(r"rotation $\theta$ [rad]")
