@@ -192,3 +192,21 @@ def test_names_of_ties_and_forces_in_the_text(standing, wall):
     assert model.actuator_gear[0, :3].tolist() == [1.0, 0.0, 2.0]
     assert (model.tendon(0).name, model.actuator(0).name) == ("tie", "pull")
     assert (model.ntendon, model.nu, model.nplastic) == (1, 1, 2)
+
+
+def test_a_tie_that_the_release_has_stretched_too_far_has_yielded_by_then(wall, contacts):
+    """MuJoCo lets a tie yield at the end of a step. The first step had its elastic force, a thousand times too much."""
+    held = mr.Tie(height=wall.h, stiffness=1e8, strength=5e3)
+    case = mr.Case(wall, 0.5 * wall.alpha, 0.02, effects=(held,))
+    step = 1e-4
+    run = mr.simulate(case, contacts, step)
+    lever = wall.h * math.cos(case.theta0) + 2 * wall.b * math.sin(case.theta0)  # of a level pull, about the toe
+    free = mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 0.02), contacts, step)
+    slowed = (run.omega[5] - free.omega[5]) / run.t[5] * wall.toe_inertia
+    assert slowed == pytest.approx(-held.strength * lever, rel=0.05)
+    engine = mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, step))
+    data = mujoco.MjData(engine)
+    mujoco.mj_resetDataKeyframe(engine, data, engine.key("release").id)
+    for pose in run.pose[:, 0]:
+        np.testing.assert_allclose(data.qpos, pose, atol=1e-9 * wall.alpha)
+        mujoco.mj_step(engine, data)

@@ -54,7 +54,13 @@ HEAD = """\
 """
 
 
-def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, velocity: Array | None = None) -> str:
+def scene_mjcf(
+    scene: Scene,
+    timestep: float,
+    newmark_beta: float = 0.25,
+    velocity: Array | None = None,
+    plastic: Array | None = None,
+) -> str:
     """The model of a scene as MJCF text. The same arguments give the same bytes.
 
     Names: each body and the geom that shows it; each contact point, its pair and its geom by group and number, such as
@@ -67,6 +73,8 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, veloci
         newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.contact.row`.
         velocity: velocities of the keyframe, half a step before the release, shape (n, 3). None stands for those of the
             release itself.
+        plastic: state of the ties at the release, as MuJoCo keeps it, shape (2 t,). None stands for ties that have not
+            yielded.
     """
     corners = np.concatenate([rest + outline for rest, outline in zip(scene.rest, scene.outlines, strict=True)])
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -86,6 +94,8 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, veloci
     )
     camera = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
     key = {"qpos": pose.ravel(), "qvel": (released if velocity is None else velocity).ravel()}
+    if plastic is not None and len(plastic):
+        key["plastic"] = plastic
     body = [
         "<worldbody>",
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',

@@ -84,12 +84,19 @@ class Engine:
     def release(self, started: tuple[Array, Array]) -> None:
         """Set pose and velocity, shape (n, 3), the velocity half a step back, where the leapfrog keeps it.
 
-        Before the release the ground is quiet.
+        Before the release the ground is quiet. Ties that the pose stretches too far have yielded: MuJoCo lets a tie
+        yield at the end of a step, and the first step would have its whole elastic force.
         """
         model, data = self.model, self.data
         mujoco.mj_resetData(model, data)
         pose, velocity = (np.ravel(values) for values in started)
         data.qpos[:], data.qvel[:] = pose, velocity
+        if model.nplastic:
+            mujoco.mj_fwdPosition(model, data)
+            yields = np.flatnonzero(model.tendon_plasticadr >= 0)
+            upper = model.tendon_plasticadr[yields] + 1  # of the range in which a tie is slack
+            reached = data.ten_length[yields] - model.tendon_springyield[yields]
+            data.plastic[upper] = np.maximum(data.plastic[upper], reached)
         for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
             mujoco.mj_forward(model, data)
             data.qvel[:] = velocity - 0.5 * model.opt.timestep * data.qacc
@@ -119,7 +126,8 @@ def released_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25) -> 
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
         engine.release(scene.started)
-        return scene_mjcf(scene, timestep, newmark_beta, engine.data.qvel.reshape(-1, 3))
+        data = engine.data
+        return scene_mjcf(scene, timestep, newmark_beta, data.qvel.reshape(-1, 3), data.plastic)
 
 
 def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: float = 0.25) -> str:

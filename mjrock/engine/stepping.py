@@ -15,6 +15,7 @@ import numpy as np
 from tqdm import tqdm
 
 from .ground import Ground
+from .kinematics import frame_of, stretch
 from .loop import Clock, State, fitted_loop, fixed_loop
 from .model import Engine
 from .pace import SMOOTH, Pace
@@ -34,6 +35,8 @@ def fitted_steps(engine: Engine, scene: Scene, accuracy: float) -> Steps:
     """
     pace, ground, joints = Pace.of(scene, accuracy), Ground.of(scene.motion, scene.vertical), Joints.of_scene(scene)
     ties = scene.ties._replace(reach=np.array(scene.ties.reach))  # they yield in this run alone
+    for i in range(len(ties.k)):
+        stretch(ties, i, frame_of(engine.memory.pose), engine.memory.velocity)
     state = State.of(engine.memory, Springs.of(scene.points, ties))
     energy = max(2 * scene.release_energy, pace.least_energy)
     clock = Clock(0.0, pace.short, pace.short, energy, 0, True, False, 0, False)
