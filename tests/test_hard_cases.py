@@ -32,6 +32,23 @@ ONCE_BROKEN = {
     "a wall leaned on a soft stop with an edge that slid": Scene(
         4.0, 7.4, 2000.0, 2.4e9, 1.1e8, 0.05, 0.01, 2, True, 0.5, 0.0
     ),
+    "a tie that had yielded at the release pulled with its elastic force for one step": Scene(
+        *(2.79, 6.0, 2000.0, 5e7, 5e8, 0.037, 0.0056, 2, False, 0.7, 0.0),
+        effects=(mr.Tie(height=1.3, stiffness=1e8, strength=12e3),),
+    ),
+    "friction was booked for creep that had been put back, under a thrust on a wall at rest": Scene(
+        *(2.95, 4.37, 2000.0, 5.8e7, 3.6e8, 0.047, 0.028, 4, False, 0.586, 0.0),
+        inset=0.144,
+        effects=(mr.Thrust(height=2.7, force=3.7e3),),
+    ),
+    "the length of a stiff tie was rounded by more than the rest of the wall tolerated": Scene(
+        *(0.107, 4.0, 2788.0, 1.6e11, 5.4e10, 0.0013, 0.1, 2, False, 0.5, 0.0),
+        effects=(mr.Tie(height=0.013, stiffness=2.5e10, length=4.4), mr.Load(force=58.6, height=0.08, offset=0.0098)),
+    ),
+    "loads that no base of its stiffness carries were refused without a reason": Scene(
+        *(0.333, 10.0, 3288.0, 1.6e7, 1.6e9, 0.57, 0.6, 8, True, 0.1, 0.0),
+        effects=(mr.Thrust(height=0.084, force=50.0),),
+    ),
 }
 
 
@@ -42,9 +59,10 @@ def test_mended(name):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("effects", [False, True], ids=["bare", "with effects"])
 @pytest.mark.parametrize("wide", [False, True], ids=["Table 1", "wide"])
-def test_no_trouble_in_thousands_of_random_scenes(wide):
-    found = trouble.search(2500, wide=wide, seed=11)
+def test_no_trouble_in_thousands_of_random_scenes(wide, effects):
+    found = trouble.search(1000 if effects else 2500, wide=wide, seed=11, effects=effects)
     assert not found, "\n".join(f"{complaint}: {scene}" for scene, complaint in found)
 
 
