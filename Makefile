@@ -37,7 +37,7 @@ calibrate: $(READY) # the laws that ship, and what they are worth on walls they 
 models: $(READY)
 	$(BIN)/python scripts/make_models.py
 
-figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions for agreement.py
+figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
 	$(BIN)/python scripts/compare_wall.py --check --out docs/figures/demo
 	$(BIN)/python scripts/figure3.py --out docs/figures
 	$(BIN)/python scripts/table2.py --out docs/figures
@@ -54,6 +54,8 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/fragility.py --out docs/figures
 	$(BIN)/python scripts/polarity.py --out docs/figures
 	$(BIN)/python scripts/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/throughput.py --out docs/figures
 	$(BIN)/python scripts/speed.py
 

@@ -31,6 +31,8 @@ WRITES = {
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "pushover": {f"pushover.{ending}" for ending in ("png", "csv", "txt")} | {"pushover_bases.png"},
+    "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
+    "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
@@ -50,6 +52,7 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "polarity",
     "overturning_spectrum",
     "ida",
+    "effect_costs",
 }
 """Scripts that take a while even with --quick."""
 
