@@ -110,13 +110,13 @@ def test_known_multipliers():
 def test_a_stiff_base_gives_the_rigid_curve(wall, effects):
     case = problem(wall, effects)
     phi = np.linspace(0.002, 0.1, 99)
-    rigid, stiff = closed_form(wall, effects, phi), mr.pushover(case, on(case, STIFF), rotations=phi)
+    rigid, stiff = closed_form(wall, effects, phi), mr.pushover(case, on(case, STIFF), rotations=phi, points=50)
     np.testing.assert_allclose(stiff.multiplier, rigid, rtol=0.01, atol=1e-5)
-    whole = mr.pushover(case, on(case, STIFF))
+    whole = mr.pushover(case, on(case, STIFF), points=200)
     assert whole.end == pytest.approx(mr.pushover(case).end, rel=0.01)
     if not case.pulls:  # a tie pulls before such a base has lifted off
         assert whole.start == pytest.approx(mr.pushover(case).start, rel=0.01)
-    soft = mr.pushover(case, on(case, SOFT), rotations=phi[:50])
+    soft = mr.pushover(case, on(case, SOFT), rotations=phi[:50], points=50)
     assert np.abs(soft.multiplier / rigid[:50] - 1).max() > 0.05
 
 
@@ -149,7 +149,7 @@ def test_many_lines_approach_the_bed():
     theta = np.concatenate([theta_1 * np.array([0.3, 0.7, 0.95]), np.linspace(1.05 * theta_1, 0.1, 60)])
     expected = bed_moment(SOFT, theta)
     found = {
-        points: mr.pushover(case, on(case, SOFT, points), rotations=theta).moment + WEIGHT * H * theta
+        points: mr.pushover(case, on(case, SOFT, points), rotations=theta, points=20).moment + WEIGHT * H * theta
         for points in (8, 16, 32, 64, 256)
     }
     np.testing.assert_allclose(found[256], expected, rtol=0.005)  # what is left is of second order in the rotation
@@ -283,3 +283,21 @@ def test_a_tie_that_lifts_the_wall_off_its_base():
     assert 0.5 < curve.rotation[-1] < 1.2
     with pytest.raises(ValueError, match=r"rotations reach 1.5 rad, and the ties lift the wall off its base at 0\."):
         mr.pushover(case, on(case, SOFT), rotations=[0.1, 1.5])
+
+
+def test_a_yielded_tie_slackens_where_the_wall_comes_nearer_to_its_anchor():
+    case = problem("full", "tie to a low anchor")
+    phi = np.linspace(0.1, 0.9, 33)  # it is longest at 0.5 rad
+    rigid = mr.pushover(case, rotations=phi).multiplier
+    expected = closed_form("full", "tie to a low anchor", np.linspace(0, 0.9, 9001))[1000::250]
+    np.testing.assert_allclose(rigid, expected, atol=1e-3)
+    held = mr.pushover(case, on(case, STIFF), rotations=phi, points=50).multiplier
+    np.testing.assert_allclose(held, rigid, atol=1e-3)
+    # the twin that must fail: at 0.9 rad it is 0.14 m shorter again, and slack
+    assert rigid[-1] == pytest.approx(float(case.restoring.outer.at(0.9)) / lever(case, 0.9), rel=1e-6)
+    assert abs(case.pulls[0].moment(np.array([0.9]))[0]) / lever(case, 0.9) > 0.01
+
+
+def lever(case, phi):
+    """W z' [N m]."""
+    return case.wall.weight * (case.wall.centroid_height * math.cos(phi) + case.wall.lever * math.sin(phi))
