@@ -78,12 +78,8 @@ def apart(theory: mr.Response, engine: mr.Response) -> list[str]:
     t = theory.t[theory.t <= engine.t[-1]]
     gap = np.interp(t, theory.t, theory.theta) - np.interp(t, engine.t, engine.theta)
     rms = float(np.sqrt(np.mean(gap**2))) / WALL.alpha
-    return [
-        *(f"{x:.4f}" for x in peaks),
-        f"{peaks[1] / peaks[0] - 1:+.2%}",
-        *(f"{x:.1f}" for x in plastic),
-        f"{rms:.4f}",
-    ]
+    ratio = f"{peaks[1] / peaks[0] - 1:+.1%}"
+    return [*(f"{x:.3f}" for x in peaks), ratio, *(f"{x:.0f}" for x in plastic), f"{rms:.4f}"]
 
 
 def main(argv: Sequence[str] | None = None) -> None:
