@@ -83,6 +83,6 @@ def test_a_load_that_the_springs_cannot_carry_is_refused_with_a_reason():
         effects=(mr.Thrust(height=0.084, force=60.0),),
     )
     case, contacts = scene.make()
-    with pytest.raises(ValueError, match="do not stand on their contacts.*valid range"):
+    with pytest.raises(ValueError, match=r"do not stand on their contacts.*valid range"):
         mr.simulate(case, contacts)
     assert trouble.broken_promise(scene, wide=True) is None
