@@ -215,7 +215,8 @@ def broken_promise(scene: Scene, *, wide: bool) -> str | None:
     standing = case.returns_from(run.theta)
     uplift = Uplift.of(case, contacts)
     put_in = float(np.abs(np.diff(run.ledger.ground)).sum())
-    scale = max(float(run.energy[0]) + put_in, uplift.energy)
+    slid = float(run.ledger.friction[standing].max(initial=0.0))  # thrusts and gravity pay for it
+    scale = max(float(run.energy[0]) + put_in + slid, uplift.energy)
     unpaid = float(run.ledger.residual[standing].max(initial=0.0)) / scale
     if unpaid > UNPAID[wide]:
         return f"the ledger has {unpaid:.2%} of the release energy too much"

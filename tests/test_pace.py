@@ -20,12 +20,13 @@ from mjrock.engine.pace import (
     SHORT,
     SMOOTH,
     STAYS,
+    TAUT,
     Pace,
     judged,
     resolves,
     short_step,
-    until_turned,
     while_loaded,
+    while_taut,
 )
 from mjrock.engine.sticking import Joints, deepest, presses, rolled
 from mjrock.engine.wall import wall_scene
@@ -100,14 +101,28 @@ def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
     ties = scene.ties._replace(k=np.ones(1), stretch=np.ones(1), reach=np.ones(1))
     motion = np.zeros((5, 4))
     motion[4] = -0.01, -0.3, 20.0, 10.0
-    assert until_turned(ties, motion, 0.02, 1e-4) == pytest.approx(0.01)
-    assert until_turned(ties, motion, 0.02, 0.015) == 0.015
-    assert until_turned(ties, motion, 0.009, 1e-4) == 0.009
+    pace = Pace.of(scene, 1e-3)._replace(short=1e-4, taut=1.0)
+    assert while_taut(pace, ties, motion, 0.02) == pytest.approx(0.01)
+    assert while_taut(pace._replace(short=0.015), ties, motion, 0.02) == 0.015
+    assert while_taut(pace, ties, motion, 0.009) == 0.009
     for changed in ((0.01, -0.3, 20.0, 10.0), (-0.01, 0.3, 20.0, 10.0)):  # slack, and shortening
         motion[4] = changed
-        assert until_turned(ties, motion, 0.02, 1e-4) == 0.02
+        assert while_taut(pace, ties, motion, 0.02) == 0.02
     motion[4] = -0.01, -0.3, 20.0, 10.0
-    assert until_turned(ties._replace(stretch=np.array([math.inf])), motion, 0.02, 1e-4) == 0.02
+    elastic = ties._replace(stretch=np.array([math.inf]))
+    assert while_taut(pace, elastic, motion, 0.02) == 0.02
+    assert while_taut(pace._replace(taut=0.004), elastic, motion, 0.02) == 0.004
+    motion[4, 0] = 0.01
+    assert while_taut(pace._replace(taut=0.004), elastic, motion, 0.02) == 0.02
+
+
+def test_steps_on_a_taut_tie(wall, contacts):
+    """omega h = sqrt(TAUT accuracy), omega = sqrt(k (1/m + h^2/I)) of a level tie at the top of the inner face."""
+    free = mr.Case(wall, 0.05, 1.0)
+    tied = mr.Case(wall, 0.05, 1.0, effects=(mr.Tie(2 * wall.h, 1e6),))
+    assert Pace.of(mr.wall_scene(free, contacts), 1e-3).taut == math.inf
+    omega = math.sqrt(1e6 * (1 / wall.mass + wall.h**2 / wall.inertia))
+    assert Pace.of(mr.wall_scene(tied, contacts), 1e-3).taut == pytest.approx(math.sqrt(TAUT * 1e-3) / omega)
 
 
 def with_stops(scene):

@@ -19,7 +19,7 @@ from .contact import set_rows
 from .ground import Ground, push
 from .kinematics import Points, Ties, frame_of, stretch, take_frame
 from .memory import IMPRATIO, TIMESTEP, Memory
-from .pace import Pace, judged, resolves, until_turned, while_loaded
+from .pace import Pace, judged, resolves, while_loaded, while_taut
 from .steps import Record
 from .sticking import Joints, deepest, put_back, sticks
 from .touches import ABRUPT, FADED, Springs, closure_changed, follow, step_to_touch
@@ -236,7 +236,7 @@ def fitted_loop(
             h, calm, fresh = pace.short, 0, True
 
         # predict
-        now = until_turned(ties, motion, while_loaded(points, motion, h, pace.short), pace.short)
+        now = while_taut(pace, ties, motion, while_loaded(points, motion, h, pace.short))
         least = FADED * pace.accuracy * energy
         to_touch = 0.0 if abrupt else step_to_touch(state.springs, motion, now, h, least, pace.short, state.touch)
         if to_touch > 0:

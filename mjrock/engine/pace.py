@@ -10,7 +10,7 @@ The lengths follow from the contacts, the rocking and an error estimate:
   the masses, and |v| is the speed at which the bodies arrived at their last touch;
 * a loaded contact stays loaded: no step moves a loaded point by more than the share STAYS of its penetration through
   the velocities alone;
-* a tie that can yield is met at its greatest length.
+* no step is longer than a taut tie is integrated well in, and a tie that can yield is met at its greatest length.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ point of a wall that turns at omega is moved by h^2/2 omega^2 times the height o
 lifts a toe that its weight presses in by micrometres, and friction at the toe is lost with it."""
 LOADED = 0.5
 """A point counts as loaded from this share of its penetration at rest on [-]: an edge may lift off as it likes."""
-TAUT = 1.0
-"""omega h of the longest step with a tie [-], omega the frequency of the bodies on the tie alone. MuJoCo integrates
-ties explicitly, which is stable up to 2."""
+TAUT = 12.0
+"""(omega h)^2 of the longest step with a taut tie over the accuracy, omega the frequency of the bodies on it alone.
+MuJoCo integrates ties explicitly, and the energy of a bounce on one errs by about (omega h)^2 / 12."""
 SMOOTH = 1.5
 """omega h below which a step resolves the contacts and takes Newmark's beta = 1/12 (stable below 2.45). A longer step
 takes a beta above 1/4, which is stable at every step. The closed contacts hardly move then."""
@@ -63,6 +63,7 @@ class Pace(NamedTuple):
 
     Args:
         short, longest: the shortest and the longest step [s].
+        taut: the longest step while a tie is taut [s].
         accuracy: the relative tolerance that is aimed at [-].
         least_energy: the energy that changes are measured by is never smaller [J]: twice the elastic energy of the
             scene at rest. Without a floor, a scene at rest would be stepped as finely as one in an impact.
@@ -73,6 +74,7 @@ class Pace(NamedTuple):
 
     short: float
     longest: float
+    taut: float
     accuracy: float
     least_energy: float
     frequency: float
@@ -85,12 +87,12 @@ class Pace(NamedTuple):
         short = short_step(scene, accuracy)
         longest = math.sqrt(LONG * accuracy) / scene.rocking_frequency
         longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
-        longest = min(longest, TAUT / max(scene.tie_frequency, 1e-300))
         longest = min([longest, *(motion.dt for motion in (scene.motion, scene.vertical) if motion is not None)])
         ringing = np.where(scene.points.bears > 0, RINGING_BORNE, RINGING_OPEN)
         return cls(
             short,
             max(short, longest),
+            math.sqrt(TAUT * accuracy) / scene.tie_frequency if len(scene.tie_k) else math.inf,
             accuracy,
             2 * float(scene.rest_energies[2]),
             scene.highest_frequency,
@@ -133,22 +135,26 @@ def while_loaded(points: Points, motion: Array, h: float, short: float) -> float
 
 
 @jitable
-def until_turned(ties: Ties, motion: Array, h: float, short: float) -> float:
-    """The step h [s], shortened to end where a tie that can yield is longest, but not below the short step.
+def while_taut(pace: Pace, ties: Ties, motion: Array, h: float) -> float:
+    """The step h [s], shortened to what a taut tie is integrated well in, but not below the short step.
 
-    A tie yields up to its greatest length, which a long step would pass by.
+    It also ends where a tie that can yield is longest. A tie yields up to its greatest length, which a long step would
+    pass by.
 
     Args:
+        pace: the limits.
         ties: the ties.
         motion: gap of the m contacts and slack of the t ties, with their rates, shape (m + t, 4).
-        h, short: the step, and the short step [s].
+        h: the step [s].
     """
     first = len(motion) - len(ties.k)
     for i in range(len(ties.k)):
         g, g1, g2 = motion[first + i, 0], motion[first + i, 1], motion[first + i, 2] + motion[first + i, 3]
+        if g < 0:
+            h = min(h, pace.taut)
         if ties.stretch[i] < math.inf and g < 0 and g1 < 0 and g1 + h * g2 > 0:
             h = -g1 / g2
-    return max(h, short)
+    return max(h, pace.short)
 
 
 @jitable

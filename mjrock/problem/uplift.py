@@ -13,7 +13,7 @@ class Uplift(NamedTuple):
 
     Args:
         rotation: rotation at which the first edge of the wall decompresses under its weight and loads [rad].
-        energy: energy above the wall at rest that tilts it so far [J].
+        energy: energy that tilts the wall so far from upright, its loads in the middle [J].
     """
 
     rotation: float
@@ -21,14 +21,8 @@ class Uplift(NamedTuple):
 
     @classmethod
     def of(cls, case: Case, contacts: Contacts) -> Uplift:
-        """The uplift of a case.
-
-        Weight, loads and thrusts tilt the springs of the base by their moment M about its middle, up to the rotation
-        M / (K_rot - Q). From there the energy grows with the square of the rotation. A load that is never lifted by the
-        elastic base, because its moment is too large, counts as none.
-        """
+        """The uplift of a case. Loads and thrusts that make the wall lean leave the energy as it is."""
         base, moment = contacts.base, case.restoring
         rotation = case.pressing / (float(base.stiffness.sum()) * case.block.half_base)
         stiffness = base.K_rot - 0.5 * (moment.outer.Q + moment.inner.Q)
-        leaning = 0.5 * (moment.inner.P - moment.outer.P) / stiffness
-        return cls(rotation, 0.5 * stiffness * max(rotation - abs(leaning), 0.1 * rotation) ** 2)
+        return cls(rotation, 0.5 * stiffness * rotation**2)
