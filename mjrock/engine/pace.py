@@ -44,6 +44,9 @@ point of a wall that turns at omega is moved by h^2/2 omega^2 times the height o
 lifts a toe that its weight presses in by micrometres, and friction at the toe is lost with it."""
 LOADED = 0.5
 """A point counts as loaded from this share of its penetration at rest on [-]: an edge may lift off as it likes."""
+STABLE = 1.0
+"""omega h of the longest step with a tie [-], omega as for TAUT: a tie may go taut unforeseen, and MuJoCo's explicit
+ties are stable up to 2."""
 TAUT = 12.0
 """(omega h)^2 of the longest step with a taut tie over the accuracy, omega the frequency of the bodies on it alone.
 MuJoCo integrates ties explicitly, and the energy of a bounce on one errs by about (omega h)^2 / 12."""
@@ -87,6 +90,7 @@ class Pace(NamedTuple):
         short = short_step(scene, accuracy)
         longest = math.sqrt(LONG * accuracy) / scene.rocking_frequency
         longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
+        longest = min(longest, STABLE / max(scene.tie_frequency, 1e-300))
         longest = min([longest, *(motion.dt for motion in (scene.motion, scene.vertical) if motion is not None)])
         ringing = np.where(scene.points.bears > 0, RINGING_BORNE, RINGING_OPEN)
         return cls(
