@@ -1,0 +1,213 @@
+"""Masonry of many blocks: convex blocks, and the joints where their edges touch."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from .above import retardations
+from .block import Block
+from .builders import MOST_BLOCKS, bonded, stacked, voussoirs_of
+from .damping import law_named
+from .contacts import Law
+from .joints import Joint, find_joints, names_of
+from .lines import Lines, lines_of, lowest_frequency
+from .polygon import Polygon
+from .quantities import Array, require_kind, require_whole, require_within, shown
+
+OfJoint = float | Callable[[Joint], float]
+"""A number, or a function of the joint that gives one."""
+
+
+@dataclass(frozen=True)
+class Masonry:
+    """Rigid convex blocks on compliant joints.
+
+    The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
+    touch at a corner only have no joint. A joint is a few contact lines, like the base of a wall: each is a spring and
+    a dashpot that push only, with Coulomb friction. Lines lie at the ends of the joint and evenly between. A joint that
+    opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
+    `points` and `k_n`, and a structure near its limit can depend on that.
+
+    Args:
+        blocks: the blocks, at least one fixed and one that is not, at most 5000.
+        k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint.
+        friction: coefficient of friction [-], 0 to 10, or a function of the joint.
+        xi: damping ratio [-], 0 to 100, or a function of the joint. The dashpot of a line is c = (2 xi / omega) k, the
+            stiffness-proportional damping of distinct-element codes.
+        frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed. It is
+            `reference_frequency` for one block on the ground.
+        points: contact lines of each joint, 2 to 1000.
+        tolerance: largest distance between edges that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A joint is
+            longer than ten times that. The joint lies halfway between the edges, and is closed and unloaded as drawn.
+        law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
+            the rigid wall above it, see `Contacts.from_law`.
+
+    Raises:
+        ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
+    """
+
+    blocks: tuple[Polygon, ...]
+    k_n: OfJoint = 1e10
+    friction: OfJoint = 0.7
+    xi: OfJoint = 0.05
+    frequency: float | None = None
+    points: int = 2
+    tolerance: float = 1e-5
+    law: Law | str | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
+            raise TypeError(f"blocks = {shown(self.blocks)} is not a list of blocks")
+        object.__setattr__(self, "blocks", tuple(self.blocks))
+        for i, block in enumerate(self.blocks):
+            require_kind(f"blocks[{i}]", block, Polygon)
+        if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
+            raise ValueError(
+                f"blocks = {len(self.free)} free and {len(self.blocks) - len(self.free)} fixed; at least one of each "
+                f"and at most {MOST_BLOCKS} are needed"
+            )
+        for name, number in Counter(self.names).items():
+            if number > 1:
+                raise ValueError(f"blocks: {number} of them have the name {name}")
+        require_whole("points", self.points, 2, 1000)
+        require_within("tolerance", self.tolerance, 1e-9, 0.1, "m")
+        if self.frequency is not None:
+            require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s")
+        if isinstance(self.law, str):
+            object.__setattr__(self, "law", law_named(self.law))
+        elif self.law is not None and not callable(self.law):
+            raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
+        if self.law is not None and self.frequency is not None:
+            raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
+        _ = self.joint_friction, self.retardation
+
+    @classmethod
+    def stack(cls, blocks: Sequence[Block], k_n: OfJoint, *, ground: bool = True, **options: Any) -> Self:
+        """Rectangular blocks one on the other, centred, from the lowest upwards.
+
+        Args:
+            blocks: the blocks, whose insets are zero.
+            k_n: stiffness of the joints [N/m3].
+            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
+            options: further arguments of `Masonry`, such as `law`, `xi` and `friction`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(tuple(stacked(blocks, ground)), k_n=k_n, **options)
+
+    @classmethod
+    def arch(
+        cls,
+        radius: float,
+        thickness: float,
+        span_angle: float = math.pi,
+        voussoirs: int = 17,
+        *,
+        density: float = 2000.0,
+        length: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
+
+        Args:
+            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
+            thickness: [m], 0.001 to 1 times the radius.
+            span_angle: angle between the two springings [rad], 0.1 to pi.
+            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
+            density: mass density [kg/m3], 100 to 30000.
+            length: length out of the plane [m], 1e-3 to 1000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(tuple(voussoirs_of(radius, thickness, span_angle, voussoirs, density, length)), **options)
+
+    @classmethod
+    def running_bond(
+        cls,
+        length: float,
+        height: float,
+        unit: tuple[float, float],
+        thickness: float = 1.0,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A wall of units in running bond on the ground, which moves in the plane of its face.
+
+        Args:
+            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
+                is a piece of a unit.
+            unit: length and height of a unit [m], 0.01 to 100.
+            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(tuple(bonded(length, height, unit, thickness, density)), **options)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Name of each block: its own, or `block_` and its number."""
+        return names_of(self.blocks)
+
+    @cached_property
+    def free(self) -> tuple[int, ...]:
+        """Numbers of the blocks that are not fixed, in order."""
+        return tuple(i for i, block in enumerate(self.blocks) if not block.fixed)
+
+    @cached_property
+    def centroids(self) -> Array:
+        """Centroid of each block at rest, fixed ones too [m], shape (blocks, 2)."""
+        made = np.array([block.centroid for block in self.blocks])
+        made.setflags(write=False)
+        return made
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints, in the order of the blocks."""
+        return find_joints(self.blocks, self.tolerance)
+
+    def _of_joints(self, name: str, low: float, high: float, unit: str = "") -> Array:
+        """A property of each joint, shape (joints,)."""
+        given = getattr(self, name)
+        if not callable(given):
+            return np.full(len(self.joints), require_within(name, given, low, high, unit))
+        return np.array([require_within(f"{name} of {j.name}", given(j), low, high, unit) for j in self.joints])
+
+    @cached_property
+    def joint_stiffness(self) -> Array:
+        """k_n of each joint [N/m3], shape (joints,)."""
+        return self._of_joints("k_n", 1e4, 1e14, "N/m3")
+
+    @cached_property
+    def joint_friction(self) -> Array:
+        """Coefficient of friction of each joint [-], shape (joints,)."""
+        return self._of_joints("friction", 0.0, 10.0)
+
+    @cached_property
+    def lines(self) -> Lines:
+        """The contact lines of all joints."""
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, int(self.points))
+
+    @cached_property
+    def retardation(self) -> Array:
+        """c/k of each joint [s], shape (joints,)."""
+        if self.law is not None:
+            return retardations(self.blocks, self.joints, self.joint_stiffness, int(self.points), self.law)
+        xi = self._of_joints("xi", 0.0, 100.0)
+        if not xi.any():
+            return np.zeros(len(xi))
+        omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)
+        made: Array = 2 * xi / omega
+        return made
