@@ -125,7 +125,7 @@ def take_rows(points: Points, h: float, beta: Array, ringing: Array, rows: Array
     for i in range(len(points.k)):
         rows[i, 0], rows[i, 1] = row(points.k[i], points.c[i], h, points.weight[i], beta[i], ringing[i])
         if points.held[i] > 0:
-            impratio = min(impratio, points.held[i] / rows[i, 1])
+            impratio = min(impratio, max(points.growth * h, 1.0) * points.held[i] / rows[i, 1])
     return impratio
 
 

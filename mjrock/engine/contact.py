@@ -31,6 +31,12 @@ WITHIN = (IMPEDANCE_RANGE[0] * (1 + 1e-9), IMPEDANCE_RANGE[1] * (1 - 1e-9))
 OVERDAMPED = 0.2
 """c h W above which a dashpot acts on the velocity at the end of the step instead of the mean velocity [-]. The inverse
 mass that a contact of the wall feels is up to six times W. A centred dashpot leaves a quarter of the velocity there."""
+HELD_MASSES = 1e3
+"""Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
+a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
+HELD_GROWTH = 3e5
+"""Factor over the step by which it grows where there are several bodies [1/s]. A joint under a sustained thrust creeps
+at F / (1.5e8 m) at most, however long the step, m the mass of the blocks. The edge of a single wall is put back instead, see `sticking`."""
 
 
 @dataclass(frozen=True)
@@ -123,6 +129,7 @@ def set_rows(
     c: Array,
     inverse_weight: Array,
     held: Array,
+    growth: float,
     timestep: float,
     newmark_beta: Array,
     ringing: Array,
@@ -134,12 +141,13 @@ def set_rows(
 
     A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate
     of 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its
-    inertia leaves: a load F creeps at F h / held. MuJoCo has one impratio for all contacts. It is the largest with
+    inertia leaves: a load F creeps at F h / held, or F / (growth held) in a step longer than 1 / growth. MuJoCo has one impratio for all contacts. It is the largest with
     which no friction row has more inertia than it should.
 
     Args:
         k, c, inverse_weight: spring [N/m], dashpot [N s/m] and W [1/kg] of each contact, shape (m,).
         held: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
+        growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
         timestep: step h [s].
         newmark_beta, ringing: as in `row`, shape (m,).
         solref, solimp, solreffriction: what is written, shapes (m, 2), (m, 2 or more) and (m, 2).
@@ -151,7 +159,7 @@ def set_rows(
         solimp[i, 0] = solimp[i, 1] = d
         if held[i] > 0:
             solreffriction[i, 0], solreffriction[i, 1] = -1e-30, -d / timestep
-            impratio = min(impratio, held[i] / inertia)
+            impratio = min(impratio, max(growth * timestep, 1.0) * held[i] / inertia)
     return impratio if impratio < np.inf else 1.0
 
 

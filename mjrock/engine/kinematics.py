@@ -33,7 +33,7 @@ class Points(NamedTuple):
         c: damping [N s/m], shape (m,).
         friction: coefficient of friction [-], zero for none, shape (m,).
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (m,).
-        held: inertia that the friction row should have [kg], zero for no friction, shape (m,).
+        held, growth: inertia of the friction row [kg], zero for no friction, and its growth [1/s], see `set_rows`.
         radius: radius of the spheres that MuJoCo has for the points [m].
         bears: penetration of the point while the scene is at rest [m], zero where it is open, shape (m,).
     """
@@ -49,6 +49,7 @@ class Points(NamedTuple):
     friction: Array
     weight: Array
     held: Array
+    growth: float
     radius: float
     bears: Array
 

@@ -144,6 +144,7 @@ def change_step(memory: Memory, points: Points, pace: Pace, state: State, now: f
         points.c,
         points.weight,
         points.held,
+        points.growth,
         now,
         pace.beta[kind],
         pace.ringing[kind],

@@ -126,7 +126,8 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> Rows:
     points, m = scene.points, len(scene.k)
     solref, solimp, hold = np.zeros((m, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (m, 1)), np.zeros((m, 2))
     beta, none = np.full(m, newmark_beta), np.zeros(m)
-    impratio = set_rows(points.k, points.c, points.weight, points.held, timestep, beta, none, solref, solimp, hold)
+    held, growth = points.held, points.growth
+    impratio = set_rows(points.k, points.c, points.weight, held, growth, timestep, beta, none, solref, solimp, hold)
     return Rows(solref, solimp, hold, impratio)
 
 

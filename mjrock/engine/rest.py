@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
+from ..compiled import compiled
 from ..problem.quantities import GRAVITY, Array, Flags
 from .kinematics import Forces, Points, Ties, along, carried, frame_of, gap, gaps, slack
 
@@ -11,14 +14,30 @@ ITERATIONS = 1000
 """Most iterations of Newton's method. A wall that is nearly too heavy for its base takes hundreds."""
 ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the length of a tie, over that length [-]."""
+LEANING = 1e-6
+"""Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
+SMALLEST_SHARE = 1e-6
+"""Smallest share of a step of Newton's method [-]."""
 
 
 def gap_rates(points: Points, ties: Ties, pose: Array) -> Array:
     """Rates of the gaps and of the slack of the ties for unit velocities at a pose of shape (3 n,), (m + t, 3 n)."""
-    frame, columns, none = frame_of(pose), np.eye(len(pose)), np.zeros_like(pose)
-    rates = [[gap(points, i, frame, v, none)[1] for v in columns] for i in range(len(points.k))]
-    rates += [[slack(ties, i, frame, v, none)[1] for v in columns] for i in range(len(ties.k))]
-    return np.reshape(rates, (-1, len(pose)))
+    made = np.zeros((len(points.k) + len(ties.k), len(pose)))
+    _gap_rates(points, ties, frame_of(pose), np.zeros_like(pose), np.zeros_like(pose), made)
+    return made
+
+
+@compiled
+def _gap_rates(points: Points, ties: Ties, frame: Array, unit: Array, none: Array, made: Array) -> None:
+    m = len(points.k)
+    for i in range(len(made)):
+        body = points.body[i] if i < m else ties.body[i - m]
+        other = points.face_body[i] if i < m else ties.face_body[i - m]
+        for one in (body, other):
+            for j in range(3 * one, 3 * one + 3 if one >= 0 else 0):
+                unit[j] = 1.0
+                made[i, j] = gap(points, i, frame, unit, none)[1] if i < m else slack(ties, i - m, frame, unit, none)[1]
+                unit[j] = 0.0
 
 
 def openings(points: Points, ties: Ties, pose: Array) -> Array:
@@ -33,12 +52,24 @@ def slip_rates(points: Points, closed: Flags, pose: Array) -> Array:
     It is the mean slip of the closed points with friction of each pair. Two edges of one joint that both held would
     lock its rotation.
     """
-    frame, columns = frame_of(pose), np.eye(len(pose))
-    rows: dict[tuple[int, int], list[list[float]]] = {}
+    own = np.zeros((len(points.k), len(pose)))
+    _slips(points, frame_of(pose), np.zeros_like(pose), own)
+    rows: dict[tuple[int, int], list[int]] = {}
     for i in np.flatnonzero(closed[: len(points.k)] & (points.friction > 0)):
-        pair = int(points.body[i]), int(points.face_body[i])
-        rows.setdefault(pair, []).append([along(points, int(i), frame, v)[1] for v in columns])
-    return np.reshape([np.mean(slips, axis=0) for slips in rows.values()], (-1, len(pose)))
+        body, face = int(points.body[i]), int(points.face_body[i])
+        rows.setdefault((min(body, face), max(body, face)), []).append(int(i))
+    return np.reshape([own[lines].mean(axis=0) for lines in rows.values()], (-1, len(pose)))
+
+
+@compiled
+def _slips(points: Points, frame: Array, unit: Array, made: Array) -> None:
+    """Rate at which each point moves along its face, for unit velocities, shape (m, 3 n)."""
+    for i in range(len(made)):
+        for one in (points.body[i], points.face_body[i]):
+            for j in range(3 * one, 3 * one + 3 if one >= 0 else 0):
+                unit[j] = 1.0
+                made[i, j] = along(points, i, frame, unit)[1]
+                unit[j] = 0.0
 
 
 def load(forces: Forces, masses: Array, pose: Array) -> Array:
@@ -51,30 +82,45 @@ def load(forces: Forces, masses: Array, pose: Array) -> Array:
     return total
 
 
+def potential(points: Points, ties: Ties, forces: Forces, masses: Array, pose: Array) -> float:
+    """Energy of springs, weight and constant forces at a pose of shape (3 n,) [J]."""
+    frame = frame_of(pose)
+    pressed = np.maximum(-openings(points, ties, pose), 0.0)
+    total = 0.5 * np.append(points.k, ties.k) @ pressed**2 + GRAVITY * masses[1::3] @ pose[1::3]
+    for body, (x, z), force in zip(forces.body, forces.at, forces.force, strict=True):
+        total -= force @ carried(frame, pose, pose, body, x, z)[:2]
+    return float(total)
+
+
 def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
     """The pose in which the springs of contacts and ties carry weight and forces, shape (n, 3).
 
-    Newton's method on the potential energy. Friction holds every joint that is pressed. Where nothing holds a
-    direction, the bodies stay where they are.
+    Newton's method on the potential energy, which every step lowers. Friction holds every joint that is pressed. Where
+    nothing holds a direction, the bodies stay where they are.
 
     Raises:
         ValueError: if no such pose is found near the undeformed one.
     """
     pose, k = np.zeros_like(masses), np.append(points.k, ties.k)
     closed = np.append(np.ones(len(points.k), dtype=bool), openings(points, ties, pose)[len(points.k) :] < 0)
-    tolerated = max(1e-9 * GRAVITY * float(masses[1::3].max()), ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+    scale = GRAVITY * float(masses[1::3].max())
+    tolerated = max(1e-9 * scale, ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+    energy_at = partial(potential, points, ties, forces, masses)
     for _ in range(ITERATIONS):
         rates, depth = gap_rates(points, ties, pose), -openings(points, ties, pose)
         carrying = np.where(closed, k, 0.0)
-        stiffness = (rates.T * carrying) @ rates
+        stiffness = (rates.T * np.where(closed, k, LEANING * k)) @ rates
         residual = load(forces, masses, pose) + rates.T @ (carrying * depth)
         grip = k.max() * slip_rates(points, closed, pose)
         matrix = np.block([[stiffness, grip.T], [grip, np.zeros((len(grip), len(grip)))]])
-        found = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-12)[0]
+        found = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-14)[0]
         moved, friction = found[: len(pose)], found[len(pose) :]
         if np.abs(residual - grip.T @ friction).max() < tolerated and (closed == (depth > 0)).all():
             return pose.reshape(-1, 3)
-        pose = pose + moved
+        energy, share = energy_at(pose), 1.0
+        while share > SMALLEST_SHARE and energy_at(pose + share * moved) > energy + 1e-13 * scale:
+            share *= 0.5
+        pose = pose + share * moved
         closed = openings(points, ties, pose) < 0
     raise ValueError(
         "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and forces. "

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..problem.motion import GroundMotion
 from ..problem.quantities import GRAVITY, Array, Integers
-from .contact import planar_weight
+from .contact import HELD_GROWTH, HELD_MASSES, planar_weight
 from .kinematics import Forces, Points, Ties, energies, gaps
 from .rest import gap_rates, lowered, settled
 from .tables import checked, frozen, nothing
@@ -27,9 +27,6 @@ from .tables import checked, frozen, nothing
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
 surface, which is why it is tiny."""
-HELD_MASSES = 1e3
-"""Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
-a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
 
 SHARED = ("points", "ties", "masses", "rest_energies", "highest_frequency", "tie_frequency", "rocking_frequency", "key")
 """What scenes that differ in their release share."""
@@ -195,6 +192,7 @@ class Scene:
             friction=self.friction,
             weight=self.weight,
             held=frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
+            growth=HELD_GROWTH if len(self.names) > 1 else 0.0,
             radius=self.radius,
             bears=np.zeros(len(self.k)),
         )

@@ -21,6 +21,8 @@ FADED = 0.01
 ABRUPT = 0.1
 """Change of velocity in a step, over the speed at the last touch, beyond which no touch is predicted from it [-]. How a
 strong dashpot stops a body within a step or two says nothing of the next step."""
+ROUNDING = 1e-12
+"""Gap below which a contact has neither opened nor closed [m]. A joint that bears nothing rests at a gap of zero."""
 
 
 class Springs(NamedTuple):
@@ -55,7 +57,7 @@ def closure_changed(motion: Array, closed: Flags) -> bool:
     changed = False
     for i in range(len(motion)):
         now = motion[i, 0] < 0
-        if now != closed[i]:
+        if now != closed[i] and abs(motion[i, 0]) > ROUNDING:
             closed[i] = now
             changed = True
     return changed
