@@ -18,7 +18,11 @@ from .problem.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
 from .problem.effects import AddedMass, Load, SideStop, Thrust, Tie
 from .problem.forms import PowerLaw
 from .problem.interface import Interface, reference_frequency
+from .problem.joints import Joint
+from .problem.masonry import Masonry
+from .problem.masonry_case import MasonryCase
 from .problem.motion import GroundMotion
+from .problem.polygon import Polygon
 from .problem.quantities import GRAVITY
 from .problem.restitution import Restitution
 from .problem.section import Opening
@@ -26,6 +30,7 @@ from .reference.compliant import solve_compliant
 from .result.compare import Comparison, compare
 from .result.history import Impact
 from .result.ledger import Ledger
+from .result.masonry import MasonryResponse
 from .result.response import Outcome, Response
 from .study.analysis import Analysis
 from .study.calibration import Plan, calibrate
@@ -54,11 +59,16 @@ __all__ = [
     "GroundMotion",
     "Impact",
     "Interface",
+    "Joint",
     "Ledger",
     "Load",
+    "Masonry",
+    "MasonryCase",
+    "MasonryResponse",
     "Opening",
     "Outcome",
     "Plan",
+    "Polygon",
     "PowerLaw",
     "Response",
     "Restitution",

@@ -13,7 +13,7 @@ from tqdm import tqdm
 
 import cli
 import mjrock as mr
-from mjrock.engine import scene, wall
+from mjrock.engine import contact, scene, wall
 from paper import FIGURE_3, K_N
 
 
@@ -27,7 +27,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     one_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 1.6)
     two_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0, side_stop=False)
     limits = [mr.solve_compliant(case, contacts) for case in (two_sided, one_sided)]
-    variants = [(mu, scene.HELD_MASSES) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
+    variants = [(mu, contact.HELD_MASSES) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
     variants += [(wall.HELD_FRICTION, masses) for masses in (1e1, 1e2, 1e4)]
     rows: list[list[object]] = [
         ["no slip", "", "SciPy", *(f"{r:.4f}" for limit in limits for r in limit.restitution[:2])]

@@ -60,7 +60,7 @@ def our_steps(**options: float) -> Solve:
     """`simulate` with the options given."""
 
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
-        response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
+        response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[call-overload]
         return response, response.stats["wall_time"]
 
     return solve
@@ -72,7 +72,7 @@ def plain_steps(**options: float) -> Solve:
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
         plain = getattr(loop.fitted_loop, "py_func", loop.fitted_loop)
         with mock.patch.object(stepping, "fitted_loop", plain):
-            response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
+            response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[call-overload]
         return response, response.stats["wall_time"]
 
     return solve

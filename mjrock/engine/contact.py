@@ -36,7 +36,8 @@ HELD_MASSES = 1e3
 a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
 HELD_GROWTH = 3e5
 """Factor over the step by which it grows where there are several bodies [1/s]. A joint under a sustained thrust creeps
-at F / (1.5e8 m) at most, however long the step, m the mass of the blocks. The edge of a single wall is put back instead, see `sticking`."""
+at F / (1.5e8 m) at most, however long the step, m the mass of the blocks. The edge of a single wall is put back
+instead, see `sticking`."""
 
 
 @dataclass(frozen=True)
@@ -141,8 +142,8 @@ def set_rows(
 
     A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate
     of 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its
-    inertia leaves: a load F creeps at F h / held, or F / (growth held) in a step longer than 1 / growth. MuJoCo has one impratio for all contacts. It is the largest with
-    which no friction row has more inertia than it should.
+    inertia leaves: a load F creeps at F h / held, or F / (growth held) in a step longer than 1 / growth. MuJoCo has one
+    impratio for all contacts. It is the largest with which no friction row has more inertia than it should.
 
     Args:
         k, c, inverse_weight: spring [N/m], dashpot [N s/m] and W [1/kg] of each contact, shape (m,).

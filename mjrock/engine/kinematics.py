@@ -1,5 +1,4 @@
-"""Kinematics of rigid bodies in a plane: gaps between points and faces, their rates, the slip along a face, lengths of
-ties.
+"""Kinematics of rigid bodies in a plane: gaps between points and faces, their rates, slip, lengths of ties.
 
 Poses and velocities of n bodies are flat arrays of 3 n numbers: for each body the displacement x, z of its centroid
 from rest [m] and its rotation theta from rest [rad]. x points away from the side stop of a wall, z upwards, and theta
@@ -34,7 +33,7 @@ class Points(NamedTuple):
         friction: coefficient of friction [-], zero for none, shape (m,).
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (m,).
         held, growth: inertia of the friction row [kg], zero for no friction, and its growth [1/s], see `set_rows`.
-        radius: radius of the spheres that MuJoCo has for the points [m].
+        radius, reach: of MuJoCo's spheres for the points, and largest gap that a run follows [m], infinite for a wall.
         bears: penetration of the point while the scene is at rest [m], zero where it is open, shape (m,).
     """
 
@@ -51,6 +50,7 @@ class Points(NamedTuple):
     held: Array
     growth: float
     radius: float
+    reach: float
     bears: Array
 
 

@@ -120,6 +120,15 @@ def fallen(q: Array) -> bool:
 
 
 @jitable
+def apart(points: Points, motion: Array) -> bool:
+    """Whether a contact has opened, or is overlapped, by more than a run follows."""
+    for i in range(len(points.k)):  # noqa: SIM110, numba knows no any()
+        if abs(motion[i, 0]) > points.reach:
+            return True
+    return False
+
+
+@jitable
 def present(memory: Memory, state: State, last: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
     for j in range(len(state.rate)):
@@ -247,7 +256,7 @@ def fitted_loop(
         if now != last:
             change_step(memory, points, pace, state, now, last)
         make_step(memory, ground, masses, record, n, t, now)
-        ended = t >= duration or fallen(record.pose[n])
+        ended = t >= duration or fallen(record.pose[n]) or apart(points, motion)
         change = change_of_acceleration(memory, masses, state, last, now, fresh) / energy
         abrupt = change > ABRUPT**2
         hold(memory, points, pace, joints, state, record, n)

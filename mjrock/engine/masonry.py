@@ -84,4 +84,4 @@ def _sorted(lines: Lines, number: Integers) -> Lines:
     """Lines in the order in which MuJoCo keeps contacts: by the lower and then the higher of their two bodies."""
     pair = np.sort(number[np.array([lines.body, lines.face])], axis=0)
     order = np.lexsort((pair[1], pair[0]))
-    return Lines(*(values[order] for values in lines))
+    return Lines(*(values[order] for values in lines))  # type: ignore[arg-type]

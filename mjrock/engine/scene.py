@@ -194,6 +194,7 @@ class Scene:
             held=frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
             growth=HELD_GROWTH if len(self.names) > 1 else 0.0,
             radius=self.radius,
+            reach=2 * self.extent if len(self.names) > 1 else np.inf,
             bears=np.zeros(len(self.k)),
         )
 

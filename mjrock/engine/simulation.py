@@ -7,10 +7,12 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from os import cpu_count
+from typing import overload
 
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.contacts import Contacts
+from ..problem.masonry_case import MasonryCase
 from ..problem.quantities import (
     ON_ITS_FACE,
     require_array,
@@ -21,8 +23,10 @@ from ..problem.quantities import (
     shown,
 )
 from ..problem.uplift import Uplift
+from ..result.masonry import MasonryResponse
 from ..result.response import Response, State
 from .caveats import warn_if_coarse, warn_if_open, warn_if_slid
+from .masonry_run import simulate_masonry
 from .mjcf import pair_rows
 from .model import SimulationError, engine_of
 from .pace import short_step
@@ -51,6 +55,7 @@ def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> f
     return sound_timestep(contacts.highest_frequency(wall, side_stop=side_stop))
 
 
+@overload
 def simulate(
     case: Case,
     contacts: Contacts,
@@ -61,12 +66,39 @@ def simulate(
     output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
-) -> Response:
-    """Rocking of a wall on compliant contacts in MuJoCo.
+) -> Response: ...
+
+
+@overload
+def simulate(
+    case: MasonryCase,
+    contacts: None = None,
+    timestep: float | None = None,
+    *,
+    accuracy: float = 1e-3,
+    newmark_beta: float = 0.25,
+    output_step: float | None = None,
+    ledger: bool = False,
+    start: State | None = None,
+) -> MasonryResponse: ...
+
+
+def simulate(
+    case: Case | MasonryCase,
+    contacts: Contacts | None = None,
+    timestep: float | None = None,
+    *,
+    accuracy: float = 1e-3,
+    newmark_beta: float = 0.25,
+    output_step: float | None = None,
+    ledger: bool = False,
+    start: State | None = None,
+) -> Response | MasonryResponse:
+    """Rocking of a wall, or motion of masonry of many blocks, on compliant contacts in MuJoCo.
 
     Args:
-        case: the wall, its release, its sides.
-        contacts: the interfaces.
+        case: the wall, its release, its sides; or masonry and what moves it. Masonry settles under its weight first.
+        contacts: the interfaces of the wall; masonry has its own joints.
         timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.engine.stepping`.
         accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1. A run in
             which energy appears from nowhere is discarded and repeated with a tenth of it, twice at most.
@@ -78,14 +110,19 @@ def simulate(
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
 
     Raises:
-        ValueError: if the contacts do not fit the case or cannot be represented at this step, or for a value outside
-            its range.
+        ValueError: if the contacts do not fit the case or cannot be represented at this step, if the masonry does not
+            stand, or for a value outside its range.
         SimulationError: if the run produces a NaN, an engine warning, or more energy than was there and was put in.
 
     Warns:
         UserWarning: if a fixed step is too long to resolve the contacts.
     """
+    if isinstance(case, MasonryCase):
+        if contacts is not None:
+            raise TypeError(f"contacts = {shown(contacts)}: masonry has its joints; call simulate(case)")
+        return simulate_masonry(case, timestep, accuracy, newmark_beta, output_step, ledger, start)
     _require_asked(case, contacts, output_step, ledger)
+    assert contacts is not None
     require_within("accuracy", accuracy, 1e-8, 0.1)
     start = None if start is None else _required_state(start, case)
     if timestep is not None:

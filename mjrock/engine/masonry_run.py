@@ -1,0 +1,274 @@
+"""Masonry in MuJoCo: step its scene, and turn what it did into a response."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from ..compiled import compiled
+from ..problem.masonry_case import MasonryCase
+from ..problem.quantities import (
+    Array,
+    Flags,
+    Integers,
+    require_array,
+    require_flag,
+    require_size,
+    require_within,
+    shown,
+)
+from ..result.masonry import LOST, MasonryResponse, fallen_blocks, masonry_ending
+from ..result.response import State
+from ..result.samples import interpolated
+from .accounts import ground_work, ledger
+from .caveats import warn_if_coarse
+from .kinematics import Points, along, depth, take_frame
+from .masonry import masonry_scene
+from .mjcf import pair_rows
+from .model import SimulationError, engine_of
+from .pace import short_step
+from .run import ENERGY_GAIN, broken, sound_timestep
+from .scene import Scene
+from .stepping import fitted_steps, fixed_steps
+from .steps import StepError, Steps
+
+AT_ONCE = 1_000_000
+"""Most gaps that are held at once while the joints of a run are looked at."""
+MARKS = 200
+"""Times in a run between which no energy may appear."""
+PARTS = ("pose", "velocity")
+"""What a state is made of."""
+
+
+class MasonryRun:
+    """One run of the engine, checked: its steps, its energy, and what its joints did.
+
+    Raises:
+        StepError: if energy appears from nowhere before the first block falls.
+    """
+
+    def __init__(self, case: MasonryCase, scene: Scene, steps: Steps) -> None:
+        self.case, self.scene, self.steps = case, scene, steps
+        self.energy = scene.energy(steps.pose, steps.velocity)
+        self.opening, self.sliding, self.deepest, lost = joint_motion(case, scene, steps)
+        sizes = np.array([case.masonry.blocks[i].size for i in case.masonry.free])
+        drop = (scene.at_rest[:, 1] - steps.pose[:, 1::3]) / sizes
+        self.fallen = fallen_blocks(case.masonry, steps.t, lost, drop)
+        self._require_no_gain()
+
+    def _require_no_gain(self) -> None:
+        """Raise a StepError where the energy has grown by more than the ground put in.
+
+        It is looked at at MARKS times. A touch inside a step misplaces energy for as long as it lasts.
+        """
+        until = next(iter(self.fallen.values()), math.inf)
+        count = int(np.searchsorted(self.steps.t, until))
+        work = ground_work(self.scene, self.steps)[:count]
+        own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
+        scale = float(self.energy[0]) + float(np.abs(work).sum()) + float(self.scene.rest_energies[2])
+        marks = np.linspace(0, count - 1, min(count, MARKS)).astype(int)
+        gains = own[marks] - np.minimum.accumulate(own[marks])
+        worst = int(gains.argmax())
+        if not gains[worst] <= ENERGY_GAIN * scale:
+            raise StepError(
+                f"{gains[worst]:.3g} J, {gains[worst] / scale:.2%} of the energy there was, appeared from nowhere",
+                float(self.steps.t[marks[worst]]),
+            )
+
+    @property
+    def quiet(self) -> bool:
+        """Whether the energy left at the end opens no joint: it is less than that of the springs at rest."""
+        return bool(self.energy[-1] < self.scene.rest_energies[2])
+
+    def response(self, spacing: float | None, stride: int, want_ledger: bool, stats: dict[str, Any]) -> MasonryResponse:
+        """What was found: samples `spacing` apart, or every `stride`-th step where that is None; `stats` says how."""
+        case, steps, scene = self.case, self.steps, self.scene
+        finish = min(float(steps.t[-1]), case.duration)
+        if spacing is None:
+            t, pose, velocity = steps.t[::stride], steps.pose[::stride], steps.velocity[::stride]
+            end = steps.pose[-1], steps.velocity[-1]
+        else:
+            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
+            pose, velocity = interpolated(steps.t, steps.pose, steps.velocity, t)
+            end = pose[-1], velocity[-1]
+        outcome, message = masonry_ending(self.fallen, self.quiet, finish)
+        return MasonryResponse(
+            case=case,
+            solver="MuJoCo",
+            t=t,
+            pose=pose.reshape(len(t), -1, 3),
+            velocity=velocity.reshape(len(t), -1, 3),
+            energy=np.interp(t, steps.t, self.energy),
+            opening=self.opening,
+            sliding=self.sliding,
+            fallen=self.fallen,
+            outcome=outcome,
+            message=message,
+            ledger=ledger(scene, steps).at(t) if want_ledger else None,
+            stats={
+                "steps": len(steps.t),
+                "longest_timestep": float(steps.h.max()),
+                "sound_timestep": sound_timestep(scene.highest_frequency),
+                "touches": steps.touches,
+                "deepest": self.deepest,
+                "mujoco": mujoco.__version__,
+            }
+            | stats,
+            end=(end[0].reshape(-1, 3), end[1].reshape(-1, 3)),
+        )
+
+
+def joint_motion(case: MasonryCase, scene: Scene, steps: Steps) -> tuple[Array, Array, float, Flags]:
+    """Largest opening and sliding of each joint [m], the deepest penetration [m], and which joints hold no longer.
+
+    The last has the shape (steps, joints).
+    """
+    joints = case.masonry.joints
+    number = {joint.name: i for i, joint in enumerate(joints)}
+    of, widths = np.array([number[name] for name in scene.group]), np.array([joint.width for joint in joints])
+    opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
+    lost = np.zeros((len(steps.t), len(joints)), dtype=bool)
+    frame = np.empty((len(scene.names), 4))
+    rest = np.zeros(len(of))
+    start = scene.at_rest.reshape(1, -1)
+    for i in range(len(of)):  # where each line stands on its face at rest
+        take_frame(start[0], frame)
+        rest[i] = along(scene.points, i, frame, start[0])[0]
+    size = max(1, AT_ONCE // max(1, len(joints)))
+    for first in range(0, len(steps.t), size):
+        pose = steps.pose[first : first + size]
+        room = np.empty((2, len(pose), len(joints)))
+        deepest = max(deepest, _look(scene.points, of, rest, pose, frame, np.empty((2, len(joints))), *room))
+        opening, sliding = np.maximum(opening, room[0].max(axis=0)), np.maximum(sliding, room[1].max(axis=0))
+        lost[first : first + size] = (room[0] > LOST * widths) | (room[1] > widths)
+    gone: Flags = np.logical_or.accumulate(lost, axis=0)
+    return opening, sliding, deepest, gone
+
+
+@compiled
+def _look(
+    points: Points, of: Integers, rest: Array, pose: Array, frame: Array, most: Array, opened: Array, slid: Array
+) -> float:
+    """Write the opening of each joint at its widest line, and its sliding at its most pressed, shape (steps, joints).
+
+    Returns the deepest penetration [m].
+    """
+    deepest = 0.0
+    for n in range(len(pose)):
+        take_frame(pose[n], frame)
+        for j in range(opened.shape[1]):
+            most[0, j], opened[n, j], slid[n, j] = -np.inf, 0.0, 0.0
+        for i in range(len(of)):
+            pressed, j = depth(points, i, frame), of[i]
+            opened[n, j] = max(opened[n, j], -pressed)
+            if pressed > most[0, j]:
+                most[0, j] = pressed
+                slid[n, j] = abs(along(points, i, frame, pose[n])[0] - rest[i])
+                deepest = max(deepest, pressed)
+    return deepest
+
+
+def simulate_masonry(
+    case: MasonryCase,
+    timestep: float | None,
+    accuracy: float,
+    newmark_beta: float,
+    output_step: float | None,
+    want_ledger: bool,
+    start: object,
+) -> MasonryResponse:
+    """What `simulate` does with masonry; the arguments are its."""
+    begun = time.perf_counter()
+    require_within("accuracy", accuracy, 1e-8, 0.1)
+    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    require_flag("ledger", want_ledger)
+    if output_step is not None:
+        require_within("output_step", output_step, 1e-9, case.duration, "s")
+    scene = masonry_scene(case)
+    started = scene.started if start is None else _required_state(start, len(scene.names))
+    if timestep is not None:
+        made = _fixed(case, scene, started, timestep, newmark_beta, output_step, want_ledger)
+    else:
+        made = _fitted(case, scene, started, accuracy, newmark_beta, output_step or 1e-3, want_ledger)
+    made.stats["wall_time"] = time.perf_counter() - begun
+    return made
+
+
+def _fitted(
+    case: MasonryCase,
+    scene: Scene,
+    started: State,
+    accuracy: float,
+    newmark_beta: float,
+    output_step: float,
+    want_ledger: bool,
+) -> MasonryResponse:
+    """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
+    require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
+    used = accuracy
+    while True:
+        h = short_step(scene, used)
+        try:
+            with engine_of(scene) as engine:
+                engine.follow(h, pair_rows(scene, h, newmark_beta))
+                engine.release(started)
+                begun = time.perf_counter()
+                steps = fitted_steps(engine, scene, used)
+            stepping_time = time.perf_counter() - begun
+            run = MasonryRun(case, scene, steps)
+            break
+        except StepError as error:
+            if used < 0.02 * accuracy:
+                raise broken(error, scene, h, used) from None
+            used /= 10
+    settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
+    return run.response(output_step, 1, want_ledger, settings)
+
+
+def _fixed(
+    case: MasonryCase,
+    scene: Scene,
+    started: State,
+    timestep: float,
+    newmark_beta: float,
+    output_step: float | None,
+    want_ledger: bool,
+) -> MasonryResponse:
+    """A run at one step.
+
+    Raises:
+        SimulationError: if it breaks down.
+    """
+    require_within("timestep", timestep, 1e-9, 1.0, "s")
+    require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
+    warn_if_coarse(scene, timestep)
+    try:
+        with engine_of(scene) as engine:
+            engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
+            engine.release(started)
+            begun = time.perf_counter()
+            steps = fixed_steps(engine, scene, timestep, newmark_beta)
+        stepping_time = time.perf_counter() - begun
+        run = MasonryRun(case, scene, steps)
+    except StepError as error:
+        broke: SimulationError = broken(error, scene, timestep, None)
+        raise broke from None
+    settings = {"timestep": timestep, "accuracy": None, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
+    stride = max(1, round(output_step / timestep)) if output_step else 1
+    return run.response(None, stride, want_ledger, settings)
+
+
+def _required_state(start: object, bodies: int) -> State:
+    """A start as pose and velocity of all bodies, each of shape (bodies, 3) and finite."""
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
+    pose, velocity = (
+        require_array(f"start, {name}", part, (bodies, 3)) for name, part in zip(PARTS, start, strict=True)
+    )
+    for name, values in (("pose", pose), ("velocity", velocity)):
+        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
+    return pose, velocity
