@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -12,6 +11,8 @@ from ..problem.masonry import Masonry
 from ..problem.masonry_case import MasonryCase
 from ..problem.quantities import Integers, require_kind
 from ..problem.statics import falling
+from ..result.masonry import named
+from .rest import UnsettledError
 from .scene import Scene
 from .tables import GROUND
 
@@ -39,16 +40,13 @@ def require_standing(masonry: Masonry) -> None:
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight")
     try:
         _ = standing_masonry(masonry).at_rest
-    except ValueError:
+    except UnsettledError as error:
+        moved = np.abs(error.pose[:, 1])
+        gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far > 0.1 * moved.max()]
         raise ValueError(
-            "the masonry cannot stand: rigid blocks would be in equilibrium, but joints of this stiffness let them "
-            "give way; raise k_n"
+            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
+            "raise k_n"
         ) from None
-
-
-def named(names: Sequence[str]) -> str:
-    """Names in a message, not too many."""
-    return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
 
 
 @lru_cache(maxsize=16)

@@ -38,7 +38,7 @@ from .steps import StepError, Steps
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
-MARKS = 200
+MARKS = 1000
 """Times in a run between which no energy may appear."""
 PARTS = ("pose", "velocity")
 """What a state is made of."""
@@ -61,18 +61,22 @@ class MasonryRun:
         self._require_no_gain()
 
     def _require_no_gain(self) -> None:
-        """Raise a StepError where the energy has grown by more than the ground put in.
+        """Raise a StepError where the energy, less the work of the ground, has grown from one mark to a later one.
 
-        It is looked at at MARKS times. A touch inside a step misplaces energy for as long as it lasts.
+        Marks are MARKS of the seams of the leapfrog's windows, where energy and work belong to the same time.
         """
         until = next(iter(self.fallen.values()), math.inf)
         count = int(np.searchsorted(self.steps.t, until))
         work = ground_work(self.scene, self.steps)[:count]
-        own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
-        scale = float(self.energy[0]) + float(np.abs(work).sum()) + float(self.scene.rest_energies[2])
+        put_in = np.append(0.0, np.cumsum(work[:-1]))
         marks = np.linspace(0, count - 1, min(count, MARKS)).astype(int)
-        gains = own[marks] - np.minimum.accumulate(own[marks])
+        before = self.steps.before[marks]
+        start = self.steps.pose[marks] - 0.5 * self.steps.h[marks, None] * before
+        own = self.scene.accounts(start, before)[0].sum(axis=1) - put_in[marks]
+        gains = own - np.minimum.accumulate(own)
         worst = int(gains.argmax())
+        released, elastic = float(self.energy[0]), float(self.scene.rest_energies[2])
+        scale = released + float(np.abs(work).sum()) + elastic
         if not gains[worst] <= ENERGY_GAIN * scale:
             raise StepError(
                 f"{gains[worst]:.3g} J, {gains[worst] / scale:.2%} of the energy there was, appeared from nowhere",
@@ -131,7 +135,7 @@ def joint_motion(case: MasonryCase, scene: Scene, steps: Steps) -> tuple[Array, 
     number = {joint.name: i for i, joint in enumerate(joints)}
     of, widths = np.array([number[name] for name in scene.group]), np.array([joint.width for joint in joints])
     opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
-    lost = np.zeros((len(steps.t), len(joints)), dtype=bool)
+    lost, (back, forth) = np.zeros((len(steps.t), len(joints)), dtype=bool), np.array([j.travel for j in joints]).T
     frame = np.empty((len(scene.names), 4))
     rest = np.zeros(len(of))
     start = scene.at_rest.reshape(1, -1)
@@ -143,8 +147,8 @@ def joint_motion(case: MasonryCase, scene: Scene, steps: Steps) -> tuple[Array, 
         pose = steps.pose[first : first + size]
         room = np.empty((2, len(pose), len(joints)))
         deepest = max(deepest, _look(scene.points, of, rest, pose, frame, np.empty((2, len(joints))), *room))
-        opening, sliding = np.maximum(opening, room[0].max(axis=0)), np.maximum(sliding, room[1].max(axis=0))
-        lost[first : first + size] = (room[0] > LOST * widths) | (room[1] > widths)
+        opening, sliding = np.maximum(opening, room[0].max(axis=0)), np.maximum(sliding, np.abs(room[1]).max(axis=0))
+        lost[first : first + size] = (room[0] > LOST * widths) | (room[1] > forth) | (room[1] < -back)
     gone: Flags = np.logical_or.accumulate(lost, axis=0)
     return opening, sliding, deepest, gone
 
@@ -167,7 +171,7 @@ def _look(
             opened[n, j] = max(opened[n, j], -pressed)
             if pressed > most[0, j]:
                 most[0, j] = pressed
-                slid[n, j] = abs(along(points, i, frame, pose[n])[0] - rest[i])
+                slid[n, j] = along(points, i, frame, pose[n])[0] - rest[i]
                 deepest = max(deepest, pressed)
     return deepest
 

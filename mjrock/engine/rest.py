@@ -20,6 +20,18 @@ SMALLEST_SHARE = 1e-6
 """Smallest share of a step of Newton's method [-]."""
 
 
+class UnsettledError(ValueError):
+    """No pose of rest was found; `pose` is the last one that was tried, shape (n, 3)."""
+
+    def __init__(self, pose: Array) -> None:
+        super().__init__(
+            "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and "
+            "forces. The valid range are contacts that are stiffer, or loads and thrusts whose line of action with the "
+            "weight runs nearer to the middle of the base"
+        )
+        self.pose = pose
+
+
 def gap_rates(points: Points, ties: Ties, pose: Array) -> Array:
     """Rates of the gaps and of the slack of the ties for unit velocities at a pose of shape (3 n,), (m + t, 3 n)."""
     made = np.zeros((len(points.k) + len(ties.k), len(pose)))
@@ -99,7 +111,7 @@ def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
     nothing holds a direction, the bodies stay where they are.
 
     Raises:
-        ValueError: if no such pose is found near the undeformed one.
+        UnsettledError: if no such pose is found near the undeformed one.
     """
     pose, k = np.zeros_like(masses), np.append(points.k, ties.k)
     closed = np.append(np.ones(len(points.k), dtype=bool), openings(points, ties, pose)[len(points.k) :] < 0)
@@ -122,11 +134,7 @@ def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
             share *= 0.5
         pose = pose + share * moved
         closed = openings(points, ties, pose) < 0
-    raise ValueError(
-        "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and forces. "
-        "The valid range are contacts that are stiffer, or loads and thrusts whose line of action with the weight runs "
-        "nearer to the middle of the base"
-    )
+    raise UnsettledError(pose.reshape(-1, 3))
 
 
 def lowered(points: Points, forces: Forces, masses: Array, pose: Array) -> Array:

@@ -100,6 +100,7 @@ def bonded(length: float, height: float, unit: tuple[float, float], thickness: f
     high = require_within("unit height", unit[1], 1e-2, 100.0, "m")
     require_within("wall length", length, long, 1e3, "m")
     require_within("wall height", height, high, 1e3, "m")
+    require_within("wall thickness", thickness, 1e-3, 1e3, "m")
     courses = round(height / high)
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")

@@ -28,6 +28,8 @@ class Joint:
             that is not vertical, `above` lies higher. A fixed block is always `below`.
         start, end: ends of the joint [m], with the normal to the left of the way from start to end.
         length: length out of the plane, that of the shorter block [m].
+        travel: how far the block above can slide from end to start, and from start to end, before the two edges no
+            longer overlap [m].
         corners: whether an end is a corner of the block above, for start and end.
         name: names of the two blocks with a | between them, the one below first.
     """
@@ -37,6 +39,7 @@ class Joint:
     start: tuple[float, float]
     end: tuple[float, float]
     length: float
+    travel: tuple[float, float]
     corners: tuple[bool, bool]
     name: str
 
@@ -147,13 +150,22 @@ def _between(blocks: Sequence[Polygon], i: int, j: int, names: Sequence[str], to
             if np.abs(apart).max() > tolerance:
                 continue
             ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
-            yield _joint(blocks, i, j, ends, n, names, tolerance)
+            # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
+            travel = (float((b - a) @ way - first), float(last))
+            yield _joint(blocks, i, j, ends, n, names, tolerance, travel)
 
 
 def _joint(
-    blocks: Sequence[Polygon], i: int, j: int, ends: list[Array], n: Array, names: Sequence[str], tolerance: float
+    blocks: Sequence[Polygon],
+    i: int,
+    j: int,
+    ends: list[Array],
+    n: Array,
+    names: Sequence[str],
+    tolerance: float,
+    travel: tuple[float, float],
 ) -> Joint:
-    """The joint between blocks i and j with these ends, n the normal out of block i."""
+    """The joint between blocks i and j with these ends, n the normal out of block i, which j can travel along."""
     upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
     below, above = (i, j) if upwards > 0 else (j, i)
     if blocks[above].fixed:
@@ -169,6 +181,7 @@ def _joint(
         above=above,
         start=(float(start[0]), float(start[1])),
         end=(float(end[0]), float(end[1])),
+        travel=travel,
         length=min(blocks[i].length, blocks[j].length),
         corners=(corners[0], corners[1]),
         name=f"{names[below]}|{names[above]}",

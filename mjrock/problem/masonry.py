@@ -86,6 +86,8 @@ class Masonry:
             raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
         if self.law is not None and self.frequency is not None:
             raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
+        if not self.joints:
+            raise ValueError("blocks: no two of them touch along an edge")
         _ = self.joint_friction, self.retardation
 
     @classmethod
@@ -183,7 +185,14 @@ class Masonry:
         given = getattr(self, name)
         if not callable(given):
             return np.full(len(self.joints), require_within(name, given, low, high, unit))
-        return np.array([require_within(f"{name} of {j.name}", given(j), low, high, unit) for j in self.joints])
+        found = []
+        for joint in self.joints:
+            try:
+                found.append(given(joint))
+            except TypeError as error:
+                raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
+        pairs = zip(self.joints, found, strict=True)
+        return np.array([require_within(f"{name} of {joint.name}", one, low, high, unit) for joint, one in pairs])
 
     @cached_property
     def joint_stiffness(self) -> Array:

@@ -39,7 +39,7 @@ class MasonryResponse:
         sliding: largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,).
         fallen: when each block that fell did [s], by its name, the first first. A block has fallen when no joint that
             holds connects it with a fixed block any more, or when its centroid has dropped by its size. A joint no
-            longer holds when it has opened by 0.7 of its width or slid by its width.
+            longer holds when it has opened by 0.7 of its width, or when one block has slid off the other.
         outcome: how the run ended. Masonry has overturned when a block has fallen.
         message: the same in words, for the user.
         ledger: every part of the energy, with the dashpots of each joint, or None where none was asked for.
