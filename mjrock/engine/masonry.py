@@ -41,8 +41,8 @@ def require_standing(masonry: Masonry) -> None:
     try:
         _ = standing_masonry(masonry).at_rest
     except UnsettledError as error:
-        moved = np.abs(error.pose[:, 1])
-        gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far > 0.1 * moved.max()]
+        moved = np.hypot(*error.pose[:, :2].T)
+        gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= 0.1 * moved.max()]
         raise ValueError(
             f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
             "raise k_n"

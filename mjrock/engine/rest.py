@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+from scipy.linalg import null_space
 
 from ..compiled import compiled
 from ..problem.quantities import GRAVITY, Array, Flags
@@ -18,6 +19,10 @@ LEANING = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
 SMALLEST_SHARE = 1e-6
 """Smallest share of a step of Newton's method [-]."""
+TURNED = 0.5
+"""Rotation beyond which a body no longer stands [rad]."""
+FLAT = 1e-12
+"""Negative stiffness that is put down to rounding, over the largest [-]."""
 
 
 class UnsettledError(ValueError):
@@ -56,6 +61,55 @@ def openings(points: Points, ties: Ties, pose: Array) -> Array:
     """Gaps of the contacts and slack of the ties at a pose of shape (3 n,) [m], shape (m + t,)."""
     frame = frame_of(pose)
     return np.append(gaps(points, pose[None])[0], [slack(ties, i, frame, pose, pose)[0] for i in range(len(ties.k))])
+
+
+def curvature(points: Points, ties: Ties, forces: Forces, pose: Array) -> Array:
+    """Second derivatives of the energy that turning makes, at a pose of shape (3 n,), shape (3 n, 3 n).
+
+    A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight takes
+    from the stiffness of a tall wall. A force that follows a turning point adds its part likewise.
+    """
+    made = np.zeros((len(pose), len(pose)))
+    pressed = np.maximum(-openings(points, ties, pose), 0.0) * np.append(points.k, ties.k)
+    frame, none = frame_of(pose), np.zeros_like(pose)
+    _curvatures(points, ties, frame, np.zeros_like(pose), none, pressed, made)
+    for body, (x, z), force in zip(forces.body, forces.at, forces.force, strict=True):
+        one = np.zeros_like(pose)
+        one[3 * body + 2] = 1.0
+        made[3 * body + 2, 3 * body + 2] -= force @ carried(frame, one, none, body, x, z)[6:8]
+    return made
+
+
+@compiled
+def _curvatures(points: Points, ties: Ties, frame: Array, way: Array, none: Array, pressed: Array, made: Array) -> None:
+    """Add what each pressed contact makes. What the velocities alone make of a gap is its second derivative along
+    them."""
+    m = len(points.k)
+    for i in range(len(pressed)):
+        if pressed[i] == 0:
+            continue
+        body = points.body[i] if i < m else ties.body[i - m]
+        other = points.face_body[i] if i < m else ties.face_body[i - m]
+        for p in range(6 if other >= 0 else 3):
+            for r in range(6 if other >= 0 else 3):
+                row = 3 * body + p if p < 3 else 3 * other + p - 3
+                column = 3 * body + r if r < 3 else 3 * other + r - 3
+                for sign in (1.0, -1.0):
+                    way[row] += 1.0
+                    way[column] += sign
+                    bent = gap(points, i, frame, way, none)[3] if i < m else slack(ties, i - m, frame, way, none)[3]
+                    made[row, column] -= 0.25 * sign * pressed[i] * bent
+                    way[row], way[column] = 0.0, 0.0
+
+
+def is_stable(points: Points, ties: Ties, forces: Forces, closed: Flags, pose: Array) -> bool:
+    """Whether no motion that friction allows takes energy from a pose at rest, of shape (3 n,)."""
+    rates, k = gap_rates(points, ties, pose), np.append(points.k, ties.k)
+    matrix = (rates.T * np.where(closed, k, 0.0)) @ rates
+    size = float(np.abs(matrix).max())
+    matrix += curvature(points, ties, forces, pose)
+    free = null_space(slip_rates(points, closed, pose), rcond=1e-9)
+    return not free.size or float(np.linalg.eigvalsh(free.T @ matrix @ free)[0]) > -FLAT * size
 
 
 def slip_rates(points: Points, closed: Flags, pose: Array) -> Array:
@@ -128,11 +182,15 @@ def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
         found = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-14)[0]
         moved, friction = found[: len(pose)], found[len(pose) :]
         if np.abs(residual - grip.T @ friction).max() < tolerated and (closed == (depth > 0)).all():
-            return pose.reshape(-1, 3)
+            if is_stable(points, ties, forces, closed, pose):
+                return pose.reshape(-1, 3)
+            break
         energy, share = energy_at(pose), 1.0
-        while share > SMALLEST_SHARE and energy_at(pose + share * moved) > energy + 1e-13 * scale:
+        while share > SMALLEST_SHARE and energy_at(pose + share * moved) > energy + 1e-13 * max(scale, abs(energy)):
             share *= 0.5
         pose = pose + share * moved
+        if not np.abs(pose[2::3]).max() < TURNED:
+            break
         closed = openings(points, ties, pose) < 0
     raise UnsettledError(pose.reshape(-1, 3))
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import null_space
 
 from .interface import contact_lines
 from .joints import Joint
@@ -102,9 +103,7 @@ def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -
     open_up = rates(blocks, lines, lines.normal) / np.sqrt(masses)
     sideways = rates(blocks, lines, np.column_stack([lines.normal[:, 1], -lines.normal[:, 0]])) / np.sqrt(masses)
     slips = [sideways[lines.joint == joint].mean(axis=0) for joint in np.flatnonzero(friction > 0)]
-    _, sizes, ways = np.linalg.svd(np.reshape(slips, (-1, len(masses))), full_matrices=True)
-    held = int((sizes > 1e-9 * max(sizes, default=0.0)).sum())
-    left = ways[held:].T  # the motions without slip
+    left = null_space(np.reshape(slips, (-1, len(masses))), rcond=1e-9)  # the motions without slip
     squares = np.linalg.eigvalsh((left.T @ (open_up.T * lines.k)) @ (open_up @ left)) if left.shape[1] else np.zeros(0)
     squares = squares[squares > RIGID * max(squares, default=0.0)]
     if not squares.size:

@@ -88,7 +88,9 @@ class Masonry:
             raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
         if not self.joints:
             raise ValueError("blocks: no two of them touch along an edge")
-        _ = self.joint_friction, self.retardation
+        _ = self.joint_stiffness, self.joint_friction, self._of_joints("xi", 0.0, 100.0)
+        if self.law is not None:
+            _ = self.retardation
 
     @classmethod
     def stack(cls, blocks: Sequence[Block], k_n: OfJoint, *, ground: bool = True, **options: Any) -> Self:

@@ -1,0 +1,213 @@
+"""Masonry in motion: against an explicit integration, the single wall, conservation laws and closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from explicit_blocks import explicit
+from masonry_blocks import GROUND, box, columns
+
+import mjrock as mr
+from mjrock.engine.kinematics import gaps
+from mjrock.engine.masonry import masonry_scene
+
+PULSE = mr.GroundMotion.sine(2.0, 0.7)
+STRONG = mr.GroundMotion.sine(3.0, 0.9)
+
+
+def follow(masonry, duration, motion=None, *, accuracy=1e-3, timestep=None, ledger=False, **options):
+    case = mr.MasonryCase(masonry, duration, motion, **options)
+    return mr.simulate(case, accuracy=accuracy, timestep=timestep, ledger=ledger)
+
+
+def against_explicit(masonry, duration, motion, accuracy, h=2e-6):
+    """Largest errors of peak rotation and of rotation, over the peaks of the explicit integration."""
+    answer = follow(masonry, duration, motion, accuracy=accuracy)
+    t, pose = explicit(masonry, answer.pose[0], duration, motion, h, round(1e-3 / h))
+    theta = pose[: len(answer.t), :, 2]
+    assert t[: len(answer.t)] == pytest.approx(answer.t, abs=1e-9)
+    peaks = np.abs(theta).max(axis=0)
+    return np.abs(answer.peak / peaks - 1).max(), (np.abs(answer.theta - theta).max(axis=0) / peaks).max()
+
+
+def test_two_blocks_against_an_explicit_integration():
+    """The springs along the faces of the explicit integration, 10 k, make most of the difference."""
+    peak, path = against_explicit(columns(2, xi=0.049), 1.5, STRONG, 1e-4)
+    assert peak < 5e-4
+    assert path < 6e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("blocks", "accuracy", "agrees"), [(2, 1e-3, 1e-3), (4, 1e-3, 2.5e-3), (4, 1e-5, 1e-3)])
+def test_stacks_against_an_explicit_integration(blocks, accuracy, agrees):
+    """Five cycles of rocking: the peak, and the whole motion, whose phase adds up."""
+    peak, path = against_explicit(columns(blocks, xi=0.049), 4.0, PULSE, accuracy, h=1e-6)
+    assert peak < agrees
+    assert path < 15 * agrees
+
+
+@pytest.mark.slow
+def test_an_arch_against_an_explicit_integration():
+    peak, _ = against_explicit(mr.Masonry.arch(5.0, 0.75), 1.5, PULSE, 1e-4)
+    assert peak < 0.01
+
+
+def test_one_block_is_the_single_wall():
+    wall = mr.Block(0.3, 2.1)
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, friction=0.7)
+    case = mr.Case(wall, 0.0, 2.0, side_stop=False, motion=PULSE)
+    response = mr.simulate(case, contacts, timestep=1e-3)
+    answer = follow(mr.Masonry.stack([wall], 5e8, xi=0.05), 2.0, PULSE, timestep=1e-3)
+    assert np.abs(answer.pose - response.pose).max() < 1e-9
+    assert answer.energy == pytest.approx(response.energy, abs=1e-6)
+    fitted = follow(mr.Masonry.stack([wall], 5e8, xi=0.05), 2.0, PULSE)
+    assert np.abs(fitted.theta[:, 0] - mr.simulate(case, contacts).theta).max() < 1e-7
+
+
+def test_a_stack_that_moves_as_one_is_the_monolith():
+    """A joint that is a thousand times stiffer than the base makes two blocks one."""
+    whole = follow(columns(1), 1.1, PULSE, accuracy=1e-4)
+    bonded = columns(2, k_n=lambda joint: 5e8 if joint.name.startswith("ground") else 5e11)
+    rigid, soft = (follow(masonry, 1.1, PULSE, accuracy=1e-4) for masonry in (bonded, columns(2)))
+    assert rigid.peak == pytest.approx([whole.peak[0]] * 2, rel=2e-4)
+    assert soft.peak == pytest.approx([whole.peak[0]] * 2, rel=0.01)  # what an equal joint takes
+    assert abs(soft.peak[0] / whole.peak[0] - 1) > 1e-3
+
+
+def test_momentum_is_conserved_without_friction_on_the_ground():
+    """Two blocks that rub on each other: what one loses the other gains, and then they move together."""
+    masonry = mr.Masonry([GROUND, box(-1, 1, 0, 0.4), box(-0.5, 0.5, 0.4, 0.7)], friction=lambda j: 0.4 * (j.below > 0))
+    answer = follow(masonry, 0.6, velocity=[[0, 0, 0], [1.0, 0, 0]], ledger=True)
+    masses = np.array([masonry.blocks[i].mass for i in masonry.free])
+    momentum = answer.velocity[:, :, 0] @ masses
+    assert momentum == pytest.approx(masses[1], rel=1e-6)
+    together = masses[1] / masses.sum()
+    assert answer.velocity[-1, :, 0] == pytest.approx([together] * 2, rel=1e-3)
+    # uniform deceleration: the upper block slides by v^2 / (2 mu g (1 + m_2 / m_1))
+    slip = 1 / (2 * 0.4 * mr.GRAVITY * (1 + masses[1] / masses[0]))
+    assert answer.sliding[1] == pytest.approx(slip, rel=5e-3)
+    lost = 0.5 * masses[1] * (1 - together)
+    assert answer.ledger.friction[-1] == pytest.approx(lost, rel=0.01)
+
+
+def test_the_ledger_closes_without_damping():
+    answer = follow(columns(2, xi=0.0), 2.0, PULSE, accuracy=1e-4, ledger=True)
+    put_in = float(np.abs(np.diff(answer.ledger.ground)).sum())
+    assert np.abs(answer.energy_residual).max() < 1e-3 * put_in
+    assert set(answer.ledger.dashpots) == {"ground|block_0", "block_0|block_1"}
+    for work in answer.ledger.dashpots.values():
+        assert np.abs(work).max() < 2e-3 * put_in  # there are none, but for steps that do not resolve the contacts
+
+
+def test_a_course_slides_as_coulomb_has_it():
+    """A flat block on shaken ground: a_rel = -(a_g - mu g sign v), integrated by hand."""
+    masonry, motion = mr.Masonry([GROUND, box(-1, 1, 0, 0.2)], friction=0.3), mr.GroundMotion.sine(6.0, 0.7)
+    answer = follow(masonry, 1.2, motion)
+    x = v = 0.0
+    h, far = 1e-5, 0.0
+    for n in range(round(1.2 / h)):
+        pushed = -float(np.interp(n * h, motion.dt * np.arange(len(motion.accel)), motion.accel, right=0.0))
+        if v == 0 and abs(pushed) <= 0.3 * mr.GRAVITY:
+            continue
+        rubbed = pushed - 0.3 * mr.GRAVITY * math.copysign(1.0, v or pushed)
+        v = 0.0 if v * (v + h * rubbed) < 0 else v + h * rubbed
+        x += h * v
+        far = max(far, abs(x))
+    assert answer.sliding[0] == pytest.approx(far, rel=2e-4)
+    assert answer.pose[-1, 0, 0] == pytest.approx(x, abs=1e-3 * far)
+    assert answer.fallen == {}
+
+
+def test_an_arch_at_rest_stays_and_costs_little():
+    """A minute: friction creeps by less than a tenth of a millimetre, and the steps are long."""
+    answer = follow(mr.Masonry.arch(5.0, 0.75, voussoirs=16), 60.0)
+    assert np.abs(answer.pose - answer.pose[0])[:, :, :2].max() < 1e-4
+    assert answer.sliding.max() < 1e-4
+    assert answer.stats["steps"] < 10_000
+    assert answer.outcome is mr.Outcome.AT_REST
+
+
+def test_a_wall_in_bond_at_rest_has_head_joints_that_bear_nothing():
+    answer = follow(mr.Masonry.running_bond(1.0, 1.0, (0.5, 0.25), 0.1), 5.0)
+    assert np.abs(answer.pose - answer.pose[0]).max() < 1e-9
+    assert answer.stats["steps"] < 2000
+
+
+def test_a_column_that_falls():
+    answer = follow(columns(3), 9.0, mr.GroundMotion.sine(5.0, 1.2))
+    assert set(answer.fallen) == {"block_0", "block_1", "block_2"}
+    assert answer.outcome is mr.Outcome.OVERTURNED
+    assert answer.t[-1] < 4
+    assert list(answer.fallen.values()) == sorted(answer.fallen.values())
+    assert "3 blocks fell, the first at" in answer.message
+    assert 0 < min(answer.fallen.values()) <= answer.t[-1]
+
+
+def test_a_block_that_is_kicked_off_is_named():
+    """The upper block slides off at 3 m/s and falls; the lower one stays."""
+    blocks = [GROUND, box(-0.3, 0.3, 0, 1, name="lower"), box(-0.3, 0.3, 1, 1.3, name="upper")]
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.2)
+    answer = follow(masonry, 3.0, velocity=[[0, 0, 0], [4.0, 0, 0]])
+    assert list(answer.fallen) == ["upper"]
+    assert answer.sliding[1] > 0.6 or answer.opening[1] > 0.42
+
+
+def test_a_run_is_continued():
+    masonry = columns(2)
+    whole = follow(masonry, 1.0, PULSE, timestep=2e-4)
+    quiet = mr.simulate(mr.MasonryCase(masonry, 0.2), timestep=2e-4, start=whole.end)
+    assert quiet.pose[0] == pytest.approx(whole.pose[-1], abs=1e-12)
+    with pytest.raises(ValueError, match=r"start, pose has the shape \(1, 3\); \(2, 3\) is needed"):
+        mr.simulate(mr.MasonryCase(masonry, 0.2), start=([[0, 0, 0]], [[0, 0, 0]]))
+
+
+def test_gaps_and_slips_are_what_the_answer_says():
+    answer = follow(columns(2), 1.5, PULSE)
+    scene = masonry_scene(answer.case)
+    largest = gaps(scene.points, answer.pose.reshape(len(answer.t), -1)).max(axis=0)
+    assert answer.opening[0] == pytest.approx(largest[:2].max(), rel=1e-3)
+    assert answer.opening[1] == pytest.approx(max(0, largest[2:].max()), rel=1e-3, abs=1e-7)
+    assert answer == follow(columns(2), 1.5, PULSE)
+    assert "2 blocks" in repr(answer)
+
+
+@pytest.mark.parametrize(
+    "masonry",
+    [
+        pytest.param(lambda: columns(5, xi=0.0), id="no damping"),
+        pytest.param(lambda: columns(3, k_n=1e11), id="stiff"),
+        pytest.param(lambda: mr.Masonry([GROUND, box(-0.3, 0.3, 0, 1), box(-0.5, 0.5, 1, 1.4)]), id="overhang"),
+    ],
+)
+def test_hard_cases(masonry):
+    answer = follow(masonry(), 1.0, PULSE, ledger=True)
+    put_in = float(np.abs(np.diff(answer.ledger.ground)).sum())
+    assert np.abs(answer.energy_residual).max() < 0.02 * put_in
+    assert answer.fallen == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "masonry",
+    [
+        pytest.param(lambda: columns(20), id="twenty blocks"),
+        pytest.param(lambda: columns(20, k_n=1e11), id="twenty stiff blocks"),
+        pytest.param(lambda: columns(8, xi=0.0), id="no damping"),
+        pytest.param(lambda: mr.Masonry.arch(5.0, 0.75, k_n=1e11), id="stiff arch"),
+        pytest.param(lambda: mr.Masonry.arch(5.0, 0.75, points=5), id="five lines"),
+        pytest.param(lambda: mr.Masonry.arch(5.0, 0.75, xi=5.0), id="overdamped arch"),
+        pytest.param(lambda: mr.Masonry.running_bond(2.0, 1.0, (0.5, 0.25), 0.1), id="bond"),
+    ],
+)
+def test_longer_hard_cases(masonry):
+    answer = follow(masonry(), 5.0, PULSE, ledger=True)
+    put_in = float(np.abs(np.diff(answer.ledger.ground)).sum())
+    assert np.abs(answer.energy_residual).max() < 0.01 * put_in
+    assert answer.fallen == {}
+
+
+@pytest.mark.slow
+def test_an_arch_that_collapses():
+    answer = follow(mr.Masonry.arch(5.0, 0.75), 5.0, mr.GroundMotion.sine(5.0, 0.7))
+    assert len(answer.fallen) > 5
+    assert answer.t[-1] < 3

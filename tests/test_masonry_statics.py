@@ -1,0 +1,91 @@
+"""Masonry that just stands: limits of equilibrium, of rigid blocks and of the compliant scene."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry_blocks import GROUND, box, bracket, columns, tilted
+
+import mjrock as mr
+from mjrock.engine.masonry import require_standing, standing_masonry
+from mjrock.problem.statics import falling
+
+
+def rigid(masonry):
+    return not falling(masonry)
+
+
+def settles(masonry):
+    try:
+        return standing_masonry(masonry).at_rest is not None
+    except ValueError:
+        return False
+
+
+def test_a_stack_overturns_at_its_slenderness():
+    """Rigid blocks: tan = b/h of the whole. Corner springs take the rotation at which the edge lifts, W / (2 k b)."""
+    slope = 0.3 / 2.1
+    assert math.tan(bracket(lambda a: rigid(tilted(columns(4), a)), 0.0, 0.3, 20)) == pytest.approx(slope, rel=1e-4)
+    lifts = 2000 * 0.6 * 4.2 * mr.GRAVITY / (2 * 5e8 * 0.3 * 0.3)
+    found = math.tan(bracket(lambda a: settles(tilted(columns(1), a)), 0.0, 0.3, 16))
+    assert found == pytest.approx(slope - lifts, abs=2e-5)
+
+
+def test_an_arch_of_the_least_thickness():
+    """A semicircular arch under its weight stands from t/R = 0.1075 on (Milankovitch); 64 voussoirs are near that."""
+
+    def stands(thickness):
+        return rigid(mr.Masonry.arch(5.0, thickness, math.pi, 64, friction=2.0))
+
+    assert bracket(lambda x: stands(-x), -0.9, -0.3, 9) / -5 == pytest.approx(0.1075, abs=2e-4)
+
+
+def test_springs_hardly_change_the_least_thickness():
+    """Sixteen voussoirs: 0.1071 of rigid blocks, and a thousandth more on springs of 1e10 N/m3."""
+
+    def arch(thickness):
+        return mr.Masonry.arch(5.0, thickness, math.pi, 16, friction=2.0, k_n=1e10)
+
+    least = bracket(lambda x: rigid(arch(-x)), -0.9, -0.3, 12)
+    soft = bracket(lambda x: settles(arch(-x)), -0.56, -0.5, 8)
+    assert 1e-4 < soft / least - 1 < 2e-3
+
+
+def test_an_arch_tilts_to_its_multiplier():
+    """Part of a circle of 157.5 degrees, t/R = 0.15, seven voussoirs: 0.37 g (Oppenheim 1992)."""
+    arch = mr.Masonry.arch(10.0, 1.5, math.radians(157.5), 7)
+    assert math.tan(bracket(lambda a: rigid(tilted(arch, a)), 0.0, 0.6)) == pytest.approx(0.37, abs=0.005)
+    assert math.tan(bracket(lambda a: settles(tilted(arch, a)), 0.3, 0.4, 7)) == pytest.approx(0.373, abs=1e-3)
+
+
+def test_a_block_slides_down_at_its_friction():
+    flat = mr.Masonry([GROUND, box(-1, 1, 0, 0.4)], friction=0.25)
+    assert math.tan(bracket(lambda a: rigid(tilted(flat, a)), 0.0, 0.5, 14)) == pytest.approx(0.25, rel=1e-3)
+
+
+def test_blocks_that_fall_are_named():
+    post = box(-0.3, 0.3, 0, 1, name="post")
+    blocks = [GROUND, post, box(0.0, 1, 1, 1.4, name="cap"), box(0.0, 1, 1.4, 1.5, name="tile")]
+    with pytest.raises(ValueError, match="the masonry cannot stand: cap, tile would fall under the weight"):
+        mr.simulate(mr.MasonryCase(mr.Masonry(blocks), 1.0))
+    assert falling(mr.Masonry([GROUND, post])) == ()
+
+
+def test_springs_too_soft_to_stand_on():
+    """The weight's lever grows faster than the base resists: K_rot < W h."""
+    with pytest.raises(ValueError, match="on joints of this stiffness block_0 would fall; raise k_n"):
+        require_standing(columns(1, k_n=1e6))
+
+
+def test_what_settles_is_in_equilibrium():
+    """Springs carry the weight of an arch, and symmetric abutments half of it each."""
+    masonry = mr.Masonry.arch(5.0, 0.75, voussoirs=16, points=3)
+    scene = standing_masonry(masonry)
+    pressed = scene.k * scene.points.bears
+    turned = scene.normal * pressed[:, None]
+    left = np.array([name.startswith("left") for name in scene.group])
+    right = np.array([name.startswith("right") for name in scene.group])
+    weight = scene.mass.sum() * mr.GRAVITY
+    assert turned[left, 1].sum() == pytest.approx(weight / 2, rel=1e-4)  # the springings are level
+    assert turned[right, 1].sum() == pytest.approx(weight / 2, rel=1e-4)
+    assert scene.at_rest[:, 0] == pytest.approx(-scene.at_rest[::-1, 0], abs=1e-8)
