@@ -25,6 +25,7 @@ MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
 RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
 PLAN = mr.Plan(base_count=2, side_count=2)
+COLUMN = mr.Masonry.stack([WALL], 5e8)
 
 
 def pushed(scale):
@@ -116,6 +117,39 @@ CALLS = {
         {"wall": WALL, "e": E, "k_base": 5e8, "points": 2, "amplitude": 0.5, "friction": None, "accuracy": 1e-2},
     ),
     "as_theory": (mr.as_theory, {"wall": WALL, "e": E, "side_stop": False, "rebounds": 2, "amplitude": 0.5}),
+    "Polygon": (
+        mr.Polygon,
+        {"vertices": [(0, 0), (1, 0), (0, 1)], "density": 2e3, "length": 1.0, "fixed": False, "name": None},
+    ),
+    "Masonry": (
+        mr.Masonry,
+        {
+            "blocks": COLUMN.blocks, "k_n": 5e8, "friction": 0.7, "xi": 0.05, "frequency": None, "points": 2,
+            "tolerance": 1e-5, "law": None,
+        },
+    ),
+    "Masonry.stack": (mr.Masonry.stack, {"blocks": [WALL], "k_n": 5e8, "ground": True, "law": None, "friction": 0.7}),
+    "Masonry.arch": (
+        mr.Masonry.arch,
+        {
+            "radius": 5.0, "thickness": 0.75, "span_angle": 3.0, "voussoirs": 5, "density": 2e3, "length": 1.0,
+            "k_n": 1e9,
+        },
+    ),
+    "Masonry.running_bond": (
+        mr.Masonry.running_bond,
+        {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
+    ),
+    "MasonryCase": (
+        mr.MasonryCase, {"masonry": COLUMN, "duration": 1.0, "motion": None, "velocity": [[0.0, 0.0, 0.1]]},
+    ),
+    "simulate, masonry": (
+        mr.simulate,
+        {
+            "case": mr.MasonryCase(COLUMN, 0.02), "contacts": None, "timestep": None, "accuracy": 1e-2,
+            "newmark_beta": 0.25, "output_step": 1e-3, "ledger": False, "start": None,
+        },
+    ),
     "Plan": (mr.Plan, {name: getattr(PLAN, name) for name in inspect.signature(mr.Plan).parameters}),
 }  # fmt: skip
 """Arguments that work, by entry."""
@@ -126,7 +160,7 @@ HOSTILE = st.one_of(
             None, True, False, "", "0.3", b"1", [], [1.0], (), {}, 1j, 10**400, -(10**400), math.nan, math.inf,
             -math.inf, 0, -1, 1e-300, 1e300, np.nan, np.float32(2.0), np.int64(3), np.array(0.3), np.array([0.1, 0.2]),
             object(),
-            WALL, E, SHORT, CONTACTS, CONTACTS.base, MOTION,
+            WALL, E, SHORT, COLUMN, CONTACTS, CONTACTS.base, MOTION,
             mr.Load(1e3, 2.0), mr.SideStop(2.0), [mr.Opening(0.2, 1.0)], RESPONSE, mr.CALIBRATED, print, "no", 2.5,
         ]
     ),
@@ -206,8 +240,8 @@ def test_every_public_entry_is_tried():
     """What is not called here is made by a solver, or tested with the campaigns and the records."""
     elsewhere = {
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
-        "Outcome", "Response", "SimulationError", "__version__", "PowerLaw", "DampingLaw", "Scene",
-        "Analysis", "Grid", "Store", "campaign", "ida", "results", "calibrate", "GroundMotion",
+        "Outcome", "Response", "MasonryResponse", "Joint", "SimulationError", "__version__", "PowerLaw", "DampingLaw",
+        "Scene", "Analysis", "Grid", "Store", "campaign", "ida", "results", "calibrate", "GroundMotion",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

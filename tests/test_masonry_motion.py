@@ -64,14 +64,12 @@ def test_one_block_is_the_single_wall():
     assert np.abs(fitted.theta[:, 0] - mr.simulate(case, contacts).theta).max() < 1e-7
 
 
-def test_a_stack_that_moves_as_one_is_the_monolith():
-    """A joint that is a thousand times stiffer than the base makes two blocks one."""
-    whole = follow(columns(1), 1.1, PULSE, accuracy=1e-4)
-    bonded = columns(2, k_n=lambda joint: 5e8 if joint.name.startswith("ground") else 5e11)
-    rigid, soft = (follow(masonry, 1.1, PULSE, accuracy=1e-4) for masonry in (bonded, columns(2)))
-    assert rigid.peak == pytest.approx([whole.peak[0]] * 2, rel=2e-4)
-    assert soft.peak == pytest.approx([whole.peak[0]] * 2, rel=0.01)  # what an equal joint takes
-    assert abs(soft.peak[0] / whole.peak[0] - 1) > 1e-3
+@pytest.mark.parametrize(("k_n", "share"), [(5e8, 5e-3), (5e10, 1e-3)])
+def test_a_stack_that_moves_as_one_is_the_monolith(k_n, share):
+    """Up to the first peak, within what the springs of one more joint take."""
+    whole, two = (follow(columns(count, k_n), 1.1, PULSE, accuracy=1e-4).peak for count in (1, 2))
+    assert two == pytest.approx([whole[0]] * 2, rel=share)
+    assert np.abs(two / whole[0] - 1).max() > 1e-4
 
 
 def test_momentum_is_conserved_without_friction_on_the_ground():
@@ -104,7 +102,7 @@ def test_a_course_slides_as_coulomb_has_it():
     masonry, motion = mr.Masonry([GROUND, box(-1, 1, 0, 0.2)], friction=0.3), mr.GroundMotion.sine(6.0, 0.7)
     answer = follow(masonry, 1.2, motion)
     x = v = 0.0
-    h, far = 1e-5, 0.0
+    h, far = 5e-5, 0.0
     for n in range(round(1.2 / h)):
         pushed = -float(np.interp(n * h, motion.dt * np.arange(len(motion.accel)), motion.accel, right=0.0))
         if v == 0 and abs(pushed) <= 0.3 * mr.GRAVITY:
@@ -118,12 +116,13 @@ def test_a_course_slides_as_coulomb_has_it():
     assert answer.fallen == {}
 
 
-def test_an_arch_at_rest_stays_and_costs_little():
-    """A minute: friction creeps by less than a tenth of a millimetre, and the steps are long."""
-    answer = follow(mr.Masonry.arch(5.0, 0.75, voussoirs=16), 60.0)
-    assert np.abs(answer.pose - answer.pose[0])[:, :, :2].max() < 1e-4
-    assert answer.sliding.max() < 1e-4
-    assert answer.stats["steps"] < 10_000
+@pytest.mark.parametrize("duration", [15.0, pytest.param(60.0, marks=pytest.mark.slow)])
+def test_an_arch_at_rest_stays_and_costs_little(duration):
+    """In a minute friction creeps by less than a tenth of a millimetre, and the steps are long."""
+    answer = follow(mr.Masonry.arch(5.0, 0.75, voussoirs=16), duration)
+    assert np.abs(answer.pose - answer.pose[0])[:, :, :2].max() < 1e-4 * duration / 60
+    assert answer.sliding.max() < 1e-4 * duration / 60
+    assert answer.stats["steps"] < 160 * duration
     assert answer.outcome is mr.Outcome.AT_REST
 
 
