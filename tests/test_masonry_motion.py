@@ -126,6 +126,21 @@ def test_an_arch_at_rest_stays_and_costs_little(duration):
     assert answer.outcome is mr.Outcome.AT_REST
 
 
+@pytest.mark.parametrize("side", [0.4, 1.0, 1.06])
+def test_square_blocks_stay_where_they_settled(side):
+    """Their half height is the extent of the scene; MuJoCo must not move their faces by the radius of the points."""
+    blocks = [box(-side / 2, side / 2, side * i, side * (i + 1)) for i in range(3)]
+    answer = follow(mr.Masonry([GROUND, *blocks]), 0.3)
+    assert np.abs(answer.pose - answer.pose[0]).max() < 1e-11
+
+
+def test_blocks_that_are_no_boxes_are_possible_bodies():
+    """A flat trapezium has little inertia about its normal, which MuJoCo compares with the other two."""
+    flat = mr.Polygon([(-1, 0), (1, 0), (0.3, 0.2), (-0.3, 0.2)], length=0.05)
+    answer = follow(mr.Masonry([GROUND, flat, box(-0.2, 0.2, 0.2, 0.4)], k_n=1e9), 0.3)
+    assert np.abs(answer.pose - answer.pose[0]).max() < 1e-9
+
+
 def test_a_wall_in_bond_at_rest_has_head_joints_that_bear_nothing():
     answer = follow(mr.Masonry.running_bond(1.0, 1.0, (0.5, 0.25), 0.1), 5.0)
     assert np.abs(answer.pose - answer.pose[0]).max() < 1e-9

@@ -231,12 +231,16 @@ def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
 
 
 def _plate(scene: Scene, i: int, radius: float) -> dict[str, object]:
-    """The face of a body as a plate that is wider than any slip and thicker than any penetration."""
-    extent = scene.extent
+    """The face of a body as a plate that is wider than any slip and thicker than any penetration.
+
+    It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
+    be at the origin, and a thinner plate of a square block would have its middle a radius away from there.
+    """
+    extent, deep = scene.extent, 2 * scene.extent
     x, z = scene.face[i]
     nx, nz = scene.normal[i]
-    at = (x - (extent + radius) * nx, 0.0, z - (extent + radius) * nz)
-    return {"size": (4 * extent, 0.6 * scene.length, extent), "pos": at, "zaxis": (nx, 0.0, nz)}
+    at = (x - (deep + radius) * nx, 0.0, z - (deep + radius) * nz)
+    return {"size": (4 * extent, 0.6 * scene.length, deep), "pos": at, "zaxis": (nx, 0.0, nz)}
 
 
 def _meshes(scene: Scene) -> Iterator[str]:

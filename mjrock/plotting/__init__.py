@@ -4,6 +4,7 @@ from .accuracy import convergence, work_precision
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
 from .histories import comparison, energy, grid, rotation
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
+from .masonry import blocks
 from .pushing import moment_rotation, pushover
 from .style import STYLES, Drawing, panels, save, single
 
@@ -11,6 +12,7 @@ __all__ = [
     "MODES",
     "STYLES",
     "Drawing",
+    "blocks",
     "comparison",
     "convergence",
     "damping_curves",
