@@ -37,6 +37,7 @@ from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
+from .study.masonry import MasonryAnalysis
 from .study.matched import as_theory, matched_contacts
 from .study.pushover import pushover
 from .study.store import Store
@@ -63,6 +64,7 @@ __all__ = [
     "Ledger",
     "Load",
     "Masonry",
+    "MasonryAnalysis",
     "MasonryCase",
     "MasonryResponse",
     "Opening",
