@@ -1,4 +1,5 @@
-"""A randomised search for trouble: random walls, contacts, releases and effects, inside and well outside Table 1.
+"""A randomised search for trouble: random walls, contacts, releases and effects, inside and well outside Table 1; and
+masonry of many blocks.
 
 Every run has to stay finite, to make no energy, from peak to peak or in its ledger, and to stand or fall as its energy
 says. Ties and ground motions take and give energy of their own, so that the last promise is not asked there. Prints how
@@ -18,6 +19,7 @@ from tqdm import tqdm
 
 import cli
 import mjrock as mr
+import random_masonry
 from mjrock import AddedMass, GroundMotion, Load, Opening, Outcome, SideStop, Thrust, Tie
 from mjrock.problem.uplift import Uplift
 
@@ -253,11 +255,26 @@ def search(count: int, *, wide: bool, seed: int, effects: bool = False) -> list[
     return found
 
 
+def search_masonry(count: int, *, seed: int) -> list[tuple[random_masonry.Structure, str]]:
+    """Run random masonry and return what broke a promise."""
+    rng = np.random.default_rng(seed)
+    found = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        for _ in tqdm(range(count), desc="masonry", disable=None, leave=False):
+            structure = random_masonry.draw(rng)
+            complaint = random_masonry.broken_promise(structure)
+            if complaint:
+                found.append((structure, complaint))
+    return found
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Search and print."""
     options = cli.parser(__doc__, "trouble")
     options.add_argument("--count", type=int, default=5000, help="scenes, half of them well outside Table 1")
     options.add_argument("--effects", type=int, default=2000, help="scenes with effects, half of them extreme")
+    options.add_argument("--masonry", type=int, default=300, help="structures of many blocks, some seconds each")
     options.add_argument("--seed", type=int, default=1, help="seed of the draw")
     args = options.parse_args(argv)
     out = cli.folder(args.out)
@@ -271,6 +288,10 @@ def main(argv: Sequence[str] | None = None) -> None:
             lines.append(f"{where}: {count // 2} scenes, {len(found)} broken")
             lines += [f"  {complaint}\n    {scene}" for scene, complaint in found]
     lines.append(f"{sum(2 * (count // 2) for count in counts)} scenes, {failures} broken")
+    structures = min(3, args.masonry) if args.quick else args.masonry
+    fallen = search_masonry(structures, seed=args.seed)
+    lines.append(f"masonry: {structures} structures, {len(fallen)} broken")
+    lines += [f"  {complaint}\n    {structure}" for structure, complaint in fallen]
     cli.write(out / "trouble.txt", "\n".join(lines) + "\n")
     print("\n".join(lines))
 

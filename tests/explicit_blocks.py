@@ -20,20 +20,26 @@ def turned(x, z, theta):
     return x * c + z * s, z * c - x * s
 
 
+@jitable
+def shaken(accel, dt, t):
+    """Acceleration of the ground at a time, linear between samples, none after the last."""
+    place = t / dt
+    i = min(int(place), len(accel) - 2)
+    return accel[i] + (place - i) * (accel[i + 1] - accel[i]) if place < len(accel) - 1 else 0.0
+
+
 @compiled
 def _integrate(
-    mass, inertia, rest, body, at, face, base, normal, k, c, mu, accel, dt, h, every, q, v, slip, force, out
+    mass, inertia, rest, body, at, face, base, normal, k, c, mu, accel, dt, up, up_dt, h, every, q, v, slip, force, out
 ):
     steps, bodies = (len(out) - 1) * every, len(mass)
     for n in range(steps + 1):
         if n % every == 0:
             for j in range(3 * bodies):
                 out[n // every, j] = q[j]
-        place = n * h / dt
-        i = min(int(place), len(accel) - 2)
-        a_g = accel[i] + (place - i) * (accel[i + 1] - accel[i]) if place < len(accel) - 1 else 0.0
+        a_x, a_z = shaken(accel, dt, n * h), shaken(up, up_dt, n * h)
         for j in range(bodies):
-            force[3 * j], force[3 * j + 1], force[3 * j + 2] = -mass[j] * a_g, -mass[j] * GRAVITY, 0.0
+            force[3 * j], force[3 * j + 1], force[3 * j + 2] = -mass[j] * a_x, -mass[j] * (GRAVITY + a_z), 0.0
         for p in range(len(k)):
             a, b = body[p], face[p]
             rx, rz = turned(at[p, 0], at[p, 1], q[3 * a + 2])
@@ -67,7 +73,7 @@ def _integrate(
             q[j] += h * v[j]
 
 
-def explicit(masonry, pose, duration, motion, h=2e-6, every=500, velocity=None):
+def explicit(masonry, pose, duration, motion, h=2e-6, every=500, vertical=None):
     """Times and poses (n, bodies, 3) of masonry that starts at a pose, from its blocks and contact lines."""
     blocks, lines = masonry.blocks, masonry.lines
     free = list(masonry.free)
@@ -76,15 +82,15 @@ def explicit(masonry, pose, duration, motion, h=2e-6, every=500, velocity=None):
     face = np.array([number.get(i, -1) for i in lines.face.tolist()])
     at = lines.at - np.array([blocks[i].centroid for i in lines.body])
     base = lines.at - np.array([np.zeros(2) if blocks[i].fixed else blocks[i].centroid for i in lines.face])
-    accel, dt = (np.zeros(2), 1.0) if motion is None else (np.array(motion.accel), motion.dt)
+    shaking = [(np.zeros(2), 1.0) if one is None else (np.array(one.accel), one.dt) for one in (motion, vertical)]
     out = np.empty((round(duration / h) // every + 1, 3 * len(free)))
-    start = np.zeros(3 * len(free)) if velocity is None else np.ravel(velocity).astype(float)
     _integrate(
         np.array([blocks[i].mass for i in free]),
         np.array([blocks[i].inertia for i in free]),
         np.array([blocks[i].centroid for i in free]),
         body, at, face, base, np.array(lines.normal), np.array(lines.k),
         masonry.retardation[lines.joint] * lines.k, masonry.joint_friction[lines.joint],
-        accel, dt, h, every, np.ravel(pose).copy(), start, np.zeros(len(body)), np.zeros(3 * len(free)), out,
+        *shaking[0], *shaking[1], h, every, np.ravel(pose).copy(), np.zeros(3 * len(free)), np.zeros(len(body)),
+        np.zeros(3 * len(free)), out,
     )  # fmt: skip
     return h * every * np.arange(len(out)), out.reshape(len(out), -1, 3)

@@ -141,7 +141,8 @@ CALLS = {
         {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
     ),
     "MasonryCase": (
-        mr.MasonryCase, {"masonry": COLUMN, "duration": 1.0, "motion": None, "velocity": [[0.0, 0.0, 0.1]]},
+        mr.MasonryCase,
+        {"masonry": COLUMN, "duration": 1.0, "motion": None, "vertical": None, "velocity": [[0.0, 0.0, 0.1]]},
     ),
     "simulate, masonry": (
         mr.simulate,

@@ -29,7 +29,7 @@ def masonry_scene(case: MasonryCase) -> Scene:
     scene = standing_masonry(case.masonry)
     require_standing(case.masonry)
     velocity = np.zeros_like(scene.at_rest) if case.velocity is None else np.asarray(case.velocity)
-    return scene.released(scene.at_rest, velocity, case.duration, case.motion)
+    return scene.released(scene.at_rest, velocity, case.duration, case.motion, case.vertical)
 
 
 @lru_cache(maxsize=16)

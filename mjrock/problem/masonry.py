@@ -14,8 +14,8 @@ import numpy as np
 from .above import retardations
 from .block import Block
 from .builders import MOST_BLOCKS, bonded, stacked, voussoirs_of
-from .damping import law_named
 from .contacts import Law
+from .damping import law_named
 from .joints import Joint, find_joints, names_of
 from .lines import Lines, lines_of, lowest_frequency
 from .polygon import Polygon

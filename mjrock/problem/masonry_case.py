@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,8 @@ from .quantities import Array, require_array, require_kind, require_within
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
+COMPARED = ("masonry", "duration", "motion", "vertical")
+"""What two equal cases share, beside the velocity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +26,7 @@ class MasonryCase:
         duration: how long to follow the motion [s], 1e-6 to 1e6.
         motion: horizontal acceleration of the ground and of all fixed blocks, or None. A positive one pushes the blocks
             to the left. Responses are motions as seen from the ground.
+        vertical: the same, vertical. A positive one is upwards and presses the blocks on their joints.
         velocity: velocity of each block that is not fixed at the release: x, z and rotation [m/s, m/s, rad/s], shape
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
             turns to the right.
@@ -35,13 +38,14 @@ class MasonryCase:
     masonry: Masonry
     duration: float
     motion: GroundMotion | None = None
-    _: KW_ONLY
+    vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
         require_within("duration", self.duration, 1e-6, 1e6, "s")
-        require_kind("motion", self.motion, GroundMotion, type(None))
+        for name in ("motion", "vertical"):
+            require_kind(name, getattr(self, name), GroundMotion, type(None))
         if self.velocity is not None:
             velocity = require_array("velocity", self.velocity, (len(self.masonry.free), 3))
             for value in velocity[np.abs(velocity) > FASTEST].tolist():
@@ -52,10 +56,10 @@ class MasonryCase:
     def __eq__(self, other: object) -> bool:
         return (
             isinstance(other, MasonryCase)
-            and (self.masonry, self.duration, self.motion) == (other.masonry, other.duration, other.motion)
+            and all(getattr(self, name) == getattr(other, name) for name in COMPARED)
             and (self.velocity is None) == (other.velocity is None)
             and (self.velocity is None or np.array_equal(self.velocity, np.asarray(other.velocity)))
         )
 
     def __hash__(self) -> int:
-        return hash((self.masonry, self.duration, self.motion))
+        return hash((self.masonry, self.duration, self.motion, self.vertical))
