@@ -7,6 +7,7 @@ compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compli
 
 from ._version import __version__
 from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
+from .engine.masonry import masonry_mjcf, masonry_scene
 from .engine.model import SimulationError, wall_mjcf
 from .engine.scene import Scene
 from .engine.simulation import automatic_timestep, simulate, simulate_batch
@@ -89,6 +90,8 @@ __all__ = [
     "contact_parameters",
     "contact_stiffness",
     "ida",
+    "masonry_mjcf",
+    "masonry_scene",
     "matched_contacts",
     "overturning_intensity",
     "pushover",

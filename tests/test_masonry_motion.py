@@ -2,6 +2,7 @@
 
 import math
 
+import mujoco
 import numpy as np
 import pytest
 from explicit_blocks import explicit
@@ -9,7 +10,6 @@ from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
 from mjrock.engine.kinematics import gaps
-from mjrock.engine.masonry import masonry_scene
 
 PULSE = mr.GroundMotion.sine(2.0, 0.7)
 STRONG = mr.GroundMotion.sine(3.0, 0.9)
@@ -176,9 +176,22 @@ def test_a_run_is_continued():
         mr.simulate(mr.MasonryCase(masonry, 0.2), start=([[0, 0, 0]], [[0, 0, 0]]))
 
 
+def test_stock_mujoco_repeats_the_run_from_the_text():
+    case = mr.MasonryCase(mr.Masonry.arch(5.0, 0.75, 2.5, 6), 0.05, velocity=np.full((6, 3), 0.02))
+    answer = mr.simulate(case, timestep=1e-4)
+    model = mujoco.MjModel.from_xml_string(mr.masonry_mjcf(case, 1e-4))
+    assert model.body("voussoir_2").mass[0] == pytest.approx(case.masonry.blocks[3].mass)
+    assert model.geom("left_abutment|voussoir_0_1").id >= 0
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    for pose in answer.pose:
+        np.testing.assert_allclose(data.qpos, pose.ravel(), rtol=0, atol=1e-12)
+        mujoco.mj_step(model, data)
+
+
 def test_gaps_and_slips_are_what_the_answer_says():
     answer = follow(columns(2), 1.5, PULSE)
-    scene = masonry_scene(answer.case)
+    scene = mr.masonry_scene(answer.case)
     largest = gaps(scene.points, answer.pose.reshape(len(answer.t), -1)).max(axis=0)
     assert answer.opening[0] == pytest.approx(largest[:2].max(), rel=1e-3)
     assert answer.opening[1] == pytest.approx(max(0, largest[2:].max()), rel=1e-3, abs=1e-7)

@@ -1,4 +1,4 @@
-"""The scene of masonry: its free blocks as bodies, its contact lines as points and faces."""
+"""The scene of masonry: its free blocks as bodies, its contact lines as points and faces; and its model text."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 from ..problem.lines import Lines
 from ..problem.masonry import Masonry
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import Integers, require_kind
+from ..problem.quantities import Integers, require_kind, require_within
 from ..problem.statics import falling
 from ..result.masonry import named
+from .model import released_mjcf
 from .rest import UnsettledError
 from .scene import Scene
 from .tables import GROUND
@@ -30,6 +31,26 @@ def masonry_scene(case: MasonryCase) -> Scene:
     require_standing(case.masonry)
     velocity = np.zeros_like(scene.at_rest) if case.velocity is None else np.asarray(case.velocity)
     return scene.released(scene.at_rest, velocity, case.duration, case.motion, case.vertical)
+
+
+def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.25) -> str:
+    """The model of a case as MJCF text; the same arguments give the same bytes.
+
+    Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, timestep=timestep)` where the
+    ground does not move. Names: bodies and geoms as the blocks that are not fixed; contact points `a|b_0`, `a|b_1`, ...
+    of the joint between the blocks a and b; joints `a_x`, `a_z`, `a_theta`; keyframe `release`; camera `front`.
+
+    Args:
+        case: the masonry and its release.
+        timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
+        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `wall_mjcf`.
+
+    Raises:
+        ValueError: if the masonry does not stand, or for a value outside its range.
+    """
+    require_within("timestep", timestep, 1e-9, 1.0, "s")
+    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    return released_mjcf(masonry_scene(case), timestep, newmark_beta)
 
 
 @lru_cache(maxsize=16)
