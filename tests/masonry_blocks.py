@@ -16,7 +16,10 @@ GROUND = box(-5, 5, -1, 0, fixed=True, name="ground")
 
 def columns(blocks, k_n=5e8, **options):
     """A column of 0.6 x 4.2 m in equal blocks."""
-    return mr.Masonry.stack([mr.Block(0.3, 2.1 / blocks)] * blocks, k_n, **options)
+    if blocks <= 7:
+        return mr.Masonry.stack([mr.Block(0.3, 2.1 / blocks)] * blocks, k_n, **options)
+    flat = [box(-0.3, 0.3, 4.2 * i / blocks, 4.2 * (i + 1) / blocks) for i in range(blocks)]
+    return mr.Masonry([GROUND, *flat], k_n=k_n, **options)
 
 
 def tilted(masonry, angle):

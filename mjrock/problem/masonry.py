@@ -100,6 +100,8 @@ class Masonry:
     def stack(cls, blocks: Sequence[Block], k_n: OfJoint, *, ground: bool = True, **options: Any) -> Self:
         """Rectangular blocks one on the other, centred, from the lowest upwards.
 
+        A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
+
         Args:
             blocks: the blocks, whose insets are zero.
             k_n: stiffness of the joints [N/m3].
