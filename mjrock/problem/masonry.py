@@ -35,6 +35,11 @@ class Masonry:
     opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
     `points` and `k_n`, and a structure near its limit can depend on that.
 
+    Blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block does after
+    it has left its joints is therefore not followed: the answer names such blocks, and with steps that fit the motion
+    the run ends when two blocks of a joint are farther apart than a block is large, or when a block has turned by 90
+    degrees.
+
     Friction that holds is a strong dashpot in MuJoCo. A joint under a sustained force F along it creeps at about
     F / (3e8 m) [m/s], with m the reduced mass of its two blocks [kg]: an arch at rest by some 0.05 mm in a minute. What
     stands on one joint alone, as in a stack, is put back to where it stuck.
