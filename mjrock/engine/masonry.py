@@ -6,12 +6,14 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..problem.effects import AddedMass, Effect, Load, Thrust, Tie
 from ..problem.lines import Lines
 from ..problem.masonry import Masonry
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import Integers, require_kind, require_within
+from ..problem.quantities import GRAVITY, Array, Integers, require_kind, require_within
 from ..problem.statics import falling
 from ..result.masonry import named
+from .attached import attachments
 from .model import released_mjcf
 from .rest import UnsettledError
 from .scene import Scene
@@ -27,8 +29,8 @@ def masonry_scene(case: MasonryCase) -> Scene:
         ValueError: if the masonry does not stand. The message names the blocks that fall.
     """
     require_kind("case", case, MasonryCase)
-    scene = standing_masonry(case.masonry)
-    require_standing(case.masonry)
+    scene = standing_masonry(case.masonry, case.effects)
+    require_standing(case.masonry, case.effects)
     velocity = np.zeros_like(scene.at_rest) if case.velocity is None else np.asarray(case.velocity)
     return scene.released(scene.at_rest, velocity, case.duration, case.motion, case.vertical)
 
@@ -54,13 +56,16 @@ def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.
 
 
 @lru_cache(maxsize=16)
-def require_standing(masonry: Masonry) -> None:
-    """Find the masonry at rest under its weight, or raise ValueError with the names of the blocks that fall."""
-    falls = falling(masonry)
-    if falls:
+def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None:
+    """Find the masonry at rest under its weight, or raise ValueError with the names of the blocks that fall.
+
+    What only ties keep from falling is left to the search for equilibrium.
+    """
+    falls = falling(masonry, applied(masonry, effects))
+    if falls and not any(isinstance(one, Tie) for one in effects):
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight")
     try:
-        _ = standing_masonry(masonry).at_rest
+        _ = standing_masonry(masonry, effects).at_rest
     except UnsettledError as error:
         moved = np.hypot(*error.pose[:, :2].T)
         gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= 0.1 * moved.max()]
@@ -70,24 +75,54 @@ def require_standing(masonry: Masonry) -> None:
         ) from None
 
 
+def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
+    """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them, (free, 3)."""
+    case, total = MasonryCase(masonry, 1.0, effects=effects), np.zeros((len(masonry.free), 3))
+    for one in effects:
+        if not isinstance(one, Tie):
+            row = masonry.free.index(one.block)
+            x, z = np.array(case.place(one)) - masonry.blocks[one.block].centroid
+            across = one.force if isinstance(one, Thrust) else 0.0
+            down = one.force if isinstance(one, Load) else GRAVITY * one.mass if isinstance(one, AddedMass) else 0.0
+            total[row] += across, -down, across * z + down * x
+    return total
+
+
+def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
+    """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, (n,), (n, 2) and (n,)."""
+    case = MasonryCase(masonry, 1.0, effects=effects)
+    mass = np.array([block.mass for block in masonry.blocks])
+    inertia, centroids = np.array([block.inertia for block in masonry.blocks]), np.array(masonry.centroids)
+    for one in effects:
+        if isinstance(one, AddedMass) and one.mass > 0:
+            i = one.block
+            apart, total = np.array(case.place(one)) - centroids[i], mass[i] + one.mass
+            inertia[i] += mass[i] * one.mass / total * float(apart @ apart)
+            centroids[i] += one.mass / total * apart
+            mass[i] = total
+    return mass, centroids, inertia
+
+
 @lru_cache(maxsize=16)
-def standing_masonry(masonry: Masonry) -> Scene:
-    """The scene of masonry, which all cases of it share."""
+def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
+    """The scene of masonry, which all cases of it with the same effects share."""
     blocks, number = masonry.blocks, np.full(len(masonry.blocks), GROUND)
-    number[list(masonry.free)] = np.arange(len(masonry.free))
+    free = list(masonry.free)
+    number[free] = np.arange(len(free))
     lines = _sorted(masonry.lines, number)
-    bodies = [blocks[i] for i in masonry.free]
-    origin = np.where(number[:, None] == GROUND, 0.0, masonry.centroids)
+    mass, centroids, inertia = laden(masonry, effects)
+    origin = np.where(number[:, None] == GROUND, 0.0, centroids)
     middles = np.array([joint.middle for joint in masonry.joints])
+    case = MasonryCase(masonry, 1.0, effects=effects)
     return Scene(
-        names=tuple(masonry.names[i] for i in masonry.free),
-        mass=np.array([block.mass for block in bodies]),
-        inertia=np.array([block.inertia for block in bodies]),
-        rest=masonry.centroids[list(masonry.free)],
-        outlines=tuple(block.corners - block.centroid for block in bodies),
-        length=max(block.length for block in bodies),
+        names=tuple(masonry.names[i] for i in free),
+        mass=mass[free],
+        inertia=inertia[free],
+        rest=centroids[free],
+        outlines=tuple(blocks[i].corners - centroids[i] for i in free),
+        length=max(blocks[i].length for i in free),
         point_body=number[lines.body],
-        point=lines.at - masonry.centroids[lines.body],
+        point=lines.at - centroids[lines.body],
         face_body=number[lines.face],
         face=middles[lines.joint] - origin[lines.face],
         normal=lines.normal,
@@ -95,7 +130,8 @@ def standing_masonry(masonry: Masonry) -> Scene:
         c=masonry.retardation[lines.joint] * lines.k,
         friction=masonry.joint_friction[lines.joint],
         group=tuple(masonry.joints[j].name for j in lines.joint),
-        title=f"Masonry of {len(bodies)} blocks on {len(masonry.joints)} joints",
+        title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
+        **attachments(effects, lambda one: int(number[one.block]), lambda one: case.place(one)[0], centroids[free]),
     )
 
 

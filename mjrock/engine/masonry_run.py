@@ -31,7 +31,7 @@ from .masonry import masonry_scene
 from .mjcf import pair_rows
 from .model import SimulationError, engine_of
 from .pace import short_step
-from .run import ENERGY_GAIN, broken, sound_timestep
+from .run import ENERGY_GAIN, broken, plastic_of, sound_timestep
 from .scene import Scene
 from .stepping import fitted_steps, fixed_steps
 from .steps import StepError, Steps
@@ -53,7 +53,9 @@ class MasonryRun:
 
     def __init__(self, case: MasonryCase, scene: Scene, steps: Steps) -> None:
         self.case, self.scene, self.steps = case, scene, steps
-        self.energy = scene.energy(steps.pose, steps.velocity)
+        stored, taken = scene.accounts(steps.pose, steps.velocity)
+        self.energy = stored.sum(axis=1) - scene.rest_energies.sum()
+        self.plastic = plastic_of(scene, steps.t, taken, case.duration)
         self.opening, self.sliding, self.deepest, lost = joint_motion(case, scene, steps)
         sizes = np.array([case.masonry.blocks[i].size for i in case.masonry.free])
         drop = (scene.at_rest[:, 1] - steps.pose[:, 1::3]) / sizes
@@ -112,6 +114,7 @@ class MasonryRun:
             fallen=self.fallen,
             outcome=outcome,
             message=message,
+            plastic=self.plastic,
             ledger=ledger(scene, steps).at(t) if want_ledger else None,
             stats={
                 "steps": len(steps.t),

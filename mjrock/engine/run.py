@@ -29,6 +29,13 @@ def sound_timestep(frequency: float) -> float:
     return 2 * math.sqrt(ENERGY_GAIN) / frequency
 
 
+def plastic_of(scene: Scene, t: Array, taken: Array, duration: float) -> dict[str, Plastic]:
+    """What each tie has yielded when the duration [s] is over, from what it had taken [J] at times t, (n, ties)."""
+    ends = [float(np.interp(duration, t, own)) for own in taken.T]
+    each = zip(scene.tie_names, ends, scene.tie_strength.tolist(), strict=True)
+    return {name: Plastic(energy / strength, energy) for name, energy, strength in each}
+
+
 def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, float]:
     """The largest gain of energy from release to peak to peak to the end [J], and when it had happened [s].
 
@@ -57,11 +64,7 @@ class Run:
         self.slip = steps.pose[:, 0] - case.wall.pose(self.theta)[:, 0]
         stored, taken = scene.accounts(steps.pose, steps.velocity)
         self.energy = stored.sum(axis=1) - scene.rest_energies.sum()
-        ends = [float(np.interp(case.duration, t, own)) for own in taken.T]
-        self.plastic = {
-            name: Plastic(energy / strength, energy)
-            for name, energy, strength in zip(scene.tie_names, ends, scene.tie_strength.tolist(), strict=True)
-        }
+        self.plastic = plastic_of(scene, t, taken, case.duration)
         times, self.peaks, self.impacts = rocking_history(
             case, t, self.theta, self.omega, self.energy, uplift, released=released
         )

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.contacts import Contacts
-from ..problem.effects import AddedMass, Effect, Load, Thrust, Tie
+from ..problem.effects import AddedMass, Effect, Tie
 from ..problem.quantities import Array, require_kind
+from .attached import attachments
 from .scene import Scene
 from .tables import GROUND
 
@@ -128,42 +128,13 @@ def standing_wall(block: Block, contacts: Contacts, stop_top: float | None, effe
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
         title=_title(wall, stop_top),
         facts=facts,
-        **attachments(case, centroid),
+        **attachments(effects, lambda one: 0, lambda one: _place(one, wall), centroid[None]),
     )
 
 
-def attachments(case: Case, centroid: Array) -> dict[str, Any]:
-    """The ties, loads and thrusts of a case as arrays of a scene; nothing for a case without them.
-
-    Args:
-        case: the case.
-        centroid: from the middle of the base [m], shape (2,).
-    """
-    made: dict[str, Any] = {}
-    ties, pulls = case.each(Tie), case.pulls
-    if ties:
-        held = np.array([(pull.offset, pull.height) for pull in pulls])
-        made = {
-            "tie_names": tuple(f"tie_{i}" for i in range(len(ties))),
-            "tie_body": np.zeros(len(ties)),
-            "tie_point": held - centroid,
-            "anchor_body": np.full(len(ties), GROUND),
-            "anchor": held + [(-pull.length, pull.rise) for pull in pulls],
-            "tie_k": np.array([pull.stiffness for pull in pulls]),
-            "tie_length": np.array([pull.reach for pull in pulls]),
-            "tie_strength": np.array([pull.strength for pull in pulls]),
-        }
-    forces = [(f"load_{i}", (one.offset, one.height), (0.0, -one.force)) for i, one in enumerate(case.each(Load))]
-    forces += [(f"thrust_{i}", (0.0, one.height), (one.force, 0.0)) for i, one in enumerate(case.each(Thrust))]
-    if forces:
-        names, places, sizes = zip(*forces, strict=True)
-        made |= {
-            "force_names": names,
-            "force_body": np.zeros(len(forces)),
-            "force_point": np.array(places) - centroid,
-            "force": np.array(sizes),
-        }
-    return made
+def _place(effect: Effect, wall: Block) -> float:
+    """Where an effect acts, from the middle of the base outwards [m]: a tie holds the inner face."""
+    return -wall.b if isinstance(effect, Tie) else getattr(effect, "offset", 0.0)
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

@@ -12,14 +12,13 @@ from typing import TypeVar
 import numpy as np
 
 from .block import Block
-from .effects import AddedMass, Effect, Load, SideStop, Thrust, Tie
+from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
 from .motion import GroundMotion
 from .pulling import Pull, stored, taken, yielded
 from .quantities import ON_ITS_FACE, Array, Flags, require_flag, require_kind, require_within, shown
 from .restoring import Restoring, of_force
 
 Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass)
-KINDS = (Tie, Thrust, Load, AddedMass)
 
 
 @dataclass(frozen=True)

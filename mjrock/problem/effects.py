@@ -168,3 +168,5 @@ class SideStop:
 
 Effect = Tie | Thrust | Load | AddedMass
 """What `Case.effects` may hold."""
+KINDS = (Tie, Thrust, Load, AddedMass)
+"""The same, as classes."""

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .effects import KINDS, Effect, Load, Tie
 from .masonry import Masonry
 from .motion import GroundMotion
-from .quantities import Array, require_array, require_kind, require_within
+from .quantities import Array, require_array, require_kind, require_whole, require_within, shown
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-COMPARED = ("masonry", "duration", "motion", "vertical")
+COMPARED = ("masonry", "duration", "motion", "vertical", "effects")
 """What two equal cases share, beside the velocity."""
 
 
@@ -27,12 +29,15 @@ class MasonryCase:
         motion: horizontal acceleration of the ground and of all fixed blocks, or None. A positive one pushes the blocks
             to the left. Responses are motions as seen from the ground.
         vertical: the same, vertical. A positive one is upwards and presses the blocks on their joints.
+        effects: ties, loads, thrusts and added masses. Each says which `block` it belongs to, by its number in
+            `masonry.blocks`. Heights are z; offsets are measured from the centroid of the block. A tie holds the left
+            end of its block at its height.
         velocity: velocity of each block that is not fixed at the release: x, z and rotation [m/s, m/s, rad/s], shape
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
             turns to the right.
 
     Raises:
-        ValueError: for a value outside its range, or velocities of another shape.
+        ValueError: for a value outside its range, velocities of another shape, or an effect that is not on its block.
     """
 
     masonry: Masonry
@@ -40,6 +45,7 @@ class MasonryCase:
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
+    effects: tuple[Effect, ...] = ()
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
@@ -52,6 +58,33 @@ class MasonryCase:
                 require_within("velocity", value, -FASTEST, FASTEST, "m/s or rad/s")
             velocity.setflags(write=False)
             object.__setattr__(self, "velocity", velocity)
+        self._require_effects()
+
+    def _require_effects(self) -> None:
+        """Check that each effect is on a block that is not fixed, and keep them as a tuple."""
+        given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
+        if not isinstance(given, Sequence) or isinstance(given, str):
+            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load or AddedMass")
+        object.__setattr__(self, "effects", tuple(given))
+        for i, one in enumerate(self.effects):
+            require_kind(f"effects[{i}]", one, *KINDS)
+            require_whole(f"effects[{i}], block", one.block, 0, len(self.masonry.blocks) - 1)
+            block = self.masonry.blocks[one.block]
+            name = f"effects[{i}] on {self.masonry.names[one.block]}"
+            if block.fixed:
+                raise ValueError(f"{name}: this block is fixed; the valid ones are {list(self.masonry.free)}")
+            low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
+            require_within(f"{name}, height", one.height, float(low[1]), float(high[1]), "m")
+            if isinstance(one, Load):
+                middle = float(block.centroid[0])
+                require_within(f"{name}, offset", one.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
+
+    def place(self, effect: Effect) -> tuple[float, float]:
+        """Where an effect acts, from the origin of the world [m]."""
+        block = self.masonry.blocks[effect.block]
+        if isinstance(effect, Tie):
+            return block.left_at(effect.height), effect.height
+        return float(block.centroid[0]) + getattr(effect, "offset", 0.0), effect.height
 
     def __eq__(self, other: object) -> bool:
         return (
@@ -62,4 +95,4 @@ class MasonryCase:
         )
 
     def __hash__(self) -> int:
-        return hash((self.masonry, self.duration, self.motion, self.vertical))
+        return hash((self.masonry, self.duration, self.motion, self.vertical, self.effects))

@@ -110,6 +110,16 @@ class Polygon:
         """Moment of inertia about the centroid [kg m2]."""
         return self.density * self.length * self._moments[3]
 
+    def left_at(self, z: float) -> float:
+        """The left end of the block at a height z [m], x [m]; at the end of its range where z lies beyond that."""
+        found = []
+        for (x0, z0), (x1, z1) in zip(self.corners, np.roll(self.corners, -1, axis=0), strict=True):
+            low, high = min(z0, z1), max(z0, z1)
+            if low - 1e-9 <= z <= high + 1e-9:
+                share = 0.5 if z1 == z0 else min(max((z - z0) / (z1 - z0), 0.0), 1.0)
+                found.append(min(x0, x1) if z1 == z0 else x0 + share * (x1 - x0))
+        return float(min(found, default=self.corners[:, 0].min()))
+
     @property
     def size(self) -> float:
         """Largest distance of a vertex from the centroid [m]."""

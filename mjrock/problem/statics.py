@@ -16,19 +16,24 @@ MOVES = 1e-6
 """Velocity in the mechanism of collapse from which a block counts as moving, over the largest [-]."""
 
 
-def falling(masonry: Masonry) -> tuple[str, ...]:
+def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
     """Names of the blocks that fall if the blocks are rigid; none where the joints can carry the weight.
 
     A linear programme looks for forces at the contact lines, pressing and within the cone of friction, that leave the
     least of the weight unbalanced. Where some is left, the multipliers of the equations of equilibrium are the
     velocities of a mechanism, and the blocks that move in it fall. Limit analysis takes friction as associated. Where
     the joints slide, it can find equilibrium where Coulomb friction has none.
+
+    Args:
+        masonry: the masonry.
+        applied: further forces on each free block and their moment about its centroid, positive where it turns the top
+            to the right [N, N, N m], shape (free, 3).
     """
     lines, free = masonry.lines, [masonry.blocks[i] for i in masonry.free]
     across = np.column_stack([lines.normal[:, 1], -lines.normal[:, 0]])
     mu = masonry.joint_friction[lines.joint][:, None]
     pressing, rubbing = rates(masonry.blocks, lines, lines.normal), rates(masonry.blocks, lines, across)
-    weight = np.array([(0.0, -GRAVITY * block.mass, 0.0) for block in free]).ravel()
+    weight = (np.array([(0.0, -GRAVITY * block.mass, 0.0) for block in free]) + applied).ravel()
     total = float(np.abs(weight).sum())
     sizes = np.array([(1.0, 1.0, block.size) for block in free]).ravel()
     # the edges of the cone of each line carry its force; what is missing pushes either way

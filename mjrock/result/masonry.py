@@ -13,7 +13,7 @@ from ..problem.masonry import Masonry
 from ..problem.masonry_case import MasonryCase
 from ..problem.quantities import Array, Flags
 from .ledger import Ledger
-from .response import Outcome, State
+from .response import Outcome, Plastic, State
 
 LOST = 0.7
 """Opening of a joint, over its width, beyond which it holds no longer [-]: the blocks have turned by 45 degrees."""
@@ -45,6 +45,7 @@ class MasonryResponse:
         ledger: every part of the energy, with the dashpots of each joint, or None where none was asked for.
         stats: what the run took, as in `Response`, and the deepest penetration of a line, `deepest` [m].
         end: pose and velocity at the end, shape (bodies, 3) each, to continue from with `simulate(..., start=...)`.
+        plastic: what ties have yielded, by tie.
     """
 
     case: MasonryCase
@@ -61,6 +62,7 @@ class MasonryResponse:
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
     end: State | None = None
+    plastic: Mapping[str, Plastic] = field(default_factory=dict)
 
     @property
     def theta(self) -> Array:

@@ -1,0 +1,76 @@
+"""Ties, loads, thrusts and added masses on the blocks of masonry."""
+
+import math
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+WALL = mr.Block.from_size(0.6, 4.2)
+HALF = mr.Block.from_size(0.6, 2.1)
+PULSE = mr.GroundMotion.sine(2.5, 0.7)
+EFFECTS = {
+    "load": lambda block: mr.Load(10e3, 4.2, 0.1, block=block),
+    "thrust": lambda block: mr.Thrust(4.0, 1000.0, block=block),
+    "mass": lambda block: mr.AddedMass(800.0, 4.0, 0.15, block=block),
+    "tie": lambda block: mr.Tie(3.0, 1e6, 0.01, 3e3, block=block),
+}
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_one_block_with_an_effect_is_the_wall_with_it(name):
+    """The scene of a wall without a side stop and that of masonry of one block, with the friction of the wall."""
+    masonry = mr.Masonry.stack([WALL], k_n=5e8, xi=0.05, friction=1.0)
+    contacts = mr.Contacts.from_damping(WALL, k_base=5e8, xi_base=0.05, friction=1.0)
+    effect = EFFECTS[name]
+    stacked = mr.simulate(mr.MasonryCase(masonry, 1.5, motion=PULSE, effects=effect(masonry.free[0])))
+    alone = mr.simulate(mr.Case(WALL, 0.0, 1.5, side_stop=False, motion=PULSE, effects=effect(0)), contacts)
+    np.testing.assert_allclose(stacked.theta[:, 0], alone.theta, atol=2e-6)
+    assert np.abs(alone.theta).max() > 0.01 * WALL.alpha
+    assert stacked.plastic == {key: pytest.approx(value, rel=1e-4) for key, value in alone.plastic.items()}
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_an_effect_on_the_upper_of_two_blocks(name):
+    """The ledger closes, and the effect is felt."""
+    masonry = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05, friction=0.8)
+    upper = masonry.free[1]
+    run = mr.simulate(mr.MasonryCase(masonry, 1.2, motion=PULSE, effects=EFFECTS[name](upper)), ledger=True)
+    bare = mr.simulate(mr.MasonryCase(masonry, 1.2, motion=PULSE))
+    turned_over = run.energy[0] + np.abs(run.ledger.ground).max() + run.ledger.friction.max()
+    assert np.abs(run.ledger.residual).max() < 5e-3 * turned_over
+    assert np.abs(run.theta - bare.theta).max() > 1e-3
+
+
+def test_a_thrust_that_overturns_the_upper_block_names_it():
+    masonry = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)
+    upper = masonry.free[1]
+    most = HALF.weight * 0.3 / 1.05  # at the centroid of the upper block, about its own toe
+    mr.simulate(mr.MasonryCase(masonry, 0.01, effects=mr.Thrust(3.15, 0.4 * most, block=upper)))
+    with pytest.raises(ValueError, match=f"the masonry cannot stand: .*{masonry.names[upper]} would fall"):
+        mr.simulate(mr.MasonryCase(masonry, 0.01, effects=mr.Thrust(3.15, 1.05 * most, block=upper)))
+
+
+def test_left_end_of_a_block():
+    trapezium = mr.Polygon([(0, 0), (4, 0), (3, 2), (1, 2)])
+    assert [trapezium.left_at(z) for z in (0.0, 1.0, 2.0, 9.0)] == [0.0, 0.5, 1.0, 0.0]
+
+
+MASONRY = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)
+
+
+@pytest.mark.parametrize(
+    ("effect", "complaint"),
+    [
+        (mr.Tie(3.0, 1e6, block=7), r"effects\[0\], block = 7 is outside the valid range 0 to 2"),
+        (mr.Tie(0.0, 1e6, block=0), r"effects\[0\] on .*: this block is fixed; the valid ones are \[1, 2\]"),
+        (mr.Tie(3.0, 1e6, block=1), r"effects\[0\] on block_0, height = 3 m is outside the valid range"),
+        (mr.Load(1e3, 3.0, 0.4, block=2), r"effects\[0\] on block_1, offset = 0.4 m is outside .* -0.3 to 0.3 m"),
+        (3, r"effects = 3 of type int is no sequence"),
+        ([math.nan], r"effects\[0\] = nan of type float is not a Tie"),
+    ],
+)
+def test_effects_that_are_not_on_their_block(effect, complaint):
+    with pytest.raises((ValueError, TypeError), match=complaint):
+        mr.MasonryCase(MASONRY, 1.0, effects=effect)
