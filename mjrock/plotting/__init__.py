@@ -1,8 +1,9 @@
 """Pictures: functions that draw on an Axes and return it. The only package that imports matplotlib."""
 
 from .accuracy import convergence, work_precision
+from .animation import animate, animate_bodies
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
-from .histories import comparison, energy, grid, rotation
+from .histories import acceleration, comparison, energy, grid, history, rotation
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
 from .pushing import moment_rotation, pushover
@@ -13,6 +14,9 @@ __all__ = [
     "STYLES",
     "Drawing",
     "blocks",
+    "acceleration",
+    "animate",
+    "animate_bodies",
     "comparison",
     "convergence",
     "damping_curves",
@@ -20,6 +24,7 @@ __all__ = [
     "energy",
     "fragility",
     "grid",
+    "history",
     "incremental",
     "mode_legend",
     "moment_rotation",

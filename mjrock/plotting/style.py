@@ -27,8 +27,18 @@ def style_of(response: Response) -> dict[str, Any]:
     return STYLES.get(response.solver, {"label": response.solver})
 
 
-def save(figure: Figure, path: Path) -> Path:
-    """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes)."""
+def save(figure: Figure, path: str | Path) -> Path:
+    """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes).
+
+    Args:
+        figure: the figure.
+        path: where to, a path or a plain name. Without a suffix it is a PNG.
+
+    Returns:
+        The path that was written.
+    """
+    path = Path(path)
+    path = path if path.suffix else path.with_suffix(".png")
     figure.savefig(path, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
     return path
 

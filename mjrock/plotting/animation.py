@@ -1,0 +1,226 @@
+"""Pictures that move: a wall or blocks in section, true to scale, beside the history of the rotation."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+from tqdm import tqdm
+
+from ..problem.case import Case
+from ..problem.quantities import Array, require_kind, require_within
+from ..result.response import Response
+from .bodies import Bodies
+from .histories import acceleration, rotation
+from .section import Update, blocks, frame_view, surroundings
+
+ENDINGS = (".gif", ".mp4", ".html")
+"""Endings of the files that are written."""
+MOST_FRAMES = 20_000
+"""Most frames of one picture."""
+HUNDREDTHS = 100
+"""A GIF counts the time of a frame in hundredths of a second, and browsers slow down below two of them [1/s]."""
+
+JUST = 1 - 1e-9
+"""The writers cut the milliseconds of a frame off to a whole number, which rounding must not make one less [-]."""
+
+
+def animate(
+    response: Response,
+    path: str | Path,
+    *,
+    speed: float = 1.0,
+    fps: float = 25.0,
+    magnify: float = 1.0,
+    title: str = "",
+    dpi: float = 100.0,
+) -> Path:
+    """Write the motion of a response as a moving picture.
+
+    It shows the wall with its base, pivots, side stop, ties, openings, loads, thrusts and masses, and beside it the
+    rotation over time and the motion of the ground where there is one. Of masonry it shows the blocks.
+
+    Args:
+        response: of any solver.
+        path: where to: a .gif, an .mp4 (needs the program ffmpeg), or an .html that needs no other file.
+        speed: time of the motion that passes in a second of the picture [-], 0.001 to 1000; 1 is real time.
+        fps: frames a second [1/s], 1 to 120. In a GIF a frame lasts a whole number of hundredths of a second, at least
+            two; the motion keeps its speed.
+        magnify: factor on all displacements [-], 0.01 to 10000; 1 is true to scale. The picture says it.
+        title: what stands above.
+        dpi: resolution [1/inch], 20 to 600; the picture is 8 inches wide.
+
+    Returns:
+        The path that was written.
+
+    Raises:
+        ValueError: for another ending, a value outside its range, or more than 20,000 frames.
+        RuntimeError: for an .mp4 where there is no ffmpeg.
+    """
+    bodies = Bodies.of(response, magnify)
+    case = response.case
+    drawn: list[Callable[[Axes], object]] = []
+    if isinstance(case, Case):
+        if case.shaken:
+            drawn.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
+        drawn.append(lambda ax: rotation(ax, [response]))
+        return _film(bodies, path, drawn, case, speed=speed, fps=fps, title=title, dpi=dpi)
+    return _film(bodies, path, drawn, None, speed=speed, fps=fps, title=title, dpi=dpi)
+
+
+def animate_bodies(
+    t: ArrayLike,
+    outlines: Sequence[ArrayLike],
+    rests: ArrayLike,
+    poses: ArrayLike,
+    path: str | Path,
+    *,
+    fixed: Sequence[ArrayLike] = (),
+    speed: float = 1.0,
+    fps: float = 25.0,
+    magnify: float = 1.0,
+    title: str = "",
+    dpi: float = 100.0,
+) -> Path:
+    """Write the motion of any rigid bodies in their plane as a moving picture.
+
+    Args:
+        t, outlines, rests, poses, fixed: the bodies and their motion, as in `mjrock.plotting.bodies.Bodies`.
+        path, speed, fps, magnify, title, dpi: as in `animate`.
+
+    Returns, Raises: as `animate`.
+    """
+    given = [tuple(np.asarray(one, dtype=float) for one in several) for several in (outlines, fixed)]
+    arrays = [np.asarray(one, dtype=float) for one in (t, rests, poses)]
+    bodies = Bodies(arrays[0], given[0], arrays[1], arrays[2], magnify, given[1])
+    return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
+
+
+def _film(
+    bodies: Bodies,
+    path: str | Path,
+    histories: Sequence[Callable[[Axes], object]],
+    case: Case | None,
+    *,
+    speed: float,
+    fps: float,
+    title: str,
+    dpi: float,
+) -> Path:
+    """Check, draw frame by frame, and write the file whole or not at all."""
+    path = Path(path)
+    writer, interval = writer_for(path, require_within("fps", fps, 1.0, 120.0, "1/s"))
+    times = frame_times(bodies.t, require_within("speed", speed, 1e-3, 1e3) * interval)
+    require_within("dpi", dpi, 20.0, 600.0)
+    require_kind("title", title, str)
+    figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title)
+    partial = path.with_name(f"{path.stem}.{os.getpid()}.partial{path.suffix}")
+    try:
+        with writer.saving(figure, str(partial), dpi):
+            for frame in tqdm(range(len(times)), desc=path.name, unit="frame", delay=2, disable=None, leave=False):
+                update(frame)
+                writer.grab_frame()
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
+    """What writes a file of this ending, and how long it shows a frame [s]."""
+    match path.suffix.lower():
+        case ".gif":
+            interval = max(2, round(HUNDREDTHS / fps)) / HUNDREDTHS
+            return PillowWriter(fps=JUST / interval), interval  # type: ignore[arg-type]
+        case ".mp4":
+            if not FFMpegWriter.isAvailable():
+                raise RuntimeError(
+                    f"{path.name}: an .mp4 needs the program ffmpeg, which is not on the PATH; install it, or write a "
+                    ".gif or an .html"
+                )
+            return FFMpegWriter(fps=fps, codec="h264"), 1 / fps  # type: ignore[arg-type]
+        case ".html":
+            interval = int(1000 / fps) / 1000  # a browser counts milliseconds
+            options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
+            return HTMLWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
+    raise ValueError(f"path = {path.name!r} ends in none of {', '.join(ENDINGS)}")
+
+
+def frame_times(t: Array, step: float) -> Array:
+    """Times of the frames [s], `step` apart from the first sample to the last.
+
+    Raises:
+        ValueError: for more than 20,000 frames.
+    """
+    count = int((t[-1] - t[0]) / step * (1 + 1e-12)) + 1
+    if count > MOST_FRAMES:
+        raise ValueError(f"the picture would have {count} frames; the valid range is 1 to {MOST_FRAMES}; raise speed")
+    return np.asarray(t[0] + step * np.arange(count))
+
+
+def scene(
+    bodies: Bodies,
+    histories: Sequence[Callable[[Axes], object]],
+    case: Case | None,
+    *,
+    speed: float = 1.0,
+    title: str = "",
+) -> tuple[Figure, Update]:
+    """The picture, and what moves it to a frame.
+
+    Args:
+        bodies: at the times of the frames.
+        histories: draw what stands beside the bodies, each on an Axes of its own, over the time.
+        case: whose surroundings are drawn, or None.
+        speed, title: as in `animate`.
+    """
+    figure = Figure(figsize=(8.0, 4.5), layout="constrained")
+    halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.5)) if histories else None
+    ax: Axes = figure.subplots() if halves is None else halves[0].subplots()
+    updates = [blocks(ax, bodies)]
+    if case is None:
+        frame_view(ax, bodies)
+    else:
+        updates.append(surroundings(ax, case, bodies))
+    scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
+    rate = "real time" if speed == 1 else f"{speed:g} x real time"
+    clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
+    if halves is not None:
+        axes = halves[1].subplots(len(histories), 1, sharex=True, squeeze=False)[:, 0]
+        for one, draw in zip(axes, histories, strict=True):
+            draw(one)
+            one.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
+            updates.append(_marker(one, bodies.t))
+            one.label_outer()
+    figure.suptitle(title, fontsize=10)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
+
+    def update(frame: int) -> None:
+        clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")
+        for one in updates:
+            one(frame)
+
+    update(0)
+    return figure, update
+
+
+def _marker(ax: Axes, times: Array) -> Update:
+    """A line at the time of the frame, and a dot on the curve that was drawn first."""
+    curve = ax.get_lines()[0]
+    values = np.interp(times, np.asarray(curve.get_xdata(), dtype=float), np.asarray(curve.get_ydata(), dtype=float))
+    (line,) = ax.plot([], [], color="0.5", linewidth=0.8, transform=ax.get_xaxis_transform(), zorder=4)
+    (dot,) = ax.plot([], [], marker="o", markersize=6, color="#b5462f", zorder=5)
+
+    def update(frame: int) -> None:
+        line.set_data([times[frame]] * 2, [0.0, 1.0])
+        dot.set_data([times[frame]], [values[frame]])
+
+    return update

@@ -1,0 +1,105 @@
+"""Rigid bodies in motion, as a picture needs them: outlines, where they rest, and how they move."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..problem.case import Case
+from ..problem.quantities import Array, require_array, require_kind, require_within
+from ..result.response import Response
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Rigid bodies in their plane, and their motion.
+
+    Args:
+        t: times [s], shape (n,), increasing.
+        outlines: corners of each body about its centroid, at rest [m], one array of shape (corners, 2) each.
+        rests: centroid of each body at rest, x and z [m], shape (bodies, 2).
+        poses: displacement x, z of each centroid from rest [m] and rotation [rad], shape (n, bodies, 3). A positive
+            rotation turns the top of a body to the right, towards positive x.
+        magnify: factor on the displacement of every point [-], 0.01 to 10000; 1 is true to scale.
+        fixed: outlines of bodies that do not move, in place [m].
+
+    Raises:
+        TypeError, ValueError: for arrays that do not fit together, or a factor outside its range.
+    """
+
+    t: Array
+    outlines: tuple[Array, ...]
+    rests: Array
+    poses: Array
+    magnify: float = 1.0
+    fixed: tuple[Array, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_within("magnify", self.magnify, 0.01, 1e4)
+        times = np.asarray(self.t, dtype=float)
+        if times.ndim != 1 or len(times) < 1 or not (np.diff(times) >= 0).all():
+            raise ValueError(f"t has the shape {times.shape}; one row of increasing times [s] is needed")
+        count = len(self.outlines)
+        for name in ("outlines", "fixed"):
+            given: Sequence[ArrayLike] = getattr(self, name)
+            made = tuple(
+                require_array(f"{name}[{i}]", one, (len(np.atleast_1d(one)), 2)) for i, one in enumerate(given)
+            )
+            object.__setattr__(self, name, made)
+        object.__setattr__(self, "t", times)
+        object.__setattr__(self, "rests", require_array("rests", self.rests, (count, 2)))
+        object.__setattr__(self, "poses", require_array("poses", self.poses, (len(times), count, 3)))
+
+    @classmethod
+    def of(cls, response: Response, magnify: float = 1.0) -> Bodies:
+        """The bodies of a response: the wall, or the blocks of masonry that are not fixed."""
+        require_kind("response", response, Response)
+        case: Any = response.case
+        if isinstance(case, Case):
+            wall = case.wall
+            rests = np.array([[wall.centroid_offset, wall.centroid_height]])
+            return cls(response.t, (wall.outline,), rests, response.pose, magnify)
+        blocks = case.masonry.blocks
+        free = [block for block in blocks if not block.fixed]
+        return cls(
+            response.t,
+            tuple(block.corners - block.centroid for block in free),
+            np.array([block.centroid for block in free]),
+            response.pose,
+            magnify,
+            tuple(block.corners for block in blocks if block.fixed),
+        )
+
+    def at(self, times: Array) -> Bodies:
+        """The same bodies at other times, their poses interpolated linearly."""
+        columns = self.poses.reshape(len(self.t), -1).T
+        poses = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1)
+        return replace(self, t=times, poses=poses.reshape(len(times), -1, 3))
+
+    def placed(self, frame: int, body: int, points: Array) -> Array:
+        """Where points of a body are drawn at a frame [m], shape (n, 2).
+
+        The displacement of each point from rest is drawn times `magnify`. A point that does not move, such as the toe
+        that a wall turns about, then stays where it is; what is magnified is slightly distorted.
+
+        Args:
+            frame: which of the times.
+            body: which of the bodies.
+            points: about the centroid of the body at rest [m], shape (n, 2).
+        """
+        x, z, theta = self.poses[frame, body]
+        sine, cosine = np.sin(theta), np.cos(theta)
+        turned = points @ np.array([[cosine, -sine], [sine, cosine]]) + (x, z)
+        shown: Array = self.rests[body] + points + self.magnify * (turned - points)
+        return shown
+
+    def extent(self) -> tuple[Array, Array]:
+        """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each."""
+        some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int))
+        corners = [self.placed(i, j, outline) for i in some for j, outline in enumerate(self.outlines)]
+        points = np.concatenate([*corners, *self.fixed])
+        return points.min(axis=0), points.max(axis=0)

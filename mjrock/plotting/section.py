@@ -1,0 +1,167 @@
+"""The section of a wall and of all that it meets: base, side stop, toes, ties, openings, loads, thrusts and masses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
+
+from ..problem.case import Case
+from ..problem.effects import AddedMass, Load, Thrust, Tie
+from ..problem.quantities import Array
+from .bodies import Bodies
+
+STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
+"""Colours of masonry, of what does not move, of ties, and of forces."""
+ARROW = 0.16
+"""Length of the arrow of a force, over the height of the wall [-]."""
+FARTHEST = 0.5
+"""Distance behind the wall up to which an anchor is shown, over the height of the wall [-]."""
+
+Update = Callable[[int], None]
+"""Moves what is drawn to a frame."""
+
+
+def blocks(ax: Axes, bodies: Bodies) -> Update:
+    """Draw the outlines of bodies true to scale."""
+    for outline in bodies.fixed:
+        ax.add_patch(Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8))
+    patches = []
+    for j, outline in enumerate(bodies.outlines):
+        patch = Polygon(bodies.placed(0, j, outline), facecolor=STONE, edgecolor="0.15", linewidth=1.2, zorder=2)
+        ax.add_patch(patch)
+        patches.append(patch)
+    ax.set_aspect("equal")
+    ax.set_xlabel("$x$ [m]")
+    ax.set_ylabel("$z$ [m]")
+
+    def update(frame: int) -> None:
+        for j, (patch, outline) in enumerate(zip(patches, bodies.outlines, strict=True)):
+            patch.set_xy(bodies.placed(frame, j, outline))
+
+    return update
+
+
+def frame_view(ax: Axes, bodies: Bodies, room: float = 0.06) -> None:
+    """Set limits that every frame fits into, with `room` around them as a share of the larger side."""
+    low, high = bodies.extent()
+    margin = room * float((high - low).max())
+    ax.set_xlim(low[0] - margin, high[0] + margin)
+    ax.set_ylim(low[1] - margin, high[1] + margin)
+
+
+def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
+    """Draw what a wall meets and carries. The limits of the axes are set for all frames."""
+    wall, height = case.block, 2 * case.block.h
+    ties, forces = case.each(Tie), case.each(Load) + case.each(Thrust)
+    low, high = bodies.extent()
+    behind = max([0.2 * height, *(min(1.03 * tie.length, FARTHEST * height) for tie in ties)])
+    reach = (1.5 * ARROW if case.each(Thrust) else 0.08) * height
+    left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
+    ax.set_xlim(left, right)
+    ax.set_ylim(min(-0.07 * height, low[1]), max(high[1], height) + (1.35 * ARROW if forces else 0.05) * height)
+    ax.add_patch(Rectangle((left, -height), right - left, height, facecolor=GROUND, edgecolor="none", zorder=0.5))
+    ax.plot([left, right], [0, 0], color="0.15", linewidth=1.0, zorder=1)
+    if case.stop_top is not None:
+        stop = Rectangle((-wall.b - 0.09 * height, 0), 0.09 * height, case.stop_top)
+        stop.set(facecolor=GROUND, edgecolor="0.4", hatch="////", linewidth=0.8, zorder=1)
+        ax.add_patch(stop)
+    toes = (1.0,) if case.one_sided else (1.0, -1.0)
+    toe_x = [side * wall.half_base for side in toes]
+    ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
+    updates = [_openings(ax, case, bodies), *(_tie(ax, case, tie, bodies) for tie in ties)]
+    updates += [_force(ax, case, one, bodies) for one in forces]
+    updates += [_mass(ax, case, one, bodies) for one in case.wall.masses]
+
+    def update(frame: int) -> None:
+        for one in updates:
+            one(frame)
+
+    return update
+
+
+def _local(case: Case, x: float, z: float) -> Array:
+    """A point given from the middle of the base, about the centroid [m], shape (1, 2)."""
+    return np.array([[x - case.wall.centroid_offset, z - case.wall.centroid_height]])
+
+
+def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
+    """Sill and head of each opening as dashed lines through the thickness."""
+    wall = case.block
+    profile = wall.profile or ((0.0, 2 * wall.b), (2 * wall.h, 2 * wall.b))
+    heights = sorted({z for one in wall.openings for z in (one.sill, one.head) if z > 0})
+    segments, lines = [], []
+    for z in heights:
+        outer = float(np.interp(z, *np.transpose(profile))) - wall.b
+        segments.append(np.concatenate([_local(case, -wall.b, z), _local(case, outer, z)]))
+        lines += ax.plot([], [], color="0.35", linewidth=0.9, linestyle="--", zorder=3)
+
+    def update(frame: int) -> None:
+        for line, ends in zip(lines, segments, strict=True):
+            line.set_data(*bodies.placed(frame, 0, ends).T)
+
+    return update
+
+
+def _tie(ax: Axes, case: Case, tie: Tie, bodies: Bodies) -> Update:
+    """A tie from the inner face to its anchor: solid where it pulls, dotted where it is slack."""
+    held, anchor = _local(case, -case.block.b, tie.height), (-case.block.b - tie.length, tie.height + tie.rise)
+    pulls = pulling(case, tie, bodies)
+    (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4)
+    ax.plot(*anchor, marker="s", markersize=6, color=STEEL, zorder=4)
+    shown = anchor[0] > ax.get_xlim()[0]
+    where = f"anchor {tie.length:g} m behind" if not shown else ""
+    ax.text(ax.get_xlim()[0], anchor[1], where, fontsize=7, color=STEEL, va="bottom", clip_on=True)
+
+    def update(frame: int) -> None:
+        point = bodies.placed(frame, 0, held)[0]
+        line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
+        line.set_linestyle("-" if pulls[frame] else ":")
+
+    return update
+
+
+def pulling(case: Case, tie: Tie, bodies: Bodies) -> Array:
+    """Whether a tie pulls at each frame, shape (n,): it is longer than when it was slack or last yielded."""
+    held = _local(case, -case.block.b, tie.height)[0]
+    x, z, theta = bodies.poses[:, 0].T
+    right = case.wall.centroid_offset + x + held[0] * np.cos(theta) + held[1] * np.sin(theta) + case.block.b
+    up = case.wall.centroid_height + z - held[0] * np.sin(theta) + held[1] * np.cos(theta) - tie.height
+    elongation = np.hypot(tie.length + right, up - tie.rise) - tie.reach
+    yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+    return np.asarray(elongation > yielded)
+
+
+def _force(ax: Axes, case: Case, one: Load | Thrust, bodies: Bodies) -> Update:
+    """A load as an arrow downwards onto its point, a thrust as one from its point along the force."""
+    length, loads = 2 * ARROW * case.block.h, isinstance(one, Load)
+    point = _local(case, one.offset if isinstance(one, Load) else 0.0, one.height)
+    along = np.array([0.0, -length]) if loads else np.array([np.sign(one.force) * length, 0.0])
+    arrow = FancyArrowPatch((0, 0), (1, 0), arrowstyle="-|>", mutation_scale=12, color=FORCE, linewidth=1.6, zorder=6)
+    ax.add_patch(arrow)
+    place = "center" if loads else "right"
+    text = ax.text(0, 0, f"{one.force / 1e3:g} kN", fontsize=7, color=FORCE, ha=place, va="bottom", zorder=6)
+
+    def update(frame: int) -> None:
+        at = bodies.placed(frame, 0, point)[0]
+        tail, tip = (at - along, at) if loads else (at, at + along)
+        arrow.set_positions(tuple(tail), tuple(tip))
+        text.set_position(tuple(tail if loads else np.maximum(tail, tip)))
+
+    return update
+
+
+def _mass(ax: Axes, case: Case, one: AddedMass, bodies: Bodies) -> Update:
+    """An added mass as a dot with its size."""
+    point = _local(case, one.offset, one.height)
+    (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5)
+    text = ax.text(0, 0, f"  {one.mass:g} kg", fontsize=7, color="0.25", va="center", zorder=6)
+
+    def update(frame: int) -> None:
+        at = bodies.placed(frame, 0, point)[0]
+        dot.set_data([at[0]], [at[1]])
+        text.set_position(tuple(at))
+
+    return update

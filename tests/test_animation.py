@@ -1,0 +1,169 @@
+import shutil
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.plotting import animation, histories, section
+from mjrock.plotting.bodies import Bodies
+
+WALL = mr.Block.from_size(thickness=0.6, height=4.2)
+E = mr.Restitution.from_geometry(WALL)
+
+
+def theory(duration=0.2, **case):
+    return mr.solve_analytical(mr.Case(WALL, 0.5 * WALL.alpha, duration, **case), E)
+
+
+def drawn(response, frame=0, magnify=1.0):
+    """The picture of a response at the start or, with frame = 1, at the end."""
+    bodies = Bodies.of(response, magnify).at(response.t[[0, -1]])
+    figure, update = animation.scene(bodies, [], response.case)
+    update(frame)
+    return figure, figure.axes[0]
+
+
+def test_the_outline_turns_about_the_toe_and_away_from_the_side_stop():
+    response = theory()
+    bodies = Bodies.of(response)
+    corners = bodies.placed(0, 0, bodies.outlines[0])
+    theta = 0.5 * WALL.alpha
+    inner_edge = [0.3 - 0.6 * np.cos(theta), 0.6 * np.sin(theta)]
+    np.testing.assert_allclose(corners[:2], [inner_edge, [0.3, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(corners[2], [0.3 + 4.2 * np.sin(theta), 4.2 * np.cos(theta)], atol=1e-12)
+
+
+def test_magnified_displacements_leave_the_toe_where_it_is():
+    response = theory()
+    bodies = Bodies.of(response, magnify=5.0)
+    corners, true = bodies.placed(0, 0, bodies.outlines[0]), Bodies.of(response).placed(0, 0, bodies.outlines[0])
+    at_rest = np.array([[-0.3, 0.0], [0.3, 0.0], [0.3, 4.2], [-0.3, 4.2]])
+    np.testing.assert_allclose(corners[1], [0.3, 0.0], atol=1e-12)
+    np.testing.assert_allclose(corners - at_rest, 5 * (true - at_rest), atol=1e-12)
+    assert "displacements x 5" in drawn(response, magnify=5.0)[1].get_title()
+    assert "true to scale" in drawn(response)[1].get_title()
+
+
+@pytest.mark.parametrize(("fps", "speed"), [(25, 1.0), (30, 1.0), (12.5, 0.1)])
+def test_a_gif_takes_the_time_that_the_motion_took(fps, speed, tmp_path):
+    path = plotting.animate(theory(0.16 * speed), tmp_path / "rock.gif", fps=fps, speed=speed, dpi=20)
+    with Image.open(path) as picture:
+        shown = 0
+        for i in range(picture.n_frames):
+            picture.seek(i)
+            shown += picture.info["duration"] / 1000
+    last = animation.writer_for(path, fps)[1]
+    assert shown == pytest.approx(0.16, abs=1.01 * last)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_html_needs_no_other_file(tmp_path):
+    path = plotting.animate(theory(0.1), str(tmp_path / "rock.html"), fps=20, dpi=20)
+    text = path.read_text()
+    assert text.count("data:image/png;base64") == 3
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="needs ffmpeg")
+def test_mp4(tmp_path):
+    path = plotting.animate(theory(0.1), tmp_path / "rock.mp4", dpi=20)
+    assert path.read_bytes()[4:8] == b"ftyp"
+
+
+def test_mp4_without_ffmpeg(tmp_path, monkeypatch):
+    monkeypatch.setattr(animation.FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    with pytest.raises(RuntimeError, match=r"rock.mp4: an .mp4 needs the program ffmpeg"):
+        plotting.animate(theory(0.1), tmp_path / "rock.mp4")
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"speed": 0}, "speed = 0 is outside"),
+        ({"fps": 1e3}, "fps = 1000 1/s is outside"),
+        ({"magnify": -1}, "magnify = -1 is outside"),
+        ({"dpi": 1}, "dpi = 1 is outside"),
+        ({"title": 3}, "title = 3 of type int"),
+        ({"speed": 0.001, "fps": 120}, "32501 frames; the valid range is 1 to 20000; raise speed"),
+        ({"path": "rock.avi"}, "path = 'rock.avi' ends in none of .gif, .mp4, .html"),
+        ({"response": 3}, "response = 3 of type int is not a Response"),
+    ],
+)
+def test_what_cannot_be_drawn(options, complaint, tmp_path):
+    arguments = {"response": theory(0.26), "path": "rock.html"} | options
+    arguments["path"] = tmp_path / arguments["path"]
+    with pytest.raises((ValueError, TypeError), match=complaint):
+        plotting.animate(**arguments)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_the_wall_meets_and_carries_is_drawn():
+    wall = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 1.2, 0.8)])
+    effects = (
+        mr.Tie(4.0, 1e6, length=1.5),
+        mr.Tie(3.0, 1e6, slack=0.5, length=9.0),
+        mr.Thrust(3.5, 2e3),
+        mr.Load(5e3, 4.2),
+        mr.AddedMass(300.0, 4.2, 0.2),
+    )
+    case = mr.Case(wall, 0.02, 0.1, side_stop=mr.SideStop(2.5), effects=effects)
+    _, ax = drawn(mr.solve_analytical(case, mr.Restitution(0.97, -0.4)))
+    texts = {text.get_text().strip() for text in ax.texts}
+    assert {"2 kN", "5 kN", "300 kg", "anchor 9 m behind"} <= texts
+    boxes = [patch for patch in ax.patches if getattr(patch, "get_hatch", lambda: None)()]
+    assert [box.get_height() for box in boxes] == [2.5]
+    dashed = [line for line in ax.get_lines() if line.get_linestyle() == "--"]
+    turned = Bodies.of(mr.solve_analytical(case, mr.Restitution(0.97, -0.4)))
+    sill = turned.placed(
+        0, 0, np.array([[-0.3, 0.8], [0.3, 0.8]]) - (case.wall.centroid_offset, case.wall.centroid_height)
+    )
+    np.testing.assert_allclose(dashed[0].get_xydata(), sill)
+    ties = [line for line in ax.get_lines() if line.get_color() == section.STEEL and len(line.get_xdata()) == 2]
+    assert [line.get_linestyle() for line in ties] == ["-", ":"]
+    np.testing.assert_allclose(ties[0].get_xydata()[0], [-1.8, 4.0])
+
+
+def test_a_tie_that_has_yielded_is_slack_before_it_is_back():
+    tie = mr.Tie(4.0, 1e6, strength=1e3)
+    case = mr.Case(WALL, 0.0, 1.0, effects=(tie,))
+    theta = np.array([0.0, 2e-4, 5e-3, 4e-3, 4.9e-3, 6e-3])
+    bodies = Bodies(np.arange(6.0), (WALL.outline,), np.array([[0.0, 2.1]]), WALL.pose(theta)[:, None])
+    assert section.pulling(case, tie, bodies).tolist() == [False, True, True, False, True, True]
+
+
+def test_any_bodies_can_be_drawn(tmp_path):
+    square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+    poses = np.zeros((3, 2, 3))
+    poses[:, 1, 0] = [0.0, 0.1, 0.2]
+    rests = [[0.0, 0.5], [0.0, 1.5]]
+    path = plotting.animate_bodies(
+        [0.0, 0.1, 0.2], [square] * 2, rests, poses, tmp_path / "two.gif", fixed=[square - (0, 0.5)], dpi=20
+    )
+    assert path.exists()
+    with pytest.raises(ValueError, match=r"poses has the shape \(3, 2, 3\); \(3, 1, 3\) is needed"):
+        plotting.animate_bodies([0.0, 0.1, 0.2], [square], rests[:1], poses, tmp_path / "one.gif")
+
+
+def test_a_history_stops_where_the_wall_has_fallen():
+    motion = mr.GroundMotion.rectangular(-4.0, 1.0)
+    response = mr.solve_analytical(mr.Case(WALL, 0.0, 5.0, motion=motion), E)
+    fell = histories.overturned_at(response)
+    assert np.interp(fell, response.t, response.theta) == pytest.approx(WALL.alpha, rel=0.02)
+    figure = plotting.history(response)
+    above, below = figure.axes
+    assert below.get_ylim()[1] == 1.2
+    assert f"overturned at t = {fell:.3g} s" in [text.get_text() for text in below.texts]
+    assert above.get_ylabel() == "ground [m/s²]"
+    np.testing.assert_allclose(above.get_lines()[0].get_ydata().min(), -4.0)
+    assert len(plotting.history([theory()] * 2, "both").axes) == 1
+    assert histories.overturned_at(theory()) is None
+    with pytest.raises(ValueError, match="responses is empty"):
+        plotting.history([])
+
+
+def test_a_figure_is_saved_under_a_plain_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert str(plotting.save(plotting.history(theory()), "rock")) == "rock.png"
+    assert (tmp_path / "rock.png").exists()
