@@ -40,6 +40,7 @@ models: $(READY)
 figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
 	$(BIN)/python scripts/compare_wall.py --check --out docs/figures/demo
 	$(BIN)/python scripts/figure3.py --out docs/figures
+	$(BIN)/python scripts/animate.py --out docs/figures
 	$(BIN)/python scripts/table2.py --out docs/figures
 	$(BIN)/python scripts/convergence.py --out docs/figures
 	$(BIN)/python scripts/layouts.py --out docs/figures

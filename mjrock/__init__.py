@@ -5,6 +5,9 @@ compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compli
 `solve_analytical` is classical rocking theory, and `compare` sets two answers side by side.
 """
 
+import importlib
+from typing import TYPE_CHECKING
+
 from ._version import __version__
 from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
 from .engine.masonry import masonry_mjcf, masonry_scene
@@ -104,3 +107,13 @@ __all__ = [
     "wall_mjcf",
     "wall_scene",
 ]
+
+if TYPE_CHECKING:
+    from . import plotting as plotting
+else:
+
+    def __getattr__(name: str) -> object:
+        """`mjrock.plotting`, imported when it is first asked for, since it takes matplotlib."""
+        if name == "plotting":
+            return importlib.import_module(".plotting", __name__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
