@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from mjrock.study.fragility import fit_fragility
+from mjrock.study.fragility import _resampled, fit_fragility
 
 
 def drawn(n, seed=0, median=0.4, dispersion=0.35):
@@ -38,6 +38,116 @@ def test_the_band_narrows_with_the_runs():
     assert low < 0.4 < high
 
 
+def clustered(seed, records=30, between=0.35, within=0.08):
+    """Runs under records: the capacity of the wall goes with the record, and hardly with the run."""
+    rng = np.random.default_rng(seed)
+    intensity = np.tile(np.linspace(0.1, 1.2, 12), 2 * records)
+    record = np.repeat(np.arange(records), 24)
+    capacity = 0.5 * np.exp(between * rng.normal(size=records)[record] + within * rng.normal(size=len(record)))
+    return intensity, intensity > capacity, record
+
+
+def test_runs_of_one_record_are_not_independent():
+    """Spread of the fits of 60 studies, against what the intervals say of each."""
+    fits = [fit_fragility(*clustered(seed)[:2]) for seed in range(60)]
+    grouped = [fit_fragility(*clustered(seed), resamples=100) for seed in range(10)]
+    for which, true in (("median", 0.5), ("dispersion", math.hypot(0.35, 0.08))):
+        values = np.log([getattr(fit, which) for fit in fits])
+        spread = 2 * 1.645 * values.std(ddof=1)
+        naive, clusters = (
+            np.mean([np.subtract(*np.log(getattr(fit, f"{which}_interval")())[::-1]) for fit in several])
+            for several in (fits, grouped)
+        )
+        assert naive < 0.62 * spread
+        assert 0.7 * spread < clusters < 1.3 * spread
+        assert np.exp(values.mean()) == pytest.approx(true, rel=0.06)
+
+
+@pytest.mark.slow
+def test_the_intervals_over_records_hold_the_truth():
+    true = {"median": 0.5, "dispersion": math.hypot(0.35, 0.08)}
+    held = {(which, groups): 0 for which in true for groups in (True, False)}
+    for seed in range(150):
+        x, fell, record = clustered(seed)
+        for groups in (True, False):
+            fit = fit_fragility(x, fell, record if groups else None, resamples=200)
+            for which, value in true.items():
+                low, high = getattr(fit, f"{which}_interval")()
+                held[which, groups] += low < value < high
+    assert held["median", True] > 0.82 * 150
+    assert held["dispersion", True] > 0.76 * 150
+    assert held["median", False] < 0.6 * 150
+    assert held["dispersion", False] < 0.6 * 150
+
+
+def test_groups_of_one_run_each_are_independent_runs():
+    x, fell = drawn(2000, seed=1)
+    alone, grouped = fit_fragility(x, fell), fit_fragility(x, fell, np.arange(2000))
+    assert (grouped.median, grouped.dispersion, grouped.groups) == (alone.median, alone.dispersion, 2000)
+    for interval in ("median_interval", "dispersion_interval"):
+        widths = [np.subtract(*np.log(getattr(fit, interval)())[::-1]) for fit in (alone, grouped)]
+        assert widths[1] == pytest.approx(widths[0], rel=0.15)
+    bands = [np.subtract(*norm.ppf(fit.band([0.3, 0.4, 0.6])[::-1])) for fit in (alone, grouped)]
+    np.testing.assert_allclose(bands[1], bands[0], rtol=0.2)
+
+
+def test_the_same_seed_draws_the_same_groups():
+    x, fell, record = clustered(0)
+    fits = [fit_fragility(x, fell, record, resamples=20, seed=seed).resamples for seed in (0, 0, 1)]
+    np.testing.assert_array_equal(fits[0], fits[1])
+    assert not np.array_equal(fits[0], fits[2])
+    with_names = fit_fragility(x, fell, [f"record {i}" for i in record], resamples=20)
+    assert with_names.groups == 30
+
+
+def test_the_fit_is_the_top_of_the_likelihood():
+    """Its derivatives vanish there, and minus the second ones are the inverse of the covariance."""
+    x, fell = drawn(200)
+    fit = fit_fragility(x, fell)
+
+    def likelihood(a, b):
+        z = (np.log(x) - a) / np.exp(b)
+        return float(np.where(fell, norm.logcdf(z), norm.logcdf(-z)).sum())
+
+    a, b, h = math.log(fit.median), math.log(fit.dispersion), 1e-4
+    top = likelihood(a, b)
+    second = np.empty((2, 2))
+    for i, (da, db) in enumerate(((h, 0), (0, h))):
+        up, down = likelihood(a + da, b + db), likelihood(a - da, b - db)
+        assert (up - down) / (2 * h) == pytest.approx(0.0, abs=1e-4)
+        second[i, i] = (up - 2 * top + down) / h**2
+    mixed = [likelihood(a + i * h, b + j * h) for i in (1, -1) for j in (1, -1)]
+    second[0, 1] = second[1, 0] = (mixed[0] - mixed[1] - mixed[2] + mixed[3]) / (4 * h**2)
+    np.testing.assert_allclose(-np.linalg.inv(second), fit.covariance, rtol=1e-3)
+
+
+def test_resamples_that_have_no_curve_count_as_what_they_are():
+    x = np.array([0.2, 0.3, 0.4, 0.5, 0.6, 0.7])
+    fell = np.array([False, False, True, False, True, True])
+    weights = np.array([[1, 1, 0, 0, 1, 1], [1, 1, 0, 1, 0, 0], [0, 0, 1, 0, 1, 1], [0, 0, 3, 3, 0, 0], [1] * 6])
+    found = _resampled(np.log(x), fell, weights)
+    np.testing.assert_allclose(found[0], [math.sqrt(0.3 * 0.6), 0.0])
+    np.testing.assert_array_equal(found[1:4, 0], [np.inf, 0.0, 0.0])
+    assert found[3, 1] == np.inf
+    np.testing.assert_allclose(found[4], [fit_fragility(x, fell).median, fit_fragility(x, fell).dispersion])
+
+
+@pytest.mark.parametrize(
+    ("groups", "options", "complaint"),
+    [
+        ([1, 2], {}, r"groups has the shape \(2,\)"),
+        (np.arange(100) % 4, {}, "groups names 4 groups; the valid range is 5 or more"),
+        (np.arange(100), {"resamples": 3}, "resamples = 3 is outside"),
+        (np.arange(100), {"seed": -1}, "seed = -1 is outside"),
+    ],
+)
+def test_groups_that_cannot_be(groups, options, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        fit_fragility(*drawn(100), groups, **options)
+    with pytest.raises(ValueError, match="confidence = 2 is outside"):
+        fit_fragility(*drawn(100)).median_interval(2)
+
+
 @pytest.mark.parametrize(
     ("intensity", "overturned", "complaint"),
     [
@@ -46,6 +156,7 @@ def test_the_band_narrows_with_the_runs():
         ([0.1, 0.2], [False, False], "none of 2 runs"),
         ([0.1, 0.2], [True, True], "all of 2 runs"),
         ([0.1, 0.2, 0.3, 0.4], [False, False, True, True], "a step, not a curve"),
+        ([0.1, 0.2, 0.3, 0.4], [True, True, False, True], "does not grow with intensity"),
     ],
 )
 def test_what_cannot_be_fitted(intensity, overturned, complaint):

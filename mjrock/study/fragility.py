@@ -3,66 +3,153 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize
-from scipy.special import log_ndtr, ndtr
-from scipy.stats import norm
+from scipy.special import log_ndtr, ndtr, ndtri
 
-from ..problem.quantities import Array
+from ..problem.quantities import Array, Flags, require_whole, require_within
+
+FEWEST_GROUPS = 5
+"""Fewest groups that are resampled."""
+ITERATIONS = 100
+"""Most steps of Newton's method; a fit takes five to ten."""
+MOST_VALUES = 4_000_000
+"""Most values of resamples that are fitted at once."""
 
 
 @dataclass(frozen=True)
 class Fragility:
     """P(overturning | intensity) = Phi(ln(intensity / median) / dispersion).
 
+    Intervals and band take the runs as independent, unless the fit was told their groups.
+
     Args:
         median: intensity at which half of the walls overturn, in the unit of the intensities that were fitted.
         dispersion: standard deviation of the logarithm of that intensity [-].
-        covariance: of (ln median, ln dispersion), shape (2, 2).
+        covariance: of (ln median, ln dispersion), the runs taken as independent, shape (2, 2).
         count: how many runs were fitted.
+        groups: how many groups they form, or None if each stands for itself.
+        resamples: median and dispersion of the fit to each resample of the groups, shape (m, 2), or None.
     """
 
     median: float
     dispersion: float
     covariance: tuple[tuple[float, float], tuple[float, float]]
     count: int
+    groups: int | None = None
+    resamples: Array | None = field(default=None, repr=False, compare=False)
 
     def probability(self, intensity: ArrayLike) -> Array:
         """Share overturned at an intensity [-]."""
-        return np.asarray(ndtr(self._score(intensity)))
+        return np.asarray(ndtr(_score(intensity, self.median, self.dispersion)))
 
     def band(self, intensity: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
-        """Lower and upper bound of that share: the normal approximation of the fit, carried over to the score."""
-        score = self._score(intensity)
+        """Lower and upper bound of that share [-], point by point.
+
+        With groups they come from the fits to the resamples, as the intervals do. Without, they are the normal
+        approximation of the fit, carried over to the score.
+        """
+        require_within("confidence", confidence, 0.0, 1.0)
+        score = _score(intensity, self.median, self.dispersion)
+        if self.resamples is not None:
+            scores = _score(np.asarray(intensity, dtype=float)[..., None], *self.resamples.T)
+            low, high = _reflected(score, scores, confidence)
+            return np.asarray(ndtr(low)), np.asarray(ndtr(high))
         gradient = np.stack([np.full_like(score, -1 / self.dispersion), -score], axis=-1)
         spread = np.sqrt(np.einsum("...i,ij,...j->...", gradient, np.array(self.covariance), gradient))
-        reach = norm.ppf(0.5 + 0.5 * confidence) * spread
+        reach = ndtri(0.5 + 0.5 * confidence) * spread
         return np.asarray(ndtr(score - reach)), np.asarray(ndtr(score + reach))
 
     def median_interval(self, confidence: float = 0.9) -> tuple[float, float]:
         """Confidence interval of the median."""
-        reach = float(norm.ppf(0.5 + 0.5 * confidence)) * math.sqrt(self.covariance[0][0])
-        return self.median * math.exp(-reach), self.median * math.exp(reach)
+        return self._interval(0, self.median, confidence)
 
-    def _score(self, intensity: ArrayLike) -> Array:
-        return np.asarray(np.log(np.asarray(intensity, dtype=float) / self.median) / self.dispersion)
+    def dispersion_interval(self, confidence: float = 0.9) -> tuple[float, float]:
+        """Confidence interval of the dispersion [-]."""
+        return self._interval(1, self.dispersion, confidence)
+
+    def _interval(self, which: int, value: float, confidence: float) -> tuple[float, float]:
+        require_within("confidence", confidence, 0.0, 1.0)
+        if self.resamples is not None:
+            with np.errstate(divide="ignore"):
+                low, high = _reflected(np.log(value), np.log(self.resamples[:, which]), confidence)
+            return float(np.exp(low)), float(np.exp(high))
+        reach = float(ndtri(0.5 + 0.5 * confidence)) * math.sqrt(self.covariance[which][which])
+        return value * math.exp(-reach), value * math.exp(reach)
 
 
-def fit_fragility(intensity: ArrayLike, overturned: ArrayLike) -> Fragility:
+def fit_fragility(
+    intensity: ArrayLike,
+    overturned: ArrayLike,
+    groups: ArrayLike | None = None,
+    *,
+    resamples: int = 1000,
+    seed: int = 0,
+) -> Fragility:
     """The lognormal curve of greatest likelihood for runs that overturned or did not.
+
+    It is a probit model of the logarithm of the intensity, solved by Newton's method. Runs under one record at several
+    intensities, or in both polarities, are not independent: a wall that stands at 0.5 g stands at 0.4 g too, with few
+    exceptions. Told which record each run belongs to, the fit draws whole records with replacement (the bootstrap over
+    clusters) and repeats itself for every draw. The curve stays the same, its intervals get wider. They are still too
+    narrow with few records: of 90 % intervals from 30 simulated records 88 % hold the median and 83 % the dispersion.
 
     Args:
         intensity: of each run, positive, shape (n,).
         overturned: whether each run overturned, shape (n,).
+        groups: what each run belongs to, such as the name or the number of its record, shape (n,), at least 5
+            different ones. None takes the runs as independent.
+        resamples: how many times the groups are drawn, 20 to 100000.
+        seed: of the draws, a whole number from 0 to 2**53.
 
     Raises:
-        ValueError: for an intensity that is not positive, shapes that differ, or runs that all, or none, overturned,
-            or in which a single intensity parts them: then no curve is more likely than a step.
+        ValueError: for an intensity that is not positive, shapes that differ, fewer than 5 groups, or runs that all, or
+            none, overturned, in which a single intensity parts them, so that no curve is more likely than a step, or
+            which overturn the less the stronger the motion is.
+
+    Source: Baker (2015), Efficient analytical fragility function fitting, Earthquake Spectra 31(1); for the bootstrap
+    over clusters, Field and Welsh (2007), J. R. Stat. Soc. B 69(3).
     """
     x, fell = np.asarray(intensity, dtype=float), np.asarray(overturned, dtype=bool)
+    _require_fit(x, fell)
+    log_x = np.log(x)
+    ((level, slope),) = _probit(log_x, fell, np.ones((1, len(x))))
+    if slope <= 0:
+        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
+    curvature = _curvature(log_x, fell, level, slope)
+    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
+    covariance = np.linalg.inv(towards.T @ curvature @ towards)
+    made = Fragility(
+        median=math.exp(-level / slope),
+        dispersion=float(1 / slope),
+        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
+        count=len(x),
+    )
+    if groups is None:
+        return made
+    labels = np.asarray(groups)
+    if labels.shape != x.shape:
+        raise ValueError(
+            f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
+        )
+    names, group = np.unique(labels, return_inverse=True)
+    if len(names) < FEWEST_GROUPS:
+        raise ValueError(f"groups names {len(names)} groups; the valid range is {FEWEST_GROUPS} or more")
+    count = require_whole("resamples", resamples, 20, 100_000)
+    draws = np.random.default_rng(require_whole("seed", seed, 0, 2**53)).multinomial(
+        len(names), np.full(len(names), 1 / len(names)), size=count
+    )
+    at_once = max(1, MOST_VALUES // len(x))
+    fits = [_resampled(log_x, fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
+    found = np.concatenate(fits)
+    found.setflags(write=False)
+    return Fragility(made.median, made.dispersion, made.covariance, made.count, len(names), found)
+
+
+def _require_fit(x: Array, fell: Flags) -> None:
+    """Raise ValueError unless there is a curve of greatest likelihood."""
     if x.shape != fell.shape or x.ndim != 1:
         raise ValueError(
             f"intensity has the shape {x.shape} and overturned {fell.shape}; both need one row of equal length"
@@ -76,36 +163,78 @@ def fit_fragility(intensity: ArrayLike, overturned: ArrayLike) -> Fragility:
         raise ValueError(
             f"every run above {x[~fell].max():g} overturned and none below {x[fell].min():g}: a step, not a curve"
         )
-    log_x, sign = np.log(x), np.where(fell, 1.0, -1.0)
-
-    def unlikelihood(parameters: Array) -> float:
-        return -float(log_ndtr(sign * (log_x - parameters[0]) / np.exp(parameters[1])).sum())
-
-    start = np.array([0.5 * (log_x[fell].mean() + log_x[~fell].mean()), math.log(max(log_x.std(), 0.05))])
-    found = minimize(
-        unlikelihood, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12, "maxiter": 4000}
-    )
-    covariance = np.linalg.inv(_curvature(unlikelihood, found.x))
-    return Fragility(
-        median=math.exp(found.x[0]),
-        dispersion=math.exp(found.x[1]),
-        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
-        count=len(x),
-    )
 
 
-def _curvature(function, at: Array, step: float = 1e-3) -> Array:  # type: ignore[no-untyped-def]
-    """Second derivatives by central differences."""
-    e = step * np.eye(2)
-    return np.array(
-        [
-            [
-                function(at + e[i] + e[j])
-                - function(at + e[i] - e[j])
-                - function(at - e[i] + e[j])
-                + function(at - e[i] - e[j])
-                for j in range(2)
-            ]
-            for i in range(2)
-        ]
-    ) / (4 * step**2)
+def _resampled(log_x: Array, fell: Flags, weights: Array) -> Array:
+    """Median and dispersion of each resample, shape (m, 2); its weights are how often it holds each run, shape (m, n).
+
+    A resample that a single intensity parts is a step of no dispersion in the middle of the gap. One in which all or
+    none overturned has its median at zero or at infinity. One that overturns the less the stronger the motion is has an
+    infinite dispersion.
+    """
+    drawn = weights > 0
+    lowest = np.where(drawn & fell, log_x, np.inf).min(axis=1)
+    highest = np.where(drawn & ~fell, log_x, -np.inf).max(axis=1)
+    found = np.zeros((len(weights), 2))
+    with np.errstate(invalid="ignore"):
+        found[:, 0] = np.exp(0.5 * (lowest + highest))
+    found[~np.isfinite(lowest), 0] = np.inf
+    found[~np.isfinite(highest), 0] = 0.0
+    curves = lowest < highest
+    if curves.any():
+        level, slope = _probit(log_x, fell, weights[curves]).T
+        rises = slope > 0
+        slope = np.where(rises, slope, 1.0)
+        few = (weights[curves] @ fell) < 0.5 * weights[curves].sum(axis=1)
+        medians = np.where(rises, np.exp(-level / slope), np.where(few, np.inf, 0.0))
+        found[curves] = np.stack([medians, np.where(rises, 1 / slope, np.inf)], axis=1)
+    return found
+
+
+def _probit(log_x: Array, fell: Flags, weights: Array) -> Array:
+    """Level and slope of Phi(level + slope log_x) of greatest likelihood, for each row of weights, shape (m, 2)."""
+    middle, width = log_x.mean(), log_x.std()
+    u = (log_x - middle) / width
+    sign = np.where(fell, 1.0, -1.0)
+    found = np.zeros((len(weights), 2))
+    found[:, 0] = ndtri((weights @ fell) / weights.sum(axis=1))
+    for _ in range(ITERATIONS):
+        ratio, slant = _derivatives(sign * (found[:, :1] + found[:, 1:] * u))
+        g, h = weights * sign * ratio, weights * slant
+        gradient = np.stack([g.sum(axis=1), g @ u], axis=1)
+        hessian = np.stack([h.sum(axis=1), h @ u, h @ u, h @ (u * u)], axis=1).reshape(-1, 2, 2)
+        step = np.linalg.solve(hessian, gradient[..., None])[..., 0]
+        size = np.abs(step).max(axis=1, keepdims=True)
+        found += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
+        if size.max() < 1e-10 * (1 + np.abs(found).max()):
+            break
+    return np.stack([found[:, 0] - found[:, 1] * middle / width, found[:, 1] / width], axis=1)
+
+
+def _derivatives(z: Array) -> tuple[Array, Array]:
+    """First derivative of ln Phi(z), and minus the second."""
+    ratio = np.exp(-0.5 * z * z - log_ndtr(z)) / math.sqrt(2 * math.pi)
+    return ratio, ratio * (z + ratio)
+
+
+def _curvature(log_x: Array, fell: Flags, level: float, slope: float) -> Array:
+    """Minus the second derivatives of the likelihood over level and slope, shape (2, 2)."""
+    h = _derivatives(np.where(fell, 1.0, -1.0) * (level + slope * log_x))[1]
+    return np.array([[h.sum(), h @ log_x], [h @ log_x, h @ (log_x * log_x)]])
+
+
+def _score(intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        score = np.log(np.asarray(intensity, dtype=float) / np.asarray(median)) / np.asarray(dispersion)
+    return np.asarray(np.where(np.isnan(score), 0.0, score))
+
+
+def _reflected(value: ArrayLike, resampled: Array, confidence: float) -> tuple[Array, Array]:
+    """The basic bootstrap interval, along the last axis: resamples lie about the estimate as it does about the truth.
+
+    On 30 simulated records it held the dispersion in 83 % of the studies, percentiles of the resamples in 76 %, where
+    90 % were asked for: a dispersion comes out too small from few records, and from their resamples once more.
+    """
+    ends = 50 * (1 - confidence), 50 * (1 + confidence)
+    low, high = np.percentile(resampled, ends, axis=-1, method="nearest")
+    return 2 * np.asarray(value) - high, 2 * np.asarray(value) - low
