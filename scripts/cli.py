@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+
+from mjrock.result.table import csv_text as csv_text
+
+
+class Defaults(argparse.ArgumentDefaultsHelpFormatter):
+    """Help that names the default of an option where it has one."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        if action.default is None or action.default is False:
+            return action.help
+        return super()._get_help_string(action)
 
 
 def parser(description: str | None, out: str) -> argparse.ArgumentParser:
     """A parser with the options that every script has."""
-    made = argparse.ArgumentParser(
-        description=(description or "").splitlines()[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
-    )
+    made = argparse.ArgumentParser(description=(description or "").splitlines()[0], formatter_class=Defaults)
     made.add_argument("--out", type=Path, default=Path("out") / out, help="folder for the files that are written")
     made.add_argument("--quick", action="store_true", help="a shorter study, to see that it works")
     return made
@@ -40,13 +47,6 @@ def write(path: Path, text: str) -> Path:
     finally:
         partial.unlink(missing_ok=True)
     return path
-
-
-def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Rows as CSV text."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([header, *rows])
-    return text.getvalue()
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

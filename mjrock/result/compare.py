@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from dataclasses import dataclass
 
@@ -11,6 +9,7 @@ import numpy as np
 
 from ..problem.quantities import Array, require_kind
 from .response import Outcome, Response
+from .table import csv_text
 
 
 @dataclass(frozen=True)
@@ -91,15 +90,11 @@ class Comparison:
         ]
 
     def csv(self) -> str:
-        """The rows as CSV text."""
+        """The rows as CSV text; its columns have the names of the rows without commas, see `mjrock.result.table`."""
         rows = self.rows()
         if not rows:
             return "impact\n"
-        text = io.StringIO()
-        writer = csv.DictWriter(text, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-        return text.getvalue()
+        return csv_text(list(rows[0]), [list(row.values()) for row in rows])
 
     def table(self, most: int = 6) -> str:
         """The first `most` impacts and the totals as text, for a terminal."""

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..problem.case import Case
 from ..problem.quantities import Array
 from .history import Impact, peak_energies, restitution_of
 from .ledger import Ledger
+from .table import csv_text, write_text
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3)."""
@@ -144,6 +146,30 @@ class Response:
             turn = first + int(np.argmax(np.abs(self.theta[first : last + 1])))
             energies.append(self.energy[0] if i == 0 and self.peaks[0] == self.case.release_peak else self.energy[turn])
         return restitution_of(np.array(energies), np.array(energies))
+
+    def csv(self, path: str | Path | None = None) -> str:
+        """The samples as CSV text, one row each, written to `path` where one is given.
+
+        The columns are t [s], theta [rad], omega [rad/s], energy [J], x, z and rotation of each body from rest
+        [m, m, rad], and the acceleration of the ground where there is one [m/s2]. Their names have no commas, so that
+        `np.genfromtxt(path, delimiter=",", names=True)` and pandas read them. Numbers keep all their digits.
+
+        Raises:
+            OSError: if the file cannot be written.
+        """
+        columns = {"t [s]": self.t, "theta [rad]": self.theta, "omega [rad/s]": self.omega, "energy [J]": self.energy}
+        bodies = self.pose.shape[1]
+        for i in range(bodies):
+            of = "" if bodies == 1 else f" of body {i}"
+            for j, (name, unit) in enumerate((("x", "m"), ("z", "m"), ("rotation", "rad"))):
+                columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
+        for motion, name in ((self.case.motion, "horizontal"), (getattr(self.case, "vertical", None), "vertical")):
+            if motion is not None:
+                columns[f"ground {name} [m/s2]"] = motion(self.t)
+        text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
+        if path is not None:
+            write_text(path, text)
+        return text
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Response):

@@ -1,0 +1,55 @@
+"""Tables as CSV text that NumPy, pandas and a spreadsheet read."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Rows as CSV text that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read.
+
+    NumPy knows no quotation marks and takes # for the start of a comment. Commas, quotation marks and # are therefore
+    left out of the header, and in the cells a comma becomes a semicolon. Numbers keep all their digits.
+
+    Raises:
+        ValueError: if two columns have the same name.
+    """
+    names = [_without(name) for name in header]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ValueError(f"two columns have the name {twice[0]!r}")
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows([_cell(value) for value in row] for row in rows)
+    return text.getvalue()
+
+
+def write_text(path: str | Path, text: str) -> Path:
+    """Write a text file whole or not at all."""
+    path = Path(path)
+    partial = path.with_name(f"{path.name}.{os.getpid()}.partial")
+    try:
+        with open(partial, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def _without(name: str) -> str:
+    """A name without commas, quotation marks and #."""
+    for mark in ',"#':
+        name = name.replace(mark, "")
+    return " ".join(name.split())
+
+
+def _cell(value: object) -> object:
+    if not isinstance(value, str):
+        return value
+    return value.replace(",", ";").replace("#", "no. ").replace('"', "'")
