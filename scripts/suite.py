@@ -49,7 +49,7 @@ def motions(folder: Path | None, count: int = 10) -> list[mr.GroundMotion]:
 
 def to_peak(motion: mr.GroundMotion, pga: float) -> mr.GroundMotion:
     """The motion scaled to a peak ground acceleration in g."""
-    return motion.scaled(pga * mr.GRAVITY / motion.peak)
+    return motion.scaled(peak=pga * mr.GRAVITY)
 
 
 def analysis(

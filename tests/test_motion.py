@@ -30,6 +30,16 @@ def test_scaled_and_reversed():
     motion = mr.GroundMotion.sine(2.0, 0.8)
     np.testing.assert_array_equal(motion.reversed().accel, -motion.accel)
     assert motion.scaled(1.5).peak == pytest.approx(3.0)
+    assert motion.scaled(peak=0.5) == motion.scaled(0.5 / motion.peak)
+    assert motion.scaled(peak=0.5).name.endswith(" to 0.5 m/s2")
+    with pytest.raises(ValueError, match=r"either a factor or a peak \[m/s2\]; factor = 2, peak = 3"):
+        motion.scaled(2, peak=3)
+    with pytest.raises(ValueError, match="either a factor or a peak"):
+        motion.scaled()
+    with pytest.raises(ValueError, match="peak = -1 m/s2 is outside"):
+        motion.scaled(peak=-1)
+    with pytest.raises(ValueError, match="still is at rest: no factor gives it peak = 1 m/s2"):
+        mr.GroundMotion([0.0, 0.0], 0.1, "still").scaled(peak=1)
     assert motion.reversed().reversed() == motion
     assert hash(motion.reversed().reversed()) == hash(motion)
     assert motion != motion.scaled(2)

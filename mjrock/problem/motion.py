@@ -140,10 +140,21 @@ class GroundMotion:
         """The motion as it is, and reversed."""
         return self, self.reversed()
 
-    def scaled(self, factor: float) -> GroundMotion:
-        """The motion with every acceleration times `factor`, -1e6 to 1e6."""
-        accel = require_within("factor", factor, -1e6, 1e6) * self.accel
-        return GroundMotion(accel, self.dt, f"{self.name} x {factor:g}")
+    def scaled(self, factor: float | None = None, *, peak: float | None = None) -> GroundMotion:
+        """The motion with every acceleration times `factor`, -1e6 to 1e6, or scaled to a `peak` [m/s2], 0 to 1e3.
+
+        Raises:
+            ValueError: for a value outside its range, both or neither, or a peak of a motion that has none.
+        """
+        if (factor is None) == (peak is None):
+            raise ValueError(f"scaled takes either a factor or a peak [m/s2]; factor = {factor}, peak = {peak}")
+        if peak is None:
+            made = require_within("factor", factor, -1e6, 1e6)
+            return GroundMotion(made * self.accel, self.dt, f"{self.name} x {made:g}")
+        require_within("peak", peak, 0.0, 1e3, "m/s2")
+        if self.peak == 0:
+            raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")
+        return GroundMotion(peak / self.peak * self.accel, self.dt, f"{self.name} to {peak:g} m/s2")
 
     def reversed(self) -> GroundMotion:
         """The motion of the other polarity."""
