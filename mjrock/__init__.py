@@ -30,6 +30,7 @@ from .problem.polygon import Polygon
 from .problem.quantities import GRAVITY
 from .problem.restitution import Restitution
 from .problem.section import Opening
+from .problem.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
 from .reference.compliant import solve_compliant
 from .result.compare import Comparison, compare
 from .result.history import Impact
@@ -98,6 +99,10 @@ __all__ = [
     "matched_contacts",
     "overturning_intensity",
     "pushover",
+    "joint_stiffness",
+    "layered_stiffness",
+    "matched_contacts",
+    "measured_stiffness",
     "reference_frequency",
     "results",
     "simulate",
@@ -106,6 +111,7 @@ __all__ = [
     "solve_compliant",
     "wall_mjcf",
     "wall_scene",
+    "wall_stiffness",
 ]
 
 if TYPE_CHECKING:

@@ -82,6 +82,13 @@ CALLS = {
     "law.reach": (mr.CALIBRATED.reach, {"wall": WALL, "k_n": 5e8, "amplitude": 0.5}),
     "law.covers": (mr.CALIBRATED.covers, {"wall": WALL, "e": E, "k_n": 5e8, "k_side": 5e8, "amplitude": 0.5}),
     "reference_frequency": (mr.reference_frequency, {"wall": WALL, "k_n": 5e8, "points": 2}),
+    "joint_stiffness": (mr.joint_stiffness, {"E": 1e9, "thickness": 0.01}),
+    "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL}),
+    "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
+    "layered_stiffness": (
+        lambda stiffnesses: mr.layered_stiffness(*stiffnesses) if isinstance(stiffnesses, tuple) else
+        mr.layered_stiffness(stiffnesses), {"stiffnesses": (1e9, 2e9)},
+    ),
     "contact_parameters": (
         mr.contact_parameters,
         {"k": 1.5e8, "c": 5e5, "timestep": 1e-3, "inverse_weight": 1e-4, "newmark_beta": 0.25},
