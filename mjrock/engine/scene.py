@@ -107,6 +107,9 @@ class Scene:
     title: str = "Rigid bodies on compliant contacts"
     facts: Mapping[str, float | str] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"<Scene of {len(self.names)} bodies, {len(self.k)} contacts, {len(self.tie_names)} ties>"
+
     def __post_init__(self) -> None:
         for name, values in checked(vars(self)).items():
             object.__setattr__(self, name, values)

@@ -105,6 +105,17 @@ class Block:
         require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")
         return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
 
+    def __repr__(self) -> str:
+        parts = [f"{2 * self.b:.6g} x {2 * self.h:.6g} m, {self.length:.6g} m long, {self.density:.6g} kg/m3"]
+        if self.inset:
+            parts.append(f"inset {self.inset:.6g} m")
+        if self.profile:
+            parts.append(f"{self.profile[-1][1]:.6g} m thick at the top")
+        for name, many in (("opening", self.openings), ("added mass", self.masses)):
+            if many:
+                parts.append(f"{len(many)} {name}{'' if len(many) == 1 else 's' if name == 'opening' else 'es'}")
+        return f"<Block {', '.join(parts)}: {self.mass:.6g} kg, alpha = {self.alpha:.4g} rad, p = {self.p:.4g} rad/s>"
+
     @property
     def half_base(self) -> float:
         """Half the distance between the edges that the wall rocks about, b less the inset [m]."""

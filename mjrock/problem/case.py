@@ -99,6 +99,20 @@ class Case:
                     f"that of the weight is {self.restoring.towards(side).P:.4g} N m; the valid range is above 0"
                 )
 
+    def __repr__(self) -> str:
+        stop = "no side stop" if self.stop_top is None else "side stop"
+        if isinstance(self.side_stop, SideStop):
+            stop += f" up to {self.side_stop.top:.6g} m"
+        share = self.theta0 / self.wall.alpha
+        parts = [f"theta0 = {self.theta0:.4g} rad = {share:.3g} alpha", f"{self.duration:.6g} s", stop]
+        if self.omega0:
+            parts.append(f"omega0 = {self.omega0:.4g} rad/s")
+        for name, motion in (("motion", self.motion), ("vertical", self.vertical)):
+            if motion is not None:
+                parts.append(f"{name} {motion.name!r}")
+        parts += [type(one).__name__ for one in self.effects]
+        return f"<Case of {self.block!r}: {', '.join(parts)}>"
+
     def each(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The effects of one kind, in their order."""
         return tuple(one for one in self.effects if isinstance(one, kind))

@@ -51,6 +51,14 @@ class Contacts:
         require_kind("side", self.side, Interface, type(None))
         require_kind("law", self.law, str)
 
+    def __repr__(self) -> str:
+        faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])
+        parts = []
+        for name, one in faces:
+            held = "" if one.friction is None else f", friction {one.friction:.3g}"
+            parts.append(f"{name} k_n = {one.k_n:.4g} N/m3, xi = {one.xi:.4g}{held}")
+        return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"
+
     @classmethod
     def from_damping(
         cls,

@@ -77,6 +77,11 @@ class DampingLaw:
                 if key != "r_squared":
                     require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE else -1e6, 1e6)
 
+    def __repr__(self) -> str:
+        lines = "" if self.points is None else f", {self.points} lines a face"
+        (low, high), (softest, stiffest) = self.slenderness_range, self.k_n_range
+        return f"<DampingLaw {self.name}: h/b {low:g} to {high:g}, k_n {softest:g} to {stiffest:g} N/m3{lines}>"
+
     def __call__(
         self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
     ) -> tuple[float, float]:

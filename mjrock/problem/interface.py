@@ -90,6 +90,11 @@ class Interface:
             warnings.warn(f"xi = {self.xi:g} is {self.xi:.0%} of critical; damping ratios are fractions", stacklevel=3)
         require_points(self.points)
 
+    def __repr__(self) -> str:
+        held = "" if self.friction is None else f", friction {self.friction:.3g}"
+        size = f"{self.face:.6g} x {self.length:.6g} m, {self.points} lines"
+        return f"<Interface k_n = {self.k_n:.4g} N/m3, xi = {self.xi:.4g}{held}: {size}, {self.frequency:.4g} rad/s>"
+
     @cached_property
     def _lines(self) -> tuple[Array, Array]:
         return contact_lines(self.face, int(self.points))

@@ -25,6 +25,13 @@ class Comparison:
     candidate: Response
     rms: float
 
+    def __repr__(self) -> str:
+        pair = self.restitution[0] if len(self.restitution) else (math.nan, math.nan)
+        return (
+            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of rebound 1 {pair[1]:.4g} for "
+            f"{pair[0]:.4g}, RMS of theta/alpha {self.rms:.3g}>"
+        )
+
     @property
     def restitution(self) -> Array:
         """|e| per rebound, reference and candidate [-], shape (n, 2)."""

@@ -92,6 +92,11 @@ class Analysis:
                 f"{self.solver} has no option {', '.join(sorted(map(str, unknown)))}; it has {', '.join(valid)}"
             )
 
+    def __repr__(self) -> str:
+        by = f"e = {self.e}" if self.solver == "analytical" else f"{self.contacts}"
+        options = "".join(f", {name} = {value}" for name, value in self.options.items())
+        return f"<Analysis by {self.solver} of {self.case!r}, {by}{options}>"
+
     def solve(self) -> Response:
         """The response."""
         return SOLVERS[self.solver](self.case, self.e if self.solver == "analytical" else self.contacts, **self.options)

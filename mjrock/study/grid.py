@@ -32,6 +32,10 @@ class Grid(Sequence[Any]):
             if not values:
                 raise ValueError(f"the axis {name} has no values")
 
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{name} ({len(values)})" for name, values in self.axes.items())
+        return f"<Grid of {len(self)} cases: {axes}>"
+
     def __len__(self) -> int:
         """How many points there are."""
         return int(np.prod([len(values) for values in self.axes.values()], dtype=int))

@@ -57,6 +57,9 @@ class Store:
         OSError: if it cannot be opened, or another process writes to it.
     """
 
+    def __repr__(self) -> str:
+        return f"<Store {self.path}>"
+
     def __init__(self, path: str | Path, *, writing: bool = False) -> None:
         self.path = Path(path)
         self._lock: Lock | None = None

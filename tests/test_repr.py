@@ -1,0 +1,77 @@
+"""What is public prints in a line, with units."""
+
+import pytest
+
+import mjrock as mr
+
+WALL = mr.Block.from_size(thickness=0.6, height=4.2)
+E = mr.Restitution(0.97, -0.47)
+CONTACTS = mr.Contacts.from_damping(WALL, k_base=5e8, xi_base=0.05, k_side=4e8, xi_side=0.01, side_friction=0.6)
+CASE = mr.Case(WALL, 0.5 * WALL.alpha, 3.0)
+RICH = mr.Case(
+    mr.Block.from_size(
+        0.6, 4.2, 3.0, inset=0.02, openings=[mr.Opening(1.0, 2.0)], profile=[(0, 0.6), (4.2, 0.4)],
+        masses=[mr.AddedMass(50.0, 4.0)] * 2,
+    ),
+    0.0,
+    2.0,
+    side_stop=mr.SideStop(3.0),
+    omega0=0.1,
+    motion=mr.GroundMotion([0.0, 1.0], 0.1, "a"),
+    vertical=mr.GroundMotion([0.0, 1.0], 0.1, "b"),
+    effects=(mr.Tie(4.0, 1e6), mr.Load(1e3, 4.2)),
+)  # fmt: skip
+BLOCK = "<Block 0.6 x 4.2 m, 1 m long, 2000 kg/m3: 5040 kg, alpha = 0.1419 rad, p = 1.862 rad/s>"
+HELD = "<Contacts, law given, 2 lines a face: base k_n = 5e+08 N/m3, xi = 0.05; side k_n = 4e+08 N/m3, xi = 0.01, friction 0.6>"  # noqa: E501
+
+
+@pytest.mark.parametrize(
+    ("shown", "text"),
+    [
+        (WALL, BLOCK),
+        (E, "Restitution(base=0.97, side=-0.47)"),
+        (CONTACTS, HELD),
+        (CONTACTS.side, "<Interface k_n = 4e+08 N/m3, xi = 0.01, friction 0.6: 4.2 x 1 m, 2 lines, 30.11 rad/s>"),
+        (CASE, f"<Case of {BLOCK}: theta0 = 0.07095 rad = 0.5 alpha, 3 s, side stop>"),
+        (mr.Case(WALL, 0.0, 1.0, side_stop=False), f"<Case of {BLOCK}: theta0 = 0 rad = 0 alpha, 1 s, no side stop>"),
+        (mr.PUBLISHED, "<DampingLaw PUBLISHED: h/b 4 to 15, k_n 5e+07 to 3e+09 N/m3>"),
+        (mr.CALIBRATED, "<DampingLaw CALIBRATED: h/b 4 to 15, k_n 5e+07 to 1e+11 N/m3, 2 lines a face>"),
+        (mr.Grid(dict, slenderness=[5, 7], scale=[1, 2, 3]), "<Grid of 6 cases: slenderness (2), scale (3)>"),
+        (mr.wall_scene(CASE, CONTACTS), "<Scene of 1 bodies, 4 contacts, 0 ties>"),
+        (
+            mr.Analysis(CASE, contacts=CONTACTS, options={"accuracy": 1e-4}),
+            f"<Analysis by MuJoCo of {CASE!r}, {HELD}, accuracy = 0.0001>",
+        ),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_it_prints_in_a_line_with_units(shown, text):
+    assert repr(shown) == str(shown) == text
+
+
+def test_what_a_wall_and_a_case_carry_is_named():
+    said = repr(RICH)
+    for part in (
+        "inset 0.02 m, 0.4 m thick at the top, 1 opening, 2 added masses",
+        "side stop up to 3 m",
+        "omega0 = 0.1 rad/s, motion 'a', vertical 'b', Tie, Load>",
+    ):
+        assert part in said
+
+
+def test_a_comparison_and_a_store_say_what_they_hold(tmp_path):
+    theory = mr.solve_analytical(CASE, E)
+    said = repr(mr.compare(theory, theory))
+    assert (
+        said == "<Comparison of analytical with analytical: |e| of rebound 1 0.4422 for 0.4422, RMS of theta/alpha 0>"
+    )
+    with mr.Store(tmp_path / "walls.sqlite", writing=True) as store:
+        assert repr(store) == f"<Store {tmp_path / 'walls.sqlite'}>"
+
+
+@pytest.mark.parametrize("name", sorted(set(mr.__all__) - {"GroundMotion"}))
+def test_no_public_object_prints_an_address(name):
+    shown = getattr(mr, name)
+    if not callable(shown) or isinstance(shown, mr.DampingLaw):
+        assert " at 0x" not in repr(shown)
+        assert len(repr(shown)) < 120
