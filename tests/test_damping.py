@@ -95,6 +95,25 @@ def test_a_calibrated_law_warns_outside_its_own_range(wall, e):
         CALIBRATED(wall, e, 5e8, amplitude=0)
 
 
+def test_a_warning_names_the_value_that_was_given_beside_the_rescaled_one(e):
+    light = mr.Block(0.3, 2.1, density=1000.0)
+    given = r"k_n \[N/m3\] = 6e\+10, for a full wall of 2000 kg/m3 1.2e\+11, not in 5e\+07 to 1e\+11"
+    with pytest.warns(UserWarning, match=given):
+        CALIBRATED(light, e, 6e10)
+    with pytest.warns(UserWarning, match=r"k_n \[N/m3\] = 1.2e\+11 not in 5e\+07 to 1e\+11"):
+        CALIBRATED(mr.Block(0.3, 2.1, density=2000.0), e, 1.2e11)
+
+
+@pytest.mark.parametrize("name", ["calibrated", "Calibrated", "CALIBRATED", " calibrated "])
+def test_a_law_is_named_in_any_case_of_letters(name, wall, e):
+    assert mr.Contacts.from_law(wall, e, 5e8, 5e8, law=name).law == "CALIBRATED"
+
+
+@pytest.mark.parametrize("name", ["calibrated-bed", "Calibrated_Bed", "calibrated bed"])
+def test_an_underscore_of_a_law_may_be_a_hyphen(name, wall, e):
+    assert mr.Contacts.from_law(wall, e, 5e8, 5e8, law=name, points=16).law == "CALIBRATED_BED"
+
+
 @pytest.mark.parametrize("law", [mr.PUBLISHED, CALIBRATED, CALIBRATED_BED])
 def test_a_law_is_the_same_after_save_and_load(law, tmp_path):
     again = DampingLaw.load(law.save(tmp_path / "law.toml"))

@@ -166,19 +166,21 @@ class DampingLaw:
         """The values that lie outside the fitted ranges, in words."""
         scale = DENSITY * 4 * wall.b * wall.h * wall.base_length / wall.mass if self.scalable else 1.0
         covered = {
-            "h/b [-]": (wall.slenderness, self.slenderness_range),
-            "k_n [N/m3]": (k_n * scale, self.k_n_range),
+            "h/b [-]": (wall.slenderness, 1.0, self.slenderness_range),
+            "k_n [N/m3]": (k_n, scale, self.k_n_range),
         }
         if self.scalable:
-            covered["k_side [N/m3]"] = ((k_n if k_side is None else k_side) * scale, self.k_n_range)
-            covered["|e_side| [-]"] = (abs(e.side), self.side_range)
+            covered["k_side [N/m3]"] = (k_n if k_side is None else k_side, scale, self.k_n_range)
+            covered["|e_side| [-]"] = (abs(e.side), 1.0, self.side_range)
         else:
-            covered = {"R [m]": (wall.R, self.R_range)} | covered
-        return [
-            f"{name} = {value:.4g} not in {low:g} to {high:g}"
-            for name, (value, (low, high)) in covered.items()
-            if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9)
-        ]
+            covered = {"R [m]": (wall.R, 1.0, self.R_range)} | covered
+        said = []
+        for name, (value, factor, (low, high)) in covered.items():
+            if not low * (1 - 1e-9) <= value * factor <= high * (1 + 1e-9):
+                same = abs(factor - 1) < 1e-9
+                at = "" if same else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
+                said.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
+        return said
 
     def save(self, path: str | Path) -> Path:
         """Write the law as a TOML file that `DampingLaw.load` reads and a text editor shows.
@@ -262,11 +264,12 @@ NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 
 
 def law_named(name: str) -> DampingLaw:
-    """The law of that name, in any case of letters.
+    """The law of that name, in any case of letters, with a hyphen or a blank for the underscore too.
 
     Raises:
         ValueError: if there is none.
     """
-    if name.upper() not in NAMED:
+    spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
+    if spelt not in NAMED:
         raise ValueError(f"law = {name!r} is none of {', '.join(NAMED)}")
-    return NAMED[name.upper()]
+    return NAMED[spelt]
