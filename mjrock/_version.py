@@ -1,5 +1,3 @@
-"""The version, recorded in every generated model."""
+"""The version, recorded in every generated model. The build reads it from here."""
 
-from importlib.metadata import version
-
-__version__ = version("mjrock")
+__version__ = "0.2.0.dev0"
