@@ -66,6 +66,8 @@ def acceleration(ax: Axes, case: Case, until: float) -> Axes:
 
 def history(responses: Response | Sequence[Response], title: str = "") -> Figure:
     """Rotation against time of one response, or of several to one case, below the acceleration of the ground."""
+    if not isinstance(responses, Sequence):
+        require_kind("responses", responses, Response)
     several = [responses] if isinstance(responses, Response) else list(responses)
     for i, response in enumerate(several):
         require_kind(f"responses[{i}]", response, Response)
