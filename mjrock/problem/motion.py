@@ -16,15 +16,11 @@ from numpy.typing import ArrayLike
 
 from . import pulses
 from .quantities import GRAVITY, Array, require_kind, require_within
-from .records import COARSEST, FINEST, Record, checked, parse_at2, parse_columns, parse_sac, read, reals
+from .records import COARSEST, FINEST, Record, checked, doubts, parse_at2, parse_columns, parse_sac, read, reals
 from .resampling import resample
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
-FAINT = 1e-3 * GRAVITY
-"""A file whose peak acceleration is below this is probably in another unit [m/s2]."""
-DRIFT = 0.2
-"""A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,16 +210,8 @@ class GroundMotion:
     @classmethod
     def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> GroundMotion:
         motion = cls(*read(path, parse), name := Path(path).stem)
-        peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
-        if peak < FAINT:
-            share = peak / GRAVITY
-            warnings.warn(f"{name} peaks at {peak:g} m/s2 = {share:.3g} g only; is its unit right?", stacklevel=3)
-        if abs(final) > DRIFT * fastest:
-            warnings.warn(
-                f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
-                "it needs a baseline correction",
-                stacklevel=3,
-            )
+        for doubt in doubts(name, motion.peak, motion.residual_velocity, motion.peak_velocity):
+            warnings.warn(doubt, stacklevel=3)
         return motion
 
     @classmethod

@@ -45,6 +45,10 @@ BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
 DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 """A line of columns whose first letter or digit is a digit of any script, so that a damaged number is no header."""
+FAINT = 1e-3 * GRAVITY
+"""A file whose peak acceleration is below this is probably in another unit [m/s2]."""
+DRIFT = 0.2
+"""A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
 def reals(name: str, values: ArrayLike, takes: str) -> Array:
@@ -248,3 +252,22 @@ def _value(text: str) -> float:
 def _short(text: str) -> str:
     """A text as it stands in a message: what cannot be seen or is not ASCII is escaped."""
     return ascii(text if len(text) <= 60 else f"{text[:57]}...")
+
+
+def doubts(name: str, peak: float, final: float, fastest: float) -> list[str]:
+    """What is odd about a record from a file, in words.
+
+    Args:
+        name: of the record.
+        peak: peak acceleration [m/s2].
+        final, fastest: residual and peak velocity [m/s].
+    """
+    found = []
+    if peak < FAINT:
+        found.append(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?")
+    if abs(final) > DRIFT * fastest:
+        found.append(
+            f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
+            "it needs a baseline correction"
+        )
+    return found
