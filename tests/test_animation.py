@@ -1,4 +1,5 @@
 import dataclasses
+import re
 import shutil
 from types import SimpleNamespace
 
@@ -63,7 +64,11 @@ def test_a_gif_takes_the_time_that_the_motion_took(fps, speed, tmp_path):
 
 def test_html_needs_no_other_file(tmp_path):
     path = plotting.animate(theory(0.1), str(tmp_path / "rock.html"), fps=20, dpi=20)
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
+    assert not re.search(r"https?://|<link|\bfa-", text)
+    assert text.count("<button") == 9
+    assert "&#8226;" not in text
+    assert "<title>rock</title>" in text
     assert text.count("data:image/png;base64") == 3
     assert list(tmp_path.iterdir()) == [path]
 

@@ -19,6 +19,7 @@ from ..problem.quantities import Array, require_kind, require_within
 from ..result.response import Response
 from .bodies import Bodies
 from .histories import acceleration, rotation
+from .page import standalone
 from .section import Update, blocks, frame_view, surroundings
 
 ENDINGS = (".gif", ".mp4", ".html")
@@ -127,6 +128,9 @@ def _film(
             for frame in tqdm(range(len(times)), desc=path.name, unit="frame", delay=2, disable=None, leave=False):
                 update(frame)
                 writer.grab_frame()
+        if path.suffix.lower() == ".html":
+            text = standalone(partial.read_text(encoding="utf-8"), title or path.stem)
+            partial.write_text(text, encoding="utf-8")
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)
