@@ -16,6 +16,7 @@ from tqdm import tqdm
 
 from ..problem.case import Case
 from ..problem.quantities import Array, require_kind, require_within
+from ..result.masonry import MasonryResponse
 from ..result.response import Response
 from .bodies import Bodies
 from .histories import acceleration, rotation
@@ -34,7 +35,7 @@ JUST = 1 - 1e-9
 
 
 def animate(
-    response: Response,
+    response: Response | MasonryResponse,
     path: str | Path,
     *,
     speed: float = 1.0,
@@ -66,9 +67,8 @@ def animate(
         RuntimeError: for an .mp4 where there is no ffmpeg.
     """
     bodies = Bodies.of(response, magnify)
-    case = response.case
     drawn: list[Callable[[Axes], object]] = []
-    if isinstance(case, Case):
+    if isinstance(response, Response) and isinstance(case := response.case, Case):
         if case.shaken:
             drawn.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
         drawn.append(lambda ax: rotation(ax, [response]))
