@@ -1,0 +1,258 @@
+"""Two geoms of anyone's model that can meet: who they are, how heavy they are to each other, and what MuJoCo mixes."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ..problem.quantities import Array, require_array, require_kind, shown
+
+GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
+FARTHEST = 1e10
+"""Distance up to which the nearest points of two geoms are looked for [m]."""
+ONE_POINT = {mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_ELLIPSOID}
+"""Geoms that meet any other geom in a single point."""
+
+
+def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
+    """The compiled model of either; an MjSpec stays as it is.
+
+    Raises:
+        TypeError: unless it is one of them.
+        ValueError: with the compiler's message, if the specification does not compile.
+    """
+    require_kind("model", model, mujoco.MjModel, mujoco.MjSpec)
+    if isinstance(model, mujoco.MjModel):
+        return model
+    try:
+        return model.copy().compile()
+    except ValueError as error:
+        raise ValueError(f"model does not compile: {error}") from error
+
+
+def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
+    """The number of a geom.
+
+    Args:
+        model: the model.
+        argument: what the value is called in messages.
+        value: the name or number of the geom, or the name of a body that has a single geom.
+
+    Raises:
+        TypeError: unless the value is a text or a whole number.
+        ValueError: if there is no such geom, or the body has none or several.
+    """
+    if isinstance(value, str):
+        number = mujoco.mj_name2id(model, GEOM, value)
+        if number >= 0:
+            return int(number)
+        body = mujoco.mj_name2id(model, BODY, value)
+        if body < 0:
+            known = ", ".join(name for name in (geom_name(model, i) for i in range(model.ngeom)) if name) or "none"
+            raise ValueError(f"{argument} = {value!r} is no geom or body of this model; its named geoms are: {known}")
+        if model.body_geomnum[body] != 1:
+            raise ValueError(f"{argument} = {value!r} is a body with {model.body_geomnum[body]} geoms; name the geom")
+        return int(model.body_geomadr[body])
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise TypeError(f"{argument} = {shown(value)} is neither the name nor the number of a geom")
+    if not 0 <= value < model.ngeom:
+        raise ValueError(f"{argument} = {value} is outside the valid range 0 to {model.ngeom - 1}")
+    return int(value)
+
+
+def geom_name(model: mujoco.MjModel, geom: int) -> str:
+    """The name of a geom, or an empty text."""
+    return mujoco.mj_id2name(model, GEOM, geom) or ""
+
+
+@dataclass(frozen=True)
+class GeomPair:
+    """Two geoms of a compiled model.
+
+    Args:
+        model: the model, which is only read.
+        geoms: the numbers of the geoms.
+    """
+
+    model: mujoco.MjModel
+    geoms: tuple[int, int]
+
+    @classmethod
+    def named(cls, model: mujoco.MjModel, geom1: object, geom2: object) -> GeomPair:
+        """The pair of two geoms given by name or number, or by the name of a body with a single geom.
+
+        Raises:
+            TypeError, ValueError: if one of them is not in the model, or both are one, or neither can move.
+        """
+        pair = cls(model, (geom_id(model, "geom1", geom1), geom_id(model, "geom2", geom2)))
+        if pair.geoms[0] == pair.geoms[1]:
+            raise ValueError(f"geom1 and geom2 = {shown(geom1)} are the same geom")
+        if not pair.inverse_weight > 0:
+            raise ValueError(
+                f"geom1 = {geom1!r} and geom2 = {geom2!r} have no inverse weight (body_invweight0 is zero): neither "
+                "centre of mass can move, and MuJoCo has no contact stiffness for them"
+            )
+        return pair
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """The names; a geom without a name has an empty one."""
+        return geom_name(self.model, self.geoms[0]), geom_name(self.model, self.geoms[1])
+
+    @property
+    def bodies(self) -> tuple[int, int]:
+        """The numbers of the bodies."""
+        first, second = (int(self.model.geom_bodyid[geom]) for geom in self.geoms)
+        return first, second
+
+    @property
+    def explicit(self) -> int:
+        """The number of the model's explicit pair of these geoms, or -1."""
+        for i in range(self.model.npair):
+            if {int(self.model.pair_geom1[i]), int(self.model.pair_geom2[i])} == set(self.geoms):
+                return i
+        return -1
+
+    @property
+    def inverse_weight(self) -> float:
+        """W, the sum of `body_invweight0` of both bodies, translation [1/kg]."""
+        return float(sum(self.model.body_invweight0[body, 0] for body in self.bodies))
+
+    @property
+    def makes_several_points(self) -> bool:
+        """Whether MuJoCo can make more than one contact of these geoms at a time."""
+        return not any(self.model.geom_type[geom] in ONE_POINT for geom in self.geoms)
+
+    def mass(self, data: mujoco.MjData | None = None, at: object = None) -> float:
+        """Effective mass of an approach along the contact's normal, at the model's `qpos0` [kg].
+
+        1/m is the rate at which the geoms part along the normal for a unit impulse. The normal is that of a plane, else
+        it points along the shortest distance of the geoms.
+
+        Args:
+            data: state of the model at `qpos0`, if there is one; see `at_rest`.
+            at: the contact point in the world's frame [m], shape (3,). None takes the centres of mass of what moves
+                with each geom, for which 1/m is 1/m1 + 1/m2 of two free bodies.
+
+        Returns:
+            The mass; infinity, if the geoms cannot approach each other along the normal.
+        """
+        data = data if data is not None else at_rest(self.model)
+        point = None if at is None else require_array("at", at, (3,))
+        jacobian = np.zeros((3, self.model.nv))
+        for body, sign in zip(self.bodies, (1.0, -1.0), strict=True):
+            rows = np.zeros((3, self.model.nv))
+            mujoco.mj_jac(self.model, data, rows, None, self._centre(data, body) if point is None else point, body)
+            jacobian += sign * rows
+        along = self._normal(data) @ jacobian
+        if not np.any(np.abs(along) > 1e-9):
+            return np.inf
+        moved = np.zeros((1, self.model.nv))
+        mujoco.mj_solveM(self.model, data, moved, along[None, :])
+        return float(1 / (along @ moved[0]))
+
+    def _centre(self, data: mujoco.MjData, body: int) -> Array:
+        """Centre of mass of all bodies that are welded together with this one."""
+        model = self.model
+        group = model.body_weldid == model.body_weldid[body]
+        mass = model.body_mass[group]
+        if not mass.sum() > 0:
+            return np.array(data.xpos[body])
+        return np.array(mass @ data.xipos[group] / mass.sum())
+
+    def _normal(self, data: mujoco.MjData) -> Array:
+        for geom in self.geoms:
+            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
+                return np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
+        ends = np.zeros(6)
+        try:
+            mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST, ends)
+        except mujoco.FatalError:  # height fields have no distance
+            ends[:] = 0
+        apart = ends[3:] - ends[:3]
+        if not np.linalg.norm(apart) > 1e-12:
+            apart = data.geom_xpos[self.geoms[1]] - data.geom_xpos[self.geoms[0]]
+        size = float(np.linalg.norm(apart))
+        return np.array(apart / size) if size > 1e-12 else np.array((0.0, 0.0, 1.0))
+
+
+def at_rest(model: mujoco.MjModel) -> mujoco.MjData:
+    """The state of a model at `qpos0`, with its mass matrix."""
+    data = mujoco.MjData(model)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_factorM(model, data)
+    return data
+
+
+@dataclass(frozen=True)
+class Mixed:
+    """What a contact takes from its explicit pair or, without one, from its two geoms.
+
+    Args:
+        solref, solimp: MuJoCo's parameters of the normal row.
+        solreffriction: the same of the friction rows; zeros stand for solref.
+        friction: two sliding, one torsional, two rolling coefficients [-].
+        condim: 1 without friction, 3 with sliding, 4 with torsional, 6 with rolling friction.
+        margin, adhesion: distance at which the contact starts to act [m], and its tensile force [N].
+    """
+
+    solref: tuple[float, ...]
+    solimp: tuple[float, ...]
+    solreffriction: tuple[float, ...]
+    friction: tuple[float, ...]
+    condim: int
+    margin: float
+    adhesion: float
+
+    @classmethod
+    def of(cls, pair: GeomPair) -> Mixed:
+        """The parameters of a pair of geoms, by the rules of MuJoCo's manual (Modeling, Contact parameters).
+
+        The geom of higher priority decides. At equal priority solref and solimp are averaged with the weights solmix,
+        solref is the element-wise minimum if one of the two is not positive, friction and condim are the larger ones.
+        Margins add up.
+        """
+        model, i = pair.model, pair.explicit
+        if i >= 0:
+            return cls(
+                _numbers(model.pair_solref[i]),
+                _numbers(model.pair_solimp[i]),
+                _numbers(model.pair_solreffriction[i]),
+                _numbers(model.pair_friction[i]),
+                int(model.pair_dim[i]),
+                float(model.pair_margin[i]),
+                float(model.pair_adhesion[i]),
+            )
+        geoms = np.array(pair.geoms)
+        priority = model.geom_priority[geoms]
+        if priority[0] != priority[1]:
+            weight = (priority > priority.min()).astype(float)
+            deciding = geoms[weight == 1]
+        else:
+            solmix = model.geom_solmix[geoms]
+            tiny = solmix < mujoco.mjMINVAL
+            weight = np.where(tiny.all(), 0.5, np.where(tiny.any(), ~tiny, solmix / max(solmix.sum(), mujoco.mjMINVAL)))
+            deciding = geoms
+        solref = model.geom_solref[deciding]
+        averaged = weight @ model.geom_solref[geoms]
+        sliding, torsional, rolling = model.geom_friction[deciding].max(axis=0)
+        return cls(
+            _numbers(averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)),
+            _numbers(weight @ model.geom_solimp[geoms]),
+            (0.0, 0.0),
+            _numbers((sliding, sliding, torsional, rolling, rolling)),
+            int(model.geom_condim[deciding].max()),
+            float(model.geom_margin[geoms].sum()),
+            float(model.geom_adhesion[geoms].sum()),
+        )
+
+
+def _numbers(values: Array | tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)

@@ -1,0 +1,108 @@
+"""What keeps a contact in N/m from being what it says: options of the model, the step, and what has not been written.
+
+Each function gives sentences. `spoilers` looks at what `PairContact.apply` leaves as it is, `missing` at what it writes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+from .geompair import GeomPair, Mixed
+
+if TYPE_CHECKING:
+    from .pair import PairContact
+
+SCATTER = 0.02
+"""Scatter of the restitution from step to step that is worth a warning [-]."""
+RESOLVED = 0.3
+"""omega h from which the contact itself is not resolved [-]. The mean of e is then off by about 1 %."""
+
+ENABLED = {
+    mujoco.mjtEnableBit.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of "
+    "the solref and solimp of every contact",
+    mujoco.mjtEnableBit.mjENBL_DIAGEXACT: "the diagexact flag is set, with which the stiffness of a contact changes "
+    "with the pose",
+    mujoco.mjtEnableBit.mjENBL_SLEEP: "the sleep flag is set, with which the contacts of bodies at rest vanish",
+}
+DISABLED = {
+    mujoco.mjtDisableBit.mjDSBL_CONTACT: "contacts are disabled",
+    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT: "constraints are disabled, and contacts with them",
+}
+
+
+def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
+    """What the options of a model do to every contact."""
+    option = model.opt
+    if option.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
+        yield (
+            "the integrator `discrete` takes energy from every contact, as much as a damping ratio of omega h / 2; "
+            "take Euler, implicitfast or RK4"
+        )
+    yield from (text for flag, text in ENABLED.items() if option.enableflags & int(flag))
+    yield from (text for flag, text in DISABLED.items() if option.disableflags & int(flag))
+
+
+def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
+    """What `apply` does not mend."""
+    model = pair.model
+    yield from model_spoilers(model)
+    if pair.explicit >= 0:
+        mixed = Mixed.of(pair)
+        if mixed.margin != 0:
+            yield f"the pair has a margin of {mixed.margin:g} m, at which the spring begins; set it to 0"
+        if mixed.adhesion != 0:
+            yield f"the pair has an adhesion of {mixed.adhesion:g} N, with which the contact pulls"
+    if contact.contacts is None and pair.makes_several_points:
+        yield (
+            "these geoms can meet in several contact points, each with the stiffness k and here with the whole mass; "
+            "give contacts, the number of points that share it (1 keeps the whole mass)"
+        )
+    yield from step_spoilers(contact)
+
+
+def step_spoilers(contact: PairContact) -> Iterator[str]:
+    """What a long step does to the restitution.
+
+    A touch lies anywhere in a step, and the dashpot acts from the next step on. Uniform touches give e a standard
+    deviation of e c h / (m sqrt(12)).
+    """
+    h, omega = contact.timestep, contact.frequency
+    spread = h * contact.restitution * contact.c / (contact.mass * math.sqrt(12))
+    if omega * h > RESOLVED or spread > SCATTER:
+        longest = min(RESOLVED / omega, h * SCATTER / max(spread, 1e-300))
+        yield (
+            f"timestep = {h:g} s is long for a contact of omega = {omega:.4g} rad/s and xi = {contact.xi:.3g}: the "
+            f"restitution depends on where in a step the geoms touch; {longest:.2g} s resolves it"
+        )
+
+
+def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
+    """What a model lacks that `apply` would write."""
+    option = pair.model.opt
+    if pair.explicit < 0:
+        yield "the model has no explicit <pair> of the geoms, so that MuJoCo mixes the parameters of the two geoms"
+        return
+    mixed = Mixed.of(pair)
+    for name in ("solref", "solimp", "solreffriction", "friction"):
+        if name in ("solreffriction", "friction") and contact.condim == 1:
+            continue
+        if not np.allclose(getattr(mixed, name), getattr(contact, name), rtol=1e-5, atol=1e-12):
+            yield f"the pair has another {name}: {getattr(mixed, name)} for {getattr(contact, name)}"
+    if mixed.condim != contact.condim:
+        yield f"the pair has condim {mixed.condim} for {contact.condim}"
+    if not math.isclose(option.timestep, contact.timestep, rel_tol=1e-9):
+        yield f"the model steps by {option.timestep:g} s, and the contact was made for {contact.timestep:g} s"
+    stage = mujoco.mjtIntegrator.mjINT_RK4
+    if (option.integrator == stage) != (contact.integrator == stage.name.removeprefix("mjINT_")):
+        yield f"the contact was made for the integrator {contact.integrator}, and the model has another"
+    if contact.condim == 1:
+        return
+    if option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
+        yield "the friction cone is pyramidal, which changes stiffness and damping of a contact with friction"
+    if option.impratio < contact.impratio * (1 - 1e-5):
+        yield f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force"
