@@ -1,4 +1,4 @@
-"""Two geoms of anyone's model that can meet: who they are, how heavy they are to each other, and what MuJoCo mixes."""
+"""Two geoms of anyone's model that can meet: who they are, and how heavy they are to each other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..problem.quantities import Array, require_array, require_kind, shown
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST = 1e10
 """Distance up to which the nearest points of two geoms are looked for [m]."""
-ONE_POINT = {mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_ELLIPSOID}
+ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 """Geoms that meet any other geom in a single point."""
 
 
@@ -189,70 +189,3 @@ def at_rest(model: mujoco.MjModel) -> mujoco.MjData:
         mujoco.mj_makeM(model, data)
         mujoco.mj_factorM(model, data)
     return data
-
-
-@dataclass(frozen=True)
-class Mixed:
-    """What a contact takes from its explicit pair or, without one, from its two geoms.
-
-    Args:
-        solref, solimp: MuJoCo's parameters of the normal row.
-        solreffriction: the same of the friction rows; zeros stand for solref.
-        friction: two sliding, one torsional, two rolling coefficients [-].
-        condim: 1 without friction, 3 with sliding, 4 with torsional, 6 with rolling friction.
-        margin, adhesion: distance at which the contact starts to act [m], and its tensile force [N].
-    """
-
-    solref: tuple[float, ...]
-    solimp: tuple[float, ...]
-    solreffriction: tuple[float, ...]
-    friction: tuple[float, ...]
-    condim: int
-    margin: float
-    adhesion: float
-
-    @classmethod
-    def of(cls, pair: GeomPair) -> Mixed:
-        """The parameters of a pair of geoms, by the rules of MuJoCo's manual (Modeling, Contact parameters).
-
-        The geom of higher priority decides. At equal priority solref and solimp are averaged with the weights solmix,
-        solref is the element-wise minimum if one of the two is not positive, friction and condim are the larger ones.
-        Margins add up.
-        """
-        model, i = pair.model, pair.explicit
-        if i >= 0:
-            return cls(
-                _numbers(model.pair_solref[i]),
-                _numbers(model.pair_solimp[i]),
-                _numbers(model.pair_solreffriction[i]),
-                _numbers(model.pair_friction[i]),
-                int(model.pair_dim[i]),
-                float(model.pair_margin[i]),
-                float(model.pair_adhesion[i]),
-            )
-        geoms = np.array(pair.geoms)
-        priority = model.geom_priority[geoms]
-        if priority[0] != priority[1]:
-            weight = (priority > priority.min()).astype(float)
-            deciding = geoms[weight == 1]
-        else:
-            solmix = model.geom_solmix[geoms]
-            tiny = solmix < mujoco.mjMINVAL
-            weight = np.where(tiny.all(), 0.5, np.where(tiny.any(), ~tiny, solmix / max(solmix.sum(), mujoco.mjMINVAL)))
-            deciding = geoms
-        solref = model.geom_solref[deciding]
-        averaged = weight @ model.geom_solref[geoms]
-        sliding, torsional, rolling = model.geom_friction[deciding].max(axis=0)
-        return cls(
-            _numbers(averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)),
-            _numbers(weight @ model.geom_solimp[geoms]),
-            (0.0, 0.0),
-            _numbers((sliding, sliding, torsional, rolling, rolling)),
-            int(model.geom_condim[deciding].max()),
-            float(model.geom_margin[geoms].sum()),
-            float(model.geom_adhesion[geoms].sum()),
-        )
-
-
-def _numbers(values: Array | tuple[float, ...]) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)

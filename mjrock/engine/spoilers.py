@@ -1,6 +1,6 @@
 """What keeps a contact in N/m from being what it says: options of the model, the step, and what has not been written.
 
-Each function gives sentences. `spoilers` looks at what `PairContact.apply` leaves as it is, `missing` at what it writes.
+Each function gives sentences: `spoilers` of what `PairContact.apply` leaves as it is, `missing` of what it writes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from .geompair import GeomPair, Mixed
+from .geompair import GeomPair
+from .mixing import Mixed
 
 if TYPE_CHECKING:
     from .pair import PairContact
