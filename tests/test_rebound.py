@@ -54,17 +54,17 @@ def test_the_inverse_holds_for_every_restitution():
 
 
 def test_more_damping_rebounds_less():
-    xi = np.concatenate([np.linspace(0, 3, 500), np.geomspace(3, 1e6, 100)])
+    xi = np.concatenate([np.linspace(0, 2.9, 500), np.geomspace(3, 1e6, 100)])
     assert (np.diff([rebound_restitution(float(x)) for x in xi]) < 0).all()
 
 
 @pytest.mark.parametrize("xi", [-0.1, math.nan])
 def test_a_damping_ratio_that_cannot_be(xi):
-    with pytest.raises(ValueError, match="damping ratio xi = .* valid range xi >= 0"):
+    with pytest.raises(ValueError, match=r"damping ratio xi = .* valid range xi >= 0"):
         rebound_restitution(xi)
 
 
 @pytest.mark.parametrize("e", [-0.1, 1.1, math.nan])
 def test_a_restitution_that_cannot_be(e):
-    with pytest.raises(ValueError, match="restitution = .* is outside the valid range 0 to 1"):
+    with pytest.raises(ValueError, match=r"restitution = .* is outside the valid range 0 to 1"):
         rebound_damping(e)
