@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.rebound import rebound_restitution
 
 FLOOR = '<geom name="floor" type="plane" size="5 5 .1"/>'
 BALL = '<body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1" mass="2"/></body>'
@@ -118,17 +119,23 @@ def made_with_a_long_step(text, **asked):
     return contact, spec.compile()
 
 
-@pytest.mark.parametrize("wrong", ["one body's W", "the pyramidal cone"])
-def test_the_two_mistakes_that_are_made(wrong):
-    """They change e = 0.5 by more than a tenth. This is why W is the sum of both bodies and the cone is set."""
-    contact, model = made_for(TWO_BALLS, "ball", "other", restitution=0.5, friction=0.8, newmark_beta=0.0)
-    if wrong == "one body's W":
-        model.pair_solref[0] *= model.body_invweight0[1, 0] / contact.inverse_weight
-    else:
-        model.opt.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
-        model.opt.impratio = 1
-        assert any("pyramidal" in caveat for caveat in contact.caveats(model))
-    assert abs(rebound(contact, model)[0] - 0.5) > 0.02
+def test_the_weight_of_one_body_is_not_enough():
+    """With the W of one of two bodies the contact is softer by W1 / W, and it rebounds as such a contact does."""
+    contact, model = made_for(TWO_BALLS, "ball", "other", restitution=0.5)
+    for body, measured in ((1, 0.55), (2, 0.674)):
+        share = model.body_invweight0[body, 0] / contact.inverse_weight
+        model.pair_solref[0] = np.multiply(contact.solref, share)
+        assert rebound(contact, model)[0] == pytest.approx(measured, abs=0.001)
+        assert rebound_restitution(contact.xi * math.sqrt(share)) == pytest.approx(measured, abs=0.001)
+
+
+def test_the_pyramidal_cone_is_another_contact():
+    contact, model = made_for(TWO_BALLS, "ball", "other", restitution=0.5, friction=0.8)
+    model.opt.cone, model.opt.impratio = mujoco.mjtCone.mjCONE_PYRAMIDAL, 1
+    assert any("pyramidal" in caveat for caveat in contact.caveats(model))
+    measured = rebound(contact, model)[0]
+    assert measured == pytest.approx(0.402, abs=0.001)
+    assert mr.inspect_contacts(model)[0].restitution == pytest.approx(measured, rel=0.003)
 
 
 @pytest.mark.parametrize(("slide", "friction"), [(1.0, 0.1), (1.0, 1.0), (5.0, 1.0)])
@@ -245,6 +252,21 @@ def test_a_compiled_model_keeps_its_pair():
     assert rebound(contact, model)[0] == pytest.approx(0.5, rel=0.003)
 
 
+def test_a_compiled_model_without_a_pair_can_have_it_on_its_geoms():
+    """The geoms mix to the contact whatever they were, because they are equal."""
+    text = ON_A_PLANE.replace('name="floor"', 'name="floor" priority="2" solmix="3" solimp=".5 .6 .1"')
+    model = mujoco.MjModel.from_xml_string(text)
+    contact = mr.contact_for(model, "ball", "floor", k=1e6, restitution=0.5, friction=0.4)
+    contact.apply(model, on_geoms=True)
+    assert [caveat[:50] for caveat in contact.caveats(model)] == [
+        "the model has no explicit <pair> of the geoms, so ",
+        "geoms have no solreffriction, so that sliding chan",
+    ]
+    assert rebound(contact, model)[0] == pytest.approx(0.5, rel=0.003)
+    assert (mr.inspect_contacts(model)[0].k, model.geom_friction[0, 0]) == (pytest.approx(1e6), 0.4)
+    assert abs(rebound(contact, model, slide=1.0)[0] - 0.5) > 0.03
+
+
 def test_a_specification_keeps_one_pair():
     spec = mujoco.MjSpec.from_string(ON_A_PLANE)
     mr.contact_for(spec, "ball", "floor", k=1e5, restitution=0.2).apply(spec)
@@ -309,9 +331,7 @@ def test_the_step_that_it_names_is_not_warned_of():
 def test_caveats_say_what_was_not_written():
     contact, model = made_for(ON_A_PLANE, "ball", "floor", restitution=0.5)
     bare = mujoco.MjModel.from_xml_string(ON_A_PLANE)
-    assert [caveat.split(",")[0] for caveat in contact.caveats(bare)] == [
-        "the model has no explicit <pair> of the geoms"
-    ]
+    assert "the model has no explicit <pair> of the geoms" in contact.caveats(bare)[0]
     changes = {
         "cone": (model.opt, "cone", 0, "pyramidal"),
         "impratio": (model.opt, "impratio", 1.0, "impratio = 1 is below"),
@@ -371,7 +391,9 @@ def test_what_cannot_be_is_refused(asked, complaint):
 def test_what_cannot_be_applied_is_refused():
     bare = mujoco.MjModel.from_xml_string(ON_A_PLANE)
     contact = mr.contact_for(bare, "ball", "floor", k=1e6, restitution=0.5)
-    with pytest.raises(ValueError, match=r"model has no explicit <pair> of 'ball' and 'floor'; .* MjSpec .* \.xml"):
+    with pytest.raises(
+        ValueError, match=r"model has no explicit <pair> of 'ball' and 'floor'; .* MjSpec .* \.xml .* on_geoms=True"
+    ):
         contact.apply(bare)
     heavy = mujoco.MjSpec.from_string(ON_A_PLANE.replace('mass="2"', 'mass="3"'))
     with pytest.raises(ValueError, match=r"inverse weight 0.333333333 1/kg .* was made for 0.5 1/kg"):

@@ -8,6 +8,7 @@ from xml.sax.saxutils import quoteattr
 
 import mujoco
 
+from ..problem.quantities import require_flag
 from ..problem.rebound import rebound_restitution
 from .geompair import GeomPair, compiled
 from .spoilers import missing, spoilers
@@ -81,7 +82,7 @@ class PairContact:
             f' condim="{self.condim}" {attributes}/>\n</contact>\n'
         )
 
-    def apply(self, model: mujoco.MjModel | mujoco.MjSpec) -> None:
+    def apply(self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False) -> None:
         """Write the contact into a model, with the options that it needs.
 
         A compiled model has to have an explicit `<pair>` of the two geoms, which takes the numbers. A specification
@@ -90,35 +91,52 @@ class PairContact:
 
         Args:
             model: the model for which the contact was made, or another with the same geoms and bodies. It is changed.
+            on_geoms: whether the two geoms of a compiled model without such a pair take the numbers. An approach
+                without sliding is then the same. Geoms have no solreffriction, so that sliding changes the normal
+                force, and every other contact of these geoms mixes the numbers too.
 
         Raises:
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
                 have another inverse weight.
         """
+        require_flag("on_geoms", on_geoms)
         found = self._found(compiled(model))
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            target = next((pair for pair in model.pairs if {pair.geomname1, pair.geomname2} == {*found.names}), None)
-            pair = target if target is not None else model.add_pair(geomname1=self.geom1, geomname2=self.geom2)
-            pair.condim = self.condim
-            pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
-            pair.friction = self.friction
-            option = model.option
+            self._write_spec(model, found)
+        elif found.explicit >= 0:
+            self._write_pair(model, found.explicit)
+        elif on_geoms:
+            self._write_geoms(model)
         else:
-            i = found.explicit
-            if i < 0:
-                raise ValueError(
-                    f"model has no explicit <pair> of {self.geom1 or self.ids[0]!r} and {self.geom2 or self.ids[1]!r}; "
-                    "apply the contact to its MjSpec before compiling, or put the text of .xml into the MJCF"
-                )
-            model.pair_dim[i] = self.condim
-            model.pair_solref[i], model.pair_solimp[i] = self.solref, self.solimp
-            model.pair_solreffriction[i], model.pair_friction[i] = self.solreffriction, self.friction
-            option = model.opt
+            raise ValueError(
+                f"model has no explicit <pair> of {self.geom1 or self.ids[0]!r} and {self.geom2 or self.ids[1]!r}; "
+                "apply the contact to its MjSpec before compiling, put the text of .xml into the MJCF, or let both "
+                "geoms take it with on_geoms=True"
+            )
+        option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
         option.timestep = self.timestep
         if self.condim > 1:
             option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
             option.impratio = max(float(option.impratio), self.impratio)
+
+    def _write_spec(self, spec: mujoco.MjSpec, found: GeomPair) -> None:
+        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*found.names})
+        pair = next(named, None) or spec.add_pair(geomname1=self.geom1, geomname2=self.geom2)
+        pair.condim, pair.friction = self.condim, self.friction
+        pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
+
+    def _write_pair(self, model: mujoco.MjModel, i: int) -> None:
+        model.pair_dim[i], model.pair_friction[i] = self.condim, self.friction
+        model.pair_solref[i], model.pair_solimp[i] = self.solref, self.solimp
+        model.pair_solreffriction[i] = self.solreffriction
+
+    def _write_geoms(self, model: mujoco.MjModel) -> None:
+        """Equal geoms of equal priority mix to what they are."""
+        geoms = list(self._found(model).geoms)
+        model.geom_solref[geoms], model.geom_solimp[geoms] = self.solref, self.solimp
+        model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
+        model.geom_priority[geoms] = model.geom_priority[geoms].max()
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
         """What in a model keeps the contact from being what it says, one sentence each; empty if nothing does.

@@ -84,14 +84,15 @@ def step_spoilers(contact: PairContact) -> Iterator[str]:
 
 def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     """What a model lacks that `apply` would write."""
-    option = pair.model.opt
+    option, mixed = pair.model.opt, Mixed.of(pair)
+    names = ["solref", "solimp"] + (["friction"] if contact.condim > 1 else [])
     if pair.explicit < 0:
         yield "the model has no explicit <pair> of the geoms, so that MuJoCo mixes the parameters of the two geoms"
-        return
-    mixed = Mixed.of(pair)
-    for name in ("solref", "solimp", "solreffriction", "friction"):
-        if name in ("solreffriction", "friction") and contact.condim == 1:
-            continue
+        if contact.condim > 1:
+            yield "geoms have no solreffriction, so that sliding changes the normal force"
+    elif contact.condim > 1:
+        names.append("solreffriction")
+    for name in names:
         if not np.allclose(getattr(mixed, name), getattr(contact, name), rtol=1e-5, atol=1e-12):
             yield f"the pair has another {name}: {getattr(mixed, name)} for {getattr(contact, name)}"
     if mixed.condim != contact.condim:
