@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from mjrock.problem.rebound import rebound_damping, rebound_restitution
 
 
-def integrated(xi):
+def integrated(xi, gravity=0.0):
     """Speed at which the force of the contact reaches zero, for unit mass, stiffness and speed of approach."""
 
     def force(t, y):
@@ -18,7 +18,7 @@ def integrated(xi):
     force.terminal, force.direction = True, -1
     end = 10 * (1 + xi)
     solved = solve_ivp(
-        lambda t, y: (y[1], -y[0] - 2 * xi * y[1]), (0, end), (0.0, 1.0), events=force, rtol=1e-11, atol=1e-13
+        lambda t, y: (y[1], gravity - y[0] - 2 * xi * y[1]), (0, end), (0.0, 1.0), events=force, rtol=1e-11, atol=1e-13
     )
     assert solved.status == 1
     return -solved.y[1, -1]
@@ -33,6 +33,12 @@ def test_it_is_not_the_formula_of_a_dashpot_that_pulls():
     """At 30 % damping the textbook's formula loses a quarter more speed."""
     assert rebound_restitution(0.3) == pytest.approx(0.4510, abs=1e-4)
     assert math.exp(-math.pi * 0.3 / math.sqrt(1 - 0.09)) == pytest.approx(0.3723, abs=1e-4)
+
+
+@pytest.mark.parametrize("xi", [0.05, 0.3, 1.0])
+def test_what_gravity_takes_from_it(xi):
+    """At g / (omega v) = 0.01."""
+    assert 0.0008 < rebound_restitution(xi) - integrated(xi, gravity=0.01) < 0.0034
 
 
 def test_its_limits():

@@ -13,7 +13,8 @@ its first zero of acceleration at the phase 2 phi = 2 acos(xi) of the damped per
 exp(-2 phi xi / sqrt(1 - xi^2)) there. The textbook's exp(-pi xi / sqrt(1 - xi^2)) waits for x = 0 instead. It lets the
 dashpot pull, and is zero from xi = 1 on.
 
-Forces other than the contact's are left out. Gravity g changes e by about g / (omega v), with v the speed of approach.
+Forces other than the contact's are left out. Gravity g lowers e by 0.1 to 0.3 times g / (omega v), with v the speed of
+approach, as long as that is small. A slower body stays on the contact.
 """
 
 from __future__ import annotations

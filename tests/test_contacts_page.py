@@ -1,0 +1,53 @@
+"""The page on contacts for any model says what is so: its example runs, and its figures are those of the formulas."""
+
+import math
+import re
+from pathlib import Path
+
+import mujoco
+import pytest
+
+import mjrock as mr
+from mjrock.problem.rebound import rebound_damping, rebound_restitution
+
+PAGE = (Path(__file__).parents[1] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
+
+
+def test_the_example_runs_and_does_what_it_says():
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert len([line for line in code.splitlines() if line]) <= 10
+    names: dict[str, object] = {}
+    exec(code, names)
+    model = names["model"]
+    data = mujoco.MjData(model)
+    speeds = [0.0]
+    while len(speeds) < 3 or speeds[-2] < 0 or speeds[-1] > speeds[-2]:
+        mujoco.mj_step(model, data)
+        speeds.append(float(data.qvel[2]))
+    assert max(speeds) / -min(speeds) == pytest.approx(0.5, rel=0.01)
+    mujoco.mj_step(model, data, 15000)
+    assert 0.1 - data.qpos[2] == pytest.approx(2 * 9.81 / 1e5, rel=1e-3)
+
+
+def test_its_figures():
+    assert "0.372\ninstead of 0.451 at xi = 0.3" in PAGE
+    assert rebound_restitution(0.3) == pytest.approx(0.451, abs=5e-4)
+    assert math.exp(-math.pi * 0.3 / math.sqrt(0.91)) == pytest.approx(0.372, abs=5e-4)
+    assert rebound_damping(1e-3) == pytest.approx(16, abs=0.5)
+    assert "0.58 e xi omega h" in PAGE
+    assert 2 / math.sqrt(12) == pytest.approx(0.58, abs=5e-3)
+
+
+def test_its_table_is_what_the_script_prints():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><geom name="floor" type="plane" size="5 5 .1"/><body pos="0 0 .1"><freejoint/>
+        <geom name="ball" size=".1" mass="2"/></body></worldbody></mujoco>"""
+    )
+    (found,) = mr.inspect_contacts(model)
+    figures = (found.k, found.c, found.mass, found.inertia, found.impedance, found.xi, found.restitution)
+    printed = [float(word) for word in PAGE.splitlines()[-1].split()[3:-1]]
+    assert printed == pytest.approx(figures, rel=4e-3)
+
+
+def test_it_is_short():
+    assert len(PAGE.splitlines()) <= 120
