@@ -14,7 +14,7 @@ from .contact import WITHIN, inertia_of, longest_step, pair_values, row
 from .geompair import GeomPair, compiled
 from .mixing import Mixed
 from .pair import PairContact
-from .spoilers import spoilers
+from .spoilers import UNSOUND, spoilers
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -62,7 +62,7 @@ def contact_for(
             mass. It is not given together with `mass`.
         contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None is 1.
         timestep: MuJoCo's step [s], positive. None takes the model's.
-        newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is stable at every step.
+        newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is average acceleration.
 
     Returns:
         The contact, with `.solref .solimp .solreffriction .friction .xml` and `.apply(model)`.
@@ -82,9 +82,9 @@ def contact_for(
     points = 1 if contacts is None else require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
     share = _mass(pair, mass, at) / points
     c = _dashpot(k, share, c, restitution, xi)
-    explicit_euler = made.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4
-    inertia = _inertia(k, c, h, pair.inverse_weight, beta if explicit_euler else None)
-    stiffness, damping, d = pair_values(k, c, inertia, pair.inverse_weight)
+    staged = made.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
+    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
+    stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
     coefficients, condim = _friction(pair, friction)
     rate = min(math.sqrt(k / share), 1 / h)  # slip stops in 1 / omega; see the page on contacts for why not sooner
     contact = PairContact(
@@ -139,14 +139,23 @@ def _dashpot(k: float, mass: float, c: float | None, restitution: float | None, 
     return 2 * ratio * math.sqrt(k * mass)
 
 
-def _inertia(k: float, c: float, h: float, inverse_weight: float, newmark_beta: float | None) -> float:
-    """Inertia of the contact row [kg]: Newmark's in steps of Euler's method, the least that there is without beta."""
+def _row(
+    k: float, c: float, mass: float, h: float, inverse_weight: float, newmark_beta: float, staged: bool
+) -> tuple[float, float]:
+    """Dashpot [N s/m] and inertia [kg] of the contact row.
+
+    The inertia is Newmark's in steps of Euler's method, and the least that there is in the stages of RK4. A step that
+    is longer than 1 / omega could throw a touch back with more energy than it came with. There the row has the extra
+    dashpot h k and beta = 1/2 at least, with which e stays below 0.6 whatever the step.
+    """
     if h > longest_step(k, inverse_weight):
         raise ValueError(
             f"stiffness k = {k:g} N/m at timestep = {h:g} s is beyond what MuJoCo represents; "
             f"the longest step is {longest_step(k, inverse_weight):.3g} s"
         )
-    dashpot, inertia = row(k, c, h, inverse_weight, newmark_beta or 0.0, 0.0)
+    sound = h * math.sqrt(k / mass) <= UNSOUND
+    beta, ringing = (newmark_beta, 0.0) if sound else (max(newmark_beta, 0.5), 1.0)
+    dashpot, inertia = row(k, c, h, inverse_weight, beta, ringing)
     if dashpot < c:
         raise ValueError(
             f"damping c = {c:g} N s/m at timestep = {h:g} s is beyond what MuJoCo represents, {dashpot:.3g} N s/m; "
@@ -154,7 +163,7 @@ def _inertia(k: float, c: float, h: float, inverse_weight: float, newmark_beta: 
         )
     if inertia > inertia_of(WITHIN[1], inverse_weight):
         raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
-    return inertia_of(WITHIN[0], inverse_weight) if newmark_beta is None else inertia
+    return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
 
 
 def _friction(pair: GeomPair, friction: float | None) -> tuple[tuple[float, float, float, float, float], int]:
