@@ -96,6 +96,15 @@ def test_the_default_of_mujoco():
         assert found.k == pytest.approx(float(mass) * 9 * 0.9 / (0.95 * 0.02) ** 2, rel=1e-6)
 
 
+def test_a_ball_on_uneven_ground_can_have_several_points():
+    text = """<mujoco><asset><hfield name="hill" nrow="3" ncol="3" size="1 1 .1 .1"/></asset><worldbody>
+    <geom name="hill" type="hfield" hfield="hill"/><body pos="0 0 1"><freejoint/><geom size=".1" mass="2"/></body>
+    </worldbody></mujoco>"""
+    (found,) = mr.inspect_contacts(mujoco.MjModel.from_xml_string(text))
+    assert found.mass == pytest.approx(2.0)
+    assert any("several points" in note for note in found.notes)
+
+
 def test_a_box_can_have_several_points():
     text = MODEL.format(h=1e-3, cone="elliptic", impratio=1, flags="", floor="", ball='type="box"', pair="")
     (found,) = mr.inspect_contacts(mujoco.MjModel.from_xml_string(text.replace('size=".1" ', 'size=".1 .1 .1" ')))

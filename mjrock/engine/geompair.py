@@ -14,7 +14,9 @@ GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST = 1e10
 """Distance up to which the nearest points of two geoms are looked for [m]."""
 ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
-"""Geoms that meet any other geom in a single point."""
+"""Geoms that meet any other convex geom in a single point."""
+UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
+"""Geoms that are not convex."""
 
 
 def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
@@ -124,7 +126,8 @@ class GeomPair:
     @property
     def makes_several_points(self) -> bool:
         """Whether MuJoCo can make more than one contact of these geoms at a time."""
-        return not any(self.model.geom_type[geom] in ONE_POINT for geom in self.geoms)
+        kinds = [self.model.geom_type[geom] for geom in self.geoms]
+        return any(kind in UNEVEN for kind in kinds) or not any(kind in ONE_POINT for kind in kinds)
 
     def mass(self, data: mujoco.MjData | None = None, at: object = None) -> float:
         """Effective mass of an approach along the contact's normal, at the model's `qpos0` [kg].
