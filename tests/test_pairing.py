@@ -440,3 +440,33 @@ def test_the_model_is_left_alone():
     before = spec.to_xml()
     mr.contact_for(spec, "ball", "floor", k=1e6, restitution=0.5)
     assert spec.to_xml() == before
+
+
+def test_the_row_is_newmarks():
+    """Average acceleration by default, wherever the step resolves the contact, whatever the mass."""
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    for mass, timestep in ((2.0, 1e-4), (900.0, 9e-3)):
+        contact = mr.contact_for(spec, "ball", "floor", k=1e6, c=30.0, mass=mass, timestep=timestep)
+        row = mr.contact_parameters(1e6, 30.0, timestep=timestep, inverse_weight=0.5)
+        assert contact.solref == pytest.approx(row.solref, rel=1e-12)
+        assert contact.solimp == pytest.approx(row.solimp, rel=1e-12)
+
+
+def test_the_row_of_a_step_that_does_not_resolve_it():
+    """An extra dashpot h k, on the velocity at the end of the step, and beta = 1/2. Friction stops within the step."""
+    h, k, c = 5e-3, 1e6, 30.0
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    with pytest.warns(UserWarning, match="does not resolve"):
+        contact = mr.contact_for(spec, "ball", "floor", k=k, c=c, timestep=h)
+    assert mr.contact_stiffness(contact.solref, contact.solimp, inverse_weight=0.5) == pytest.approx((k, c + h * k))
+    d = contact.solimp[0]
+    assert d / ((1 - d) * 0.5) == pytest.approx(h * (c + h * k) + 0.5 * h**2 * k)
+    assert contact.solreffriction == pytest.approx((0, -d / h))
+    assert contact.c == c
+
+
+def test_a_contact_without_friction_asks_for_nothing_more():
+    contact = mr.contact_for(mujoco.MjSpec.from_string(ON_A_PLANE), "ball", "floor", k=1e6, c=30.0, friction=0)
+    assert (contact.condim, contact.solreffriction, contact.impratio) == (1, (0.0, 0.0), 1.0)
+    assert "cone" not in contact.xml
+    assert "friction" not in contact.xml
