@@ -222,9 +222,9 @@ def test_a_corner_has_its_own_mass():
 
 
 def test_what_is_welded_moves_as_one():
-    """Two geoms on bodies that are welded to one moving body; the mass is that of the whole."""
+    """A foot beside the body that it is welded to; the mass is that of the whole, at the centre of the whole."""
     whole = """<body pos="0 0 .1"><freejoint/><geom size=".1" mass="2"/>
-    <body name="foot" pos="0 0 .05"><geom name="foot" size=".1" mass="3"/></body></body>"""
+    <body name="foot" pos=".3 0 .05"><geom name="foot" size=".1" mass="3"/></body></body>"""
     contact, _ = made_for(scene(FLOOR, whole), "foot", "floor", restitution=0.5)
     assert contact.mass == pytest.approx(5.0)
 
@@ -291,7 +291,7 @@ def test_a_larger_impratio_stays():
     assert model.opt.impratio == 1e9
 
 
-@pytest.mark.parametrize("order", [("ball", "floor"), (1, 0), (np.int64(1), "floor"), ("thing", 0)])
+@pytest.mark.parametrize("order", [("ball", "floor"), (1, 0), (np.int64(1), "floor"), ("thing", "world")])
 def test_geoms_by_name_by_number_and_by_body(order):
     text = ON_A_PLANE.replace('body name="ball"', 'body name="thing"')
     assert mr.contact_for(mujoco.MjSpec.from_string(text), *order, k=1e6, restitution=0.5).geom1 == "ball"
@@ -390,7 +390,8 @@ def _write(owner, name, value):
         ({"c": -1.0}, "damping c = -1 N s/m"),
         ({"c": 1.0, "k": 0.0}, "stiffness k = 0 N/m"),
         ({"c": 1.0, "geom1": "bal"}, "geom1 = 'bal' is no geom or body .* floor, ball"),
-        ({"c": 1.0, "geom1": 7}, "geom1 = 7 is outside the valid range 0 to 1"),
+        ({"c": 1.0, "geom1": -1}, "geom1 = -1 is outside"),
+        ({"c": 1.0, "geom1": 2}, "geom1 = 2 is outside the valid range 0 to 1"),
         ({"c": 1.0, "geom1": 1.0}, "geom1 = 1.0 of type float is neither the name nor the number"),
         ({"c": 1.0, "geom1": "floor"}, "geom1 and geom2 = 'floor' .* are the same geom"),
         ({"c": 1.0, "model": ON_A_PLANE}, "model = .* is not a MjModel or MjSpec"),

@@ -162,9 +162,7 @@ class GeomPair:
         model = self.model
         group = model.body_weldid == model.body_weldid[body]
         mass = model.body_mass[group]
-        if not mass.sum() > 0:
-            return np.array(data.xpos[body])
-        return np.array(mass @ data.xipos[group] / mass.sum())
+        return np.array(mass @ data.xipos[group] / max(mass.sum(), mujoco.mjMINVAL))
 
     def _normal(self, data: mujoco.MjData) -> Array:
         for geom in self.geoms:
