@@ -240,6 +240,16 @@ def test_joints_count():
         mr.contact_for(mujoco.MjSpec.from_string(scene(FLOOR, level)), "ball", "floor", k=1e6, restitution=0.5)
 
 
+@pytest.mark.parametrize(("height", "normal"), [(1.5, 0.8), (0.4, 0.8), (0.4 - 1e-9, 0.8), (0.35, 0.8)])
+def test_the_normal_is_that_of_the_shortest_distance(height, normal):
+    """A ball above a face of a fixed box, beside its middle: apart from it, touching it, and in it."""
+    table = '<geom name="floor" type="box" size="2 2 .3"/>'
+    ball = f"""<body name="ball" pos=".5 .7 {height}"><joint type="slide" axis="0 .6 .8"/>
+    <geom name="ball" size=".1" mass="2"/></body>"""
+    contact, _ = made_for(scene(table, ball), "ball", "floor", restitution=0.5)
+    assert contact.mass == pytest.approx(2 / normal**2, rel=1e-3)
+
+
 def test_the_text_is_the_same_contact():
     contact, model = made_for(ON_A_PLANE, "ball", "floor", restitution=0.5, friction=0.7)
     pasted = mujoco.MjModel.from_xml_string(ON_A_PLANE.replace("</mujoco>", contact.xml + "</mujoco>"))

@@ -13,6 +13,9 @@ from ..problem.quantities import Array, require_array, require_kind, shown
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST = 1e10
 """Distance up to which the nearest points of two geoms are looked for [m]."""
+TOUCHING, ASIDE = 1e-3, 1e-2
+"""Geoms that are nearer than this share of the distance of their centres touch, and the shortest distance has no
+direction. It is then looked for with one of them moved aside by the other share."""
 ONE_POINT = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 """Geoms that meet any other convex geom in a single point."""
 UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
@@ -168,16 +171,24 @@ class GeomPair:
         for geom in self.geoms:
             if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
                 return np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
+        between = data.geom_xpos[self.geoms[1]] - data.geom_xpos[self.geoms[0]]
+        apart = self._shortest(data)
+        if np.linalg.norm(apart) < TOUCHING * np.linalg.norm(between):
+            place = np.array(data.geom_xpos[self.geoms[1]])
+            data.geom_xpos[self.geoms[1]] += ASIDE * between
+            apart = self._shortest(data)
+            data.geom_xpos[self.geoms[1]] = place
+        vector = next(one for one in (apart, between, np.array((0.0, 0.0, 1.0))) if np.any(np.abs(one) > 1e-12))
+        return np.array(vector / np.linalg.norm(vector))
+
+    def _shortest(self, data: mujoco.MjData) -> Array:
+        """Vector between the nearest points of the geoms [m]; zero where MuJoCo knows none."""
         ends = np.zeros(6)
         try:
             mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST, ends)
-        except mujoco.FatalError:  # height fields have no distance
-            ends[:] = 0
-        apart = ends[3:] - ends[:3]
-        if not np.linalg.norm(apart) > 1e-12:
-            apart = data.geom_xpos[self.geoms[1]] - data.geom_xpos[self.geoms[0]]
-        size = float(np.linalg.norm(apart))
-        return np.array(apart / size) if size > 1e-12 else np.array((0.0, 0.0, 1.0))
+        except mujoco.FatalError:
+            return np.zeros(3)
+        return ends[3:] - ends[:3]
 
 
 def at_rest(model: mujoco.MjModel) -> mujoco.MjData:
