@@ -93,6 +93,7 @@ def test_the_default_of_mujoco():
         text = MODEL.format(h=1e-6, cone="elliptic", impratio=1, flags="", floor="", ball="", pair="")
         (found,) = mr.inspect_contacts(mujoco.MjSpec.from_string(text.replace('mass="2"', f'mass="{mass}"')))
         assert found.restitution == pytest.approx(np.exp(-2), rel=1e-3)
+        assert found.frequency == pytest.approx(0.9 / (0.95 * 0.02), rel=1e-3)
         assert found.k == pytest.approx(float(mass) * 9 * 0.9 / (0.95 * 0.02) ** 2, rel=1e-6)
 
 
@@ -136,7 +137,9 @@ CROWD = """<mujoco><option><flag {flags}/></option><worldbody>
     <body name="finger"><geom name="tip" pos=".1 0 0" size="9"/></body></body></body>
 <body name="dust" pos="0 0 3"><freejoint/><geom name="dust" size="9" contype="2" conaffinity="4"/></body>
 <body name="grit" pos="0 0 4"><freejoint/><geom name="grit" size="9" contype="4" conaffinity="0"/></body>
-</worldbody><contact><exclude body1="hand" body2="world"/><pair geom1="grit" geom2="floor"/></contact></mujoco>"""
+<body name="sand" pos="0 0 5"><freejoint/><geom name="sand" size="9"/></body>
+</worldbody><contact><exclude body1="hand" body2="world"/><exclude body1="sand" body2="arm"/>
+<pair geom1="grit" geom2="floor"/></contact></mujoco>"""
 
 
 @pytest.mark.parametrize("flags", ["", 'filterparent="disable"'])
@@ -148,9 +151,17 @@ def test_the_candidates_are_those_of_the_engine(flags):
     made = {frozenset(model.geom(int(geom)).name for geom in contact.geom) for contact in data.contact}
     found = mr.inspect_contacts(model)
     assert {frozenset((contact.geom1, contact.geom2)) for contact in found} == made
-    assert len(found) == len(made) == (10 if flags else 8)
+    assert len(found) == len(made) == (15 if flags else 13)
     assert [contact.explicit for contact in found[:2]] == [True, False]
     assert len(mr.inspect_contacts(model, candidates=False)) == 1
+
+
+def test_a_contact_without_a_spring():
+    """A dashpot alone stops everything, and a contact with neither stops nothing. MuJoCo takes both."""
+    for dashpot, xi, e in ((-5, np.inf, 0.0), (0, 0.0, 1.0)):
+        both = f'solref="0 {dashpot}"'
+        (found,) = mr.inspect_contacts(made(floor=both, ball=both))
+        assert (found.k, found.xi, found.restitution) == (0.0, xi, e)
 
 
 def test_a_contact_without_an_approach_has_no_restitution():
