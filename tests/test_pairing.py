@@ -6,72 +6,10 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
+from pairs import BALL, BOX, FLOOR, ON_A_PLANE, SCENES, TWO_BALLS, made_for, rebound, scene
 
 import mjrock as mr
 from mjrock.problem.rebound import rebound_restitution
-
-FLOOR = '<geom name="floor" type="plane" size="5 5 .1"/>'
-BALL = '<body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1" mass="2"/></body>'
-OTHER = '<body name="other" pos="0 0 -.3"><freejoint/><geom name="other" size=".3" mass="5"/></body>'
-BOX = """<body name="box" pos="0 0 .1" quat="{quat}"><freejoint/>
-<geom name="box" type="box" size=".2 .3 .1" mass="2"/></body>"""
-
-
-def scene(*things, timestep=1e-5, gravity=0.0, options="", pair=""):
-    return (
-        f'<mujoco><option timestep="{timestep}" gravity="0 0 {-gravity}" {options}/>'
-        f"<worldbody>{''.join(things)}</worldbody><contact>{pair}</contact></mujoco>"
-    )
-
-
-ON_A_PLANE = scene(FLOOR, BALL)
-TWO_BALLS = scene(BALL, OTHER)
-FLAT_BOX = scene(FLOOR, BOX.format(quat="1 0 0 0"))
-SCENES = {
-    "a ball on a plane": (ON_A_PLANE, "ball", "floor", 1, 2.0),
-    "two free balls": (TWO_BALLS, "ball", "other", 1, 10 / 7),
-    "a box on four corners": (FLAT_BOX, "box", "floor", 4, 0.5),
-}
-"""Text, geoms, contact points, and mass that a contact point stops."""
-
-
-def made_for(text, geom1, geom2, **asked):
-    """The contact, and a compiled model that has it and nothing that spoils it."""
-    spec = mujoco.MjSpec.from_string(text)
-    contact = mr.contact_for(spec, geom1, geom2, **{"k": 1e6, "contacts": 1} | asked)
-    contact.apply(spec)
-    model = spec.compile()
-    assert contact.caveats(model) == ()
-    return contact, model
-
-
-def rebound(contact, model, slide=0.0, phase=0.5, direction=(0, 0, 1), at=None):
-    """Relative speed after the contact over that before. The first body moves down by 1 m/s.
-
-    Args:
-        contact, model: what is measured.
-        slide: horizontal speed of the first body.
-        phase: where in a step the touch falls.
-        direction, at: a point of the first body, at which the speeds are taken; its centre by default.
-    """
-    data = mujoco.MjData(model)
-    data.qpos[2] += (3 + phase) * model.opt.timestep
-    data.qvel[0], data.qvel[2] = slide, -1.0
-    touched = False
-    for _ in range(20 + int(60 * max(1, contact.xi) / (contact.frequency * model.opt.timestep))):
-        mujoco.mj_step(model, data)
-        pressed = data.nefc > 0 and data.efc_force[: data.nefc].max() > 0
-        touched |= pressed
-        if touched and not pressed:
-            break
-    assert touched
-    assert not pressed
-    speed = np.array(data.qvel[:3])
-    if at is not None:
-        rotation = data.xmat[1].reshape(3, 3)
-        speed += np.cross(rotation @ data.qvel[3:6], at - model.qpos0[:3])
-    other = data.qvel[6:9] if model.nv > 6 else np.zeros(3)
-    return float((speed - other) @ direction), data
 
 
 @pytest.mark.parametrize("friction", [None, 0.0])
@@ -250,80 +188,6 @@ def test_the_normal_is_that_of_the_shortest_distance(height, normal):
     assert contact.mass == pytest.approx(2 / normal**2, rel=1e-3)
 
 
-def test_the_text_is_the_same_contact():
-    contact, model = made_for(ON_A_PLANE, "ball", "floor", restitution=0.5, friction=0.7)
-    pasted = mujoco.MjModel.from_xml_string(ON_A_PLANE.replace("</mujoco>", contact.xml + "</mujoco>"))
-    assert contact.caveats(pasted) == ()
-    for name in ("pair_solref", "pair_solimp", "pair_solreffriction", "pair_friction", "pair_dim"):
-        assert (getattr(pasted, name) == getattr(model, name)).all()
-    assert (pasted.opt.cone, pasted.opt.impratio) == (model.opt.cone, model.opt.impratio)
-    assert tuple(pasted.pair_solref[0]) == contact.solref
-
-
-def test_a_compiled_model_keeps_its_pair():
-    """The pair takes the numbers, in either order of the geoms, and nothing else of the model changes."""
-    text = scene(FLOOR, BALL, pair='<pair geom1="ball" geom2="floor" friction=".3 .3 .1 .2 .2" condim="4"/>')
-    model = mujoco.MjModel.from_xml_string(text)
-    contact = mr.contact_for(model, "floor", "ball", k=1e6, restitution=0.5)
-    assert (contact.friction, contact.condim) == ((0.3, 0.3, 0.1, 0.2, 0.2), 4)
-    assert contact.caveats(model)
-    contact.apply(model)
-    assert contact.caveats(model) == ()
-    assert rebound(contact, model)[0] == pytest.approx(0.5, rel=0.003)
-
-
-def test_a_compiled_model_without_a_pair_can_have_it_on_its_geoms():
-    """The geoms mix to the contact whatever they were, because they are equal."""
-    text = ON_A_PLANE.replace('name="floor"', 'name="floor" priority="2" solmix="3" solimp=".5 .6 .1"')
-    model = mujoco.MjModel.from_xml_string(text)
-    contact = mr.contact_for(model, "ball", "floor", k=1e6, restitution=0.5, friction=0.4)
-    contact.apply(model, on_geoms=True)
-    assert [caveat[:50] for caveat in contact.caveats(model)] == [
-        "the model has no explicit <pair> of the geoms, so ",
-        "geoms have no solreffriction, so that sliding chan",
-    ]
-    assert rebound(contact, model)[0] == pytest.approx(0.5, rel=0.003)
-    assert (mr.inspect_contacts(model)[0].k, model.geom_friction[0, 0]) == (pytest.approx(1e6), 0.4)
-    assert abs(rebound(contact, model, slide=1.0)[0] - 0.5) > 0.03
-
-
-def test_a_specification_keeps_one_pair():
-    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
-    mr.contact_for(spec, "ball", "floor", k=1e5, restitution=0.2).apply(spec)
-    mr.contact_for(spec, "floor", "ball", k=1e6, restitution=0.5).apply(spec)
-    assert spec.compile().npair == 1
-
-
-def test_a_larger_impratio_stays():
-    model = made_for(ON_A_PLANE, "ball", "floor", restitution=0.5)[1]
-    model.opt.impratio = 1e9
-    mr.contact_for(model, "ball", "floor", k=1e6, restitution=0.5).apply(model)
-    assert model.opt.impratio == 1e9
-
-
-@pytest.mark.parametrize("order", [("ball", "floor"), (1, 0), (np.int64(1), "floor"), ("thing", "world")])
-def test_geoms_by_name_by_number_and_by_body(order):
-    text = ON_A_PLANE.replace('body name="ball"', 'body name="thing"')
-    assert mr.contact_for(mujoco.MjSpec.from_string(text), *order, k=1e6, restitution=0.5).geom1 == "ball"
-
-
-SPOILED = {
-    'integrator="discrete"': "the integrator `discrete` takes energy",
-    'o_solref=".01 1"><flag override="enable"/></option><option': "the override flag is set",
-    '><flag diagexact="enable"/></option><option': "the diagexact flag is set",
-    '><flag sleep="enable"/></option><option': "the sleep flag is set",
-    '><flag contact="disable"/></option><option': "contacts are disabled",
-    '><flag constraint="disable"/></option><option': "constraints are disabled",
-}
-
-
-@pytest.mark.parametrize("options", SPOILED)
-def test_it_warns_of_what_spoils_every_contact(options):
-    spec = mujoco.MjSpec.from_string(scene(FLOOR, BALL, options=options))
-    with pytest.warns(UserWarning, match=SPOILED[options]):
-        mr.contact_for(spec, "ball", "floor", k=1e6, restitution=0.5)
-
-
 @pytest.mark.parametrize("integrator", ["Euler", "RK4"])
 @pytest.mark.parametrize(("timestep", "mass"), [(1.5e-3, 2.0), (5e-3, 2.0), (5e-2, 2.0), (5e-3, 8.0), (5e-2, 8.0)])
 @pytest.mark.parametrize("e", [0.1, 0.9, 1.0])
@@ -336,121 +200,6 @@ def test_a_step_that_does_not_resolve_it_adds_no_energy(e, timestep, mass, integ
     model = spec.compile()
     for phase in np.arange(0.05, 1, 0.15):
         assert rebound(contact, model, phase=phase)[0] < 0.6
-
-
-@pytest.mark.parametrize(
-    ("text", "asked", "complaint"),
-    [
-        (FLAT_BOX, {"geom1": "box"}, "several contact points, each with the stiffness k"),
-        (ON_A_PLANE, {"timestep": 1e-3}, "timestep = 0.001 s is long .* 0.00038 s resolves it"),
-        (scene(FLOOR, BALL, pair='<pair geom1="ball" geom2="floor" margin=".01"/>'), {}, "a margin of 0.01 m"),
-        (scene(FLOOR, BALL, pair='<pair geom1="ball" geom2="floor" adhesion="3"/>'), {}, "an adhesion of 3 N"),
-    ],
-)
-def test_it_warns_of_what_spoils_this_contact(text, asked, complaint):
-    arguments = {"geom1": "ball", "geom2": "floor", "k": 1e6, "restitution": 0.5} | asked
-    with pytest.warns(UserWarning, match=complaint):
-        mr.contact_for(mujoco.MjSpec.from_string(text), **arguments)
-
-
-def test_the_step_that_it_names_is_not_warned_of():
-    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
-    for e in (0.01, 0.2, 0.8, 1.0):
-        with pytest.warns(UserWarning, match="is long") as caught:
-            mr.contact_for(spec, "ball", "floor", k=1e6, restitution=e, timestep=1e-3)
-        named = float(str(caught[0].message).split("; ")[-1].split()[0])
-        mr.contact_for(spec, "ball", "floor", k=1e6, restitution=e, timestep=0.95 * named)
-
-
-def test_caveats_say_what_was_not_written():
-    contact, model = made_for(ON_A_PLANE, "ball", "floor", restitution=0.5)
-    bare = mujoco.MjModel.from_xml_string(ON_A_PLANE)
-    assert "the model has no explicit <pair> of the geoms" in contact.caveats(bare)[0]
-    changes = {
-        "cone": (model.opt, "cone", 0, "pyramidal"),
-        "impratio": (model.opt, "impratio", 1.0, "impratio = 1 is below"),
-        "timestep": (model.opt, "timestep", 2e-5, "the model steps by 2e-05 s"),
-        "integrator": (model.opt, "integrator", 1, "made for the integrator EULER"),
-        "solref": (model, "pair_solref", [[-1.0, -1.0]], "another solref"),
-        "friction": (model, "pair_friction", [[0.1] * 5], "another friction"),
-        "condim": (model, "pair_dim", [1], "condim 1 for 3"),
-    }
-    for owner, name, value, complaint in changes.values():
-        kept = np.array(getattr(owner, name))
-        _write(owner, name, value)
-        assert any(complaint in caveat for caveat in contact.caveats(model)), name
-        _write(owner, name, kept)
-    assert contact.caveats(model) == ()
-
-
-def _write(owner, name, value):
-    if np.ndim(value):
-        getattr(owner, name)[:] = value
-    else:
-        setattr(owner, name, type(getattr(owner, name))(value))
-
-
-@pytest.mark.parametrize(
-    ("asked", "complaint"),
-    [
-        ({}, "exactly one of c, restitution and xi has to be given; given are none"),
-        ({"restitution": 0.5, "xi": 0.1}, "exactly one of c, restitution and xi .*'restitution': 0.5, 'xi': 0.1"),
-        ({"restitution": 1.5}, "restitution = 1.5 is outside the valid range 0 to 1"),
-        ({"xi": -0.1}, "damping ratio xi = -0.1"),
-        ({"c": -1.0}, "damping c = -1 N s/m"),
-        ({"c": 1.0, "k": 0.0}, "stiffness k = 0 N/m"),
-        ({"c": 1.0, "geom1": "bal"}, "geom1 = 'bal' is no geom or body .* floor, ball"),
-        ({"c": 1.0, "geom1": -1}, "geom1 = -1 is outside"),
-        ({"c": 1.0, "geom1": 2}, "geom1 = 2 is outside the valid range 0 to 1"),
-        ({"c": 1.0, "geom1": 1.0}, "geom1 = 1.0 of type float is neither the name nor the number"),
-        ({"c": 1.0, "geom1": "floor"}, "geom1 and geom2 = 'floor' .* are the same geom"),
-        ({"c": 1.0, "model": ON_A_PLANE}, "model = .* is not a MjModel or MjSpec"),
-        ({"c": 1.0, "friction": -0.1}, "friction = -0.1"),
-        ({"c": 1.0, "mass": 0.0}, "mass = 0 kg"),
-        ({"c": 1.0, "mass": 1.0, "at": (0, 0, 0)}, "mass = 1.0 .* and at = .* are both given"),
-        ({"c": 1.0, "at": (0, 0)}, r"at has the shape \(2,\)"),
-        ({"c": 1.0, "at": (0, 0, 1e99)}, "at = .* is outside the valid range"),
-        ({"c": 1.0, "contacts": 1.5}, "contacts = 1.5 is not a whole number"),
-        ({"c": 1.0, "timestep": 1.0}, "stiffness k = 1e.06 N/m at timestep = 1 s .* the longest step is"),
-        ({"c": 1e12}, "damping c = 1e.12 N s/m at timestep = 1e-05 s .* lower the timestep"),
-        ({"c": 1.0, "newmark_beta": 1e6, "timestep": 1e-3}, "newmark_beta = 1e.06 asks for more inertia"),
-    ],
-)
-def test_what_cannot_be_is_refused(asked, complaint):
-    model = mujoco.MjModel.from_xml_string(ON_A_PLANE)
-    arguments = {"model": model, "geom1": "ball", "geom2": "floor", "k": 1e6} | asked
-    with pytest.raises((ValueError, TypeError), match=complaint):
-        mr.contact_for(**arguments)
-
-
-def test_what_cannot_be_applied_is_refused():
-    bare = mujoco.MjModel.from_xml_string(ON_A_PLANE)
-    contact = mr.contact_for(bare, "ball", "floor", k=1e6, restitution=0.5)
-    with pytest.raises(
-        ValueError, match=r"model has no explicit <pair> of 'ball' and 'floor'; .* MjSpec .* \.xml .* on_geoms=True"
-    ):
-        contact.apply(bare)
-    heavy = mujoco.MjSpec.from_string(ON_A_PLANE.replace('mass="2"', 'mass="3"'))
-    with pytest.raises(ValueError, match=r"inverse weight 0.333333333 1/kg .* was made for 0.5 1/kg"):
-        contact.apply(heavy)
-    nameless = mujoco.MjSpec.from_string(ON_A_PLANE.replace('<geom name="floor"', "<geom"))
-    contact = mr.contact_for(nameless, "ball", 0, k=1e6, restitution=0.5)
-    for use in (lambda: contact.xml, lambda: contact.apply(nameless)):
-        with pytest.raises(ValueError, match="has no name"):
-            use()
-    broken = mujoco.MjSpec.from_string("<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>")
-    with pytest.raises(ValueError, match="model does not compile"):
-        mr.contact_for(broken, 0, 1, k=1e6, c=1.0)
-    static = mujoco.MjSpec.from_string(scene(FLOOR, '<geom name="post" size=".1"/>'))
-    with pytest.raises(ValueError, match="neither centre of mass can move"):
-        mr.contact_for(static, "post", "floor", k=1e6, c=1.0)
-
-
-def test_the_model_is_left_alone():
-    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
-    before = spec.to_xml()
-    mr.contact_for(spec, "ball", "floor", k=1e6, restitution=0.5)
-    assert spec.to_xml() == before
 
 
 def test_the_row_is_newmarks():
@@ -474,10 +223,3 @@ def test_the_row_of_a_step_that_does_not_resolve_it():
     assert d / ((1 - d) * 0.5) == pytest.approx(h * (c + h * k) + 0.5 * h**2 * k)
     assert contact.solreffriction == pytest.approx((0, -d / h))
     assert contact.c == c
-
-
-def test_a_contact_without_friction_asks_for_nothing_more():
-    contact = mr.contact_for(mujoco.MjSpec.from_string(ON_A_PLANE), "ball", "floor", k=1e6, c=30.0, friction=0)
-    assert (contact.condim, contact.solreffriction, contact.impratio) == (1, (0.0, 0.0), 1.0)
-    assert "cone" not in contact.xml
-    assert "friction" not in contact.xml
