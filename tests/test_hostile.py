@@ -149,7 +149,10 @@ CALLS = {
     ),
     "MasonryCase": (
         mr.MasonryCase,
-        {"masonry": COLUMN, "duration": 1.0, "motion": None, "vertical": None, "velocity": [[0.0, 0.0, 0.1]]},
+        {
+            "masonry": COLUMN, "duration": 1.0, "motion": None, "vertical": None, "velocity": [[0.0, 0.0, 0.1]],
+            "effects": (),
+        },
     ),
     "masonry_scene": (mr.masonry_scene, {"case": mr.MasonryCase(COLUMN, 0.02)}),
     "masonry_mjcf": (mr.masonry_mjcf, {"case": mr.MasonryCase(COLUMN, 0.02), "timestep": 1e-3, "newmark_beta": 0.25}),
