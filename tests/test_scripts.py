@@ -24,6 +24,7 @@ WRITES = {
     "trouble": {"trouble.txt"},
     "law_range": {"law_range.txt"},
     "work_precision": {"work_precision.csv", "work_precision.png", "work_precision.txt"},
+    "peers": {"peers.csv", "peers.png", "peers.txt"},
     "convergence": {"convergence.png", "convergence.txt"},
     "make_models": {"figure3_one_sided"},
     "overturning_spectrum": {f"overturning_spectrum.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
@@ -54,6 +55,7 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "overturning_spectrum",
     "ida",
     "effect_costs",
+    "peers",
 }
 """Scripts that take a while even with --quick."""
 

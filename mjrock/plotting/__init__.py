@@ -1,6 +1,6 @@
 """Pictures: functions that draw on an Axes and return it. The only package that imports matplotlib."""
 
-from .accuracy import convergence, work_precision
+from .accuracy import convergence, peers, work_precision
 from .animation import animate, animate_bodies
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
 from .histories import acceleration, comparison, energy, grid, history, rotation
@@ -33,6 +33,7 @@ __all__ = [
     "pairs",
     "panels",
     "parity",
+    "peers",
     "pushover",
     "residuals",
     "rotation",

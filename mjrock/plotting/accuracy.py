@@ -10,6 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from numpy.typing import ArrayLike
 
+PEER_COLORS = ("0.1", "#1f77b4", "#2ca02c", "#d62728", "#9467bd")
+"""A colour for each code of `peers`."""
+
 
 def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], order: int) -> Axes:
     """Errors against the step on logarithmic axes, with the slope of an order to compare by."""
@@ -48,6 +51,38 @@ def work_precision(points: Sequence[tuple[str, str, float, int, float]]) -> Figu
         ax.set_ylabel("largest error of $e$ per rebound [-]")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    return figure
+
+
+def peers(points: Sequence[tuple[str, str, float, float, float]]) -> Figure:
+    """Error of |e| against wall time in several codes: a column a case, the contact law above and theory below.
+
+    Points are (case, setup, wall time over simulated time, error against the law or NaN, error against theory). A
+    setup is named "code, how", and those of one code share a colour. An error of 1 is a rebound that never comes.
+    """
+    cases, setups = (list(dict.fromkeys(point[i] for point in points)) for i in (0, 1))
+    codes = list(dict.fromkeys(setup.split(",")[0] for setup in setups))
+    figure = Figure(figsize=(4.6 * len(cases), 8.6), layout="constrained")
+    axes = figure.subplots(2, len(cases), squeeze=False, sharex=True, sharey="row")
+    for setup in setups:
+        code = setup.split(",")[0]
+        rank = [one for one in setups if one.split(",")[0] == code].index(setup)
+        look = {"color": PEER_COLORS[codes.index(code)], "marker": "osD^"[rank], "linestyle": ("-", "--", ":", "-.")[rank]}
+        for column, case in zip(axes.T, cases, strict=True):
+            own = [point[2:] for point in points if point[:2] == (case, setup)]
+            for ax, which in zip(column, (1, 2), strict=True):
+                line = [(row[0], row[which]) for row in own if np.isfinite(row[which])]
+                ax.loglog(*np.reshape(line, (-1, 2)).T, linewidth=1.3, markersize=5, label=setup, **look)
+    for column, case in zip(axes.T, cases, strict=True):
+        column[0].set_title(case, fontsize=10)
+        column[1].set_xlabel("wall time / simulated time [-]")
+        for ax in column:
+            ax.axhline(1, color="0.7", linewidth=0.8, zorder=0)
+            ax.grid(True, which="major", linewidth=0.4, color="0.9")
+    for ax, target in zip(axes[:, 0], ("the contact law with the same k and c", "rocking theory"), strict=True):
+        ax.set_ylabel(f"largest error of $|e|$ against {target} [-]", fontsize=9)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
 
 
