@@ -11,7 +11,7 @@ import pybullet
 from .question import GRAVITY, Motion, Question
 
 FRICTION = 30.0
-"""Of the base; the stop is smooth."""
+"""Of a base that holds, but 1 with the defaults; the stop is smooth."""
 FAR = 5.0
 """Half the size of the base and the stop [m]."""
 
@@ -56,7 +56,8 @@ def _world(question: Question, variant: str, h: float, client: int) -> int:
         )
     )
     pybullet.changeDynamics(wall, -1, lateralFriction=1, physicsClientId=client)
-    pybullet.changeDynamics(base, -1, lateralFriction=FRICTION, physicsClientId=client)
+    held = 1.0 if variant == "defaults" else FRICTION
+    pybullet.changeDynamics(base, -1, lateralFriction=held, physicsClientId=client)
     if question.side_stop:
         pybullet.changeDynamics(bodies["stop"], -1, lateralFriction=0, physicsClientId=client)
     if variant != "defaults":
@@ -68,7 +69,7 @@ def _world(question: Question, variant: str, h: float, client: int) -> int:
             physicsClientId=client,
         )
     if variant == "restitution":
-        pybullet.setPhysicsEngineParameter(contactERP=0, physicsClientId=client)
+        pybullet.setPhysicsEngineParameter(contactERP=0, contactBreakingThreshold=1e-4, physicsClientId=client)
         pybullet.changeDynamics(wall, -1, restitution=1, physicsClientId=client)
         if question.side_stop:
             pybullet.changeDynamics(bodies["stop"], -1, restitution=question.e, physicsClientId=client)

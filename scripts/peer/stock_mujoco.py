@@ -31,17 +31,18 @@ def mjcf(question: Question, variant: str, h: float) -> str:
     faces = {"base": ("0 0 0", "0 0 1", 3, question.k_base, question.c_base)}
     if question.side_stop:
         faces["stop"] = (f"{-question.thickness / 2!r} 0 0", "1 0 0", 1, question.k_side, question.c_side)
+    friction = 30 if variant.startswith("direct") else 1  # 30 holds the base, and 1 is the default
     planes, pairs = "", ""
     for name, (place, normal, condim, k, c) in faces.items():
         scale = (1 - SMALL_D if "pairs" in variant else 1.0) / question.mass
         solref = f'solref="{-scale * k / 2!r} {-scale * c / 2!r}"' if variant.startswith("direct") else ""
         # the priority makes the parameters of the plane count, instead of a mixture with those of the wall
         planes += f"""
-    <geom name="{name}" type="plane" size="9 9 1" pos="{place}" zaxis="{normal}" condim="{condim}" friction="30 0 0"
+    <geom name="{name}" type="plane" size="9 9 1" pos="{place}" zaxis="{normal}" condim="{condim}" friction="{friction} 0 0"
       priority="1" {solref}/>"""
         if "pairs" in variant:
             pairs += f"""
-    <pair geom1="wall" geom2="{name}" condim="{condim}" friction="30 30 0 0 0" {solref}
+    <pair geom1="wall" geom2="{name}" condim="{condim}" friction="{friction} {friction} 0 0 0" {solref}
       solimp="{SMALL_D} {SMALL_D} 0.001 0.5 2" solreffriction="-1e-30 {-SMALL_D / (2 * h)!r}"/>"""
     return f"""<mujoco>
   <option timestep="{h!r}" gravity="0 0 {-GRAVITY!r}" cone="{cone}" impratio="{IMPRATIO[variant]!r}"/>

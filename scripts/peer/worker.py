@@ -13,7 +13,7 @@ import numpy as np
 
 from .question import Question
 
-REPEATS, PATIENCE = 5, 3.0
+REPEATS, PATIENCE = 5, 2.0
 """Most runs whose least time counts, and the seconds after which no further one starts."""
 
 
