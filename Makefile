@@ -49,6 +49,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/hard_cases.py --out docs/figures
 	$(BIN)/python scripts/trouble.py --out docs/figures
 	$(BIN)/python scripts/work_precision.py --out docs/figures
+	$(BIN)/python scripts/peers.py --out docs/figures
 	$(BIN)/python scripts/thresholds.py --out docs/figures
 	$(BIN)/python scripts/overturning_spectrum.py --out docs/figures
 	$(BIN)/python scripts/ida.py --out docs/figures

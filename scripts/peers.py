@@ -1,9 +1,9 @@
 """The reference wall in the codes that a user would pick instead: error of |e| against wall time, each at its best.
 
-Stock MuJoCo, PyBullet and OpenSeesPy run in processes of their own. One that is not installed is skipped. Errors are the
-worst of the first rebounds (four two-sided, two one-sided) over three releases, one way against the contact law with
-the same springs and dashpots, solved by SciPy, and one way against rocking theory. Times are the least of several runs,
-over the simulated time. Writes peers.csv, peers.png and peers.txt, and prints the table.
+Stock MuJoCo, PyBullet and OpenSeesPy run in processes of their own. One that is not installed is skipped. Errors are
+the worst of the first rebounds (four two-sided, two one-sided) over three releases. They are measured against the
+contact law with the same springs and dashpots, solved by SciPy, and against rocking theory. Times are the least of
+several runs, over the simulated time. Writes peers.csv, peers.png and peers.txt, and prints the table.
 """
 
 from __future__ import annotations
@@ -113,13 +113,20 @@ class Problem:
         """The cases as numbers."""
         base, side = self.contacts.base, self.contacts.side
         assert side is not None
-        lines = [float(v) for v in (base.stiffness[0], base.damping[0], side.stiffness[0], side.damping[0])]
         wall = FIGURE_3
         return tuple(
             Question(
-                *(2 * wall.b, 2 * wall.h, wall.length, wall.mass),
-                *(case.theta0, case.duration, case.side_stop is True),
-                *lines,
+                thickness=2 * wall.b,
+                height=2 * wall.h,
+                length=wall.length,
+                mass=wall.mass,
+                theta0=case.theta0,
+                duration=case.duration,
+                side_stop=case.one_sided,
+                k_base=float(base.stiffness[0]),
+                c_base=float(base.damping[0]),
+                k_side=float(side.stiffness[0]),
+                c_side=float(side.damping[0]),
                 e=abs(self.e.lumped),
             )
             for case in self.cases
@@ -169,9 +176,9 @@ def theirs(problem: Problem, setup: Setup, h: float) -> Point:
     nothing = Point(problem.label, setup, h, math.nan, math.nan, math.nan, ())
     with tempfile.TemporaryDirectory() as folder:
         task = Task(setup.code, setup.variant, h, problem.questions(), str(Path(folder) / "answers.npz"))
-        command = [sys.executable, "-m", "peer.worker"]
+        command, text = [sys.executable, "-m", "peer.worker"], task.text
         try:
-            subprocess.run(command, input=task.text, text=True, capture_output=True, check=True, timeout=LIMIT, env=env())
+            subprocess.run(command, input=text, text=True, capture_output=True, check=True, timeout=LIMIT, env=env())
         except subprocess.TimeoutExpired:
             return replace(nothing, note=f"stopped after {LIMIT:g} s")
         except subprocess.CalledProcessError as error:
@@ -202,7 +209,9 @@ def missing() -> dict[str, str]:
 
 def points(problems: Sequence[Problem], absent: dict[str, str], quick: bool) -> Iterator[Point]:
     """Every setup at every step."""
-    todo = [(p, s, h) for p in problems for s in SETUPS if s.code not in absent for h in s.steps[: 2 if quick else None]]
+    todo = [
+        (p, s, h) for p in problems for s in SETUPS if s.code not in absent for h in s.steps[: 2 if quick else None]
+    ]
     for problem, setup, step in tqdm(todo, desc="peers", disable=None, leave=False):
         yield (theirs if setup.code else ours)(problem, setup, step)
 
@@ -271,7 +280,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
     plotting.save(plotting.peers(drawn), out / "peers.png")
     lines = [summary(problem.label, found) for problem in problems]
-    lines.append("\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()]))
+    lines.append(
+        "\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()])
+    )
     cli.write(out / "peers.txt", "\n\n".join(lines) + "\n")
     print("\n\n".join(lines))
 

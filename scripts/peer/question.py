@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 GRAVITY = 9.81
@@ -13,7 +13,7 @@ GRAVITY = 9.81
 SAMPLING = 5e-4
 """Spacing of the answers [s]; a longer step gives fewer."""
 
-Motion = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+Motion = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
 """Times [s], rotations [rad] and angular velocities [rad/s]; the rotation is positive away from the side stop."""
 
 

@@ -38,8 +38,8 @@ def mjcf(question: Question, variant: str, h: float) -> str:
         solref = f'solref="{-scale * k / 2!r} {-scale * c / 2!r}"' if variant.startswith("direct") else ""
         # the priority makes the parameters of the plane count, instead of a mixture with those of the wall
         planes += f"""
-    <geom name="{name}" type="plane" size="9 9 1" pos="{place}" zaxis="{normal}" condim="{condim}" friction="{friction} 0 0"
-      priority="1" {solref}/>"""
+    <geom name="{name}" type="plane" size="9 9 1" pos="{place}" zaxis="{normal}" condim="{condim}"
+      friction="{friction} 0 0" priority="1" {solref}/>"""
         if "pairs" in variant:
             pairs += f"""
     <pair geom1="wall" geom2="{name}" condim="{condim}" friction="{friction} {friction} 0 0 0" {solref}
