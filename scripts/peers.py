@@ -178,7 +178,9 @@ def theirs(problem: Problem, setup: Setup, h: float) -> Point:
         task = Task(setup.code, setup.variant, h, problem.questions(), str(Path(folder) / "answers.npz"))
         command, text = [sys.executable, "-m", "peer.worker"], task.text
         try:
-            subprocess.run(command, input=text, text=True, capture_output=True, check=True, timeout=LIMIT, env=env())
+            subprocess.run(
+                command, input=text, text=True, capture_output=True, check=True, timeout=LIMIT, env=env(setup.code)
+            )
         except subprocess.TimeoutExpired:
             return replace(nothing, note=f"stopped after {LIMIT:g} s")
         except subprocess.CalledProcessError as error:
@@ -190,12 +192,12 @@ def theirs(problem: Problem, setup: Setup, h: float) -> Point:
             return problem.point(setup, h, float(answers["seconds"]), found)
 
 
-def env() -> dict[str, str]:
-    """The environment of a peer, with the libraries that the wheel of OpenSees brings along and does not find."""
+def env(code: str) -> dict[str, str]:
+    """The environment of a peer; that of OpenSees has the libraries that its wheel brings along and does not find."""
     made = dict(os.environ)
     paths, libraries = [str(SCRIPTS), *filter(None, sys.path)], made.get("LD_LIBRARY_PATH", "")
-    found = importlib.util.find_spec("openseespylinux") if sys.platform == "linux" else None
-    for place in (found.submodule_search_locations or []) if found else []:
+    found = importlib.util.find_spec(NEEDS[code])
+    for place in (found.submodule_search_locations or []) if found and code == OPENSEES else []:
         paths.append(place)
         libraries = f"{place}/lib:{libraries}"
     return made | {"PYTHONPATH": os.pathsep.join(paths), "LD_LIBRARY_PATH": libraries}
