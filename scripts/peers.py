@@ -64,7 +64,7 @@ class Setup:
 MUJOCO, BULLET, OPENSEES = "stock_mujoco", "bullet", "opensees"
 NEEDS = {MUJOCO: "mujoco", BULLET: "pybullet", OPENSEES: "openseespylinux" if sys.platform == "linux" else "openseespy"}
 SHORT = (2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)
-TICKS = (1 / 240, 1 / 1000, 1 / 2000, 1 / 5000, 1 / 10000)
+TICKS = (1 / 240, 1 / 1000, 1 / 2000, 1 / 5000, 1 / 10_000)
 SETUPS = (
     Setup("mjrock", "k, c", "", "", (1e-2, 3e-3, 1e-3, 1e-4, 1e-5), True),
     Setup("mjrock, as_theory", "e", "", "as_theory", (1e-2, 3e-3, 1e-3, 1e-4, 1e-5), False),
@@ -167,7 +167,7 @@ def ours(problem: Problem, setup: Setup, accuracy: float) -> Point:
     """`simulate`, on the contacts of the reference or on stiff ones that rebound as theory does."""
     contacts = mr.as_theory(FIGURE_3, problem.e) if setup.variant else problem.contacts
     runs = [mr.simulate(case, contacts, accuracy=accuracy) for case in problem.cases]
-    seconds = min(mr.simulate(problem.cases[0], contacts, accuracy=accuracy).stats["wall_time"] for _ in range(5))
+    seconds = min(mr.simulate(problem.cases[0], contacts, accuracy=accuracy).stats["wall_time"] for _ in range(20))
     return problem.point(setup, accuracy, seconds, [run.restitution for run in runs])
 
 

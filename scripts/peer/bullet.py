@@ -69,7 +69,7 @@ def _world(question: Question, variant: str, h: float, client: int) -> int:
             physicsClientId=client,
         )
     if variant == "restitution":
-        pybullet.setPhysicsEngineParameter(contactERP=0, contactBreakingThreshold=1e-4, physicsClientId=client)
+        pybullet.setPhysicsEngineParameter(contactERP=0.02, contactBreakingThreshold=1e-4, physicsClientId=client)
         pybullet.changeDynamics(wall, -1, restitution=1, physicsClientId=client)
         if question.side_stop:
             pybullet.changeDynamics(bodies["stop"], -1, restitution=question.e, physicsClientId=client)
