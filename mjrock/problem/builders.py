@@ -105,7 +105,10 @@ def bonded(length: float, height: float, unit: tuple[float, float], thickness: f
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
     if courses * (length / long + 1) > MOST_BLOCKS:
-        raise ValueError(f"a wall of {courses * length / long:.3g} units is too large; at most {MOST_BLOCKS} are valid")
+        count = courses * length / long
+        raise ValueError(
+            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
+        )
     made = [ground_under(0.0, length, thickness)]
     for course in range(courses):
         shift = 0.5 * long if course % 2 else long

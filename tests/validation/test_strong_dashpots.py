@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.reference import compliant
+from mjrock.reference import equations
 
 
 def held_while_closed(self, t, y):
@@ -30,6 +30,6 @@ def test_mujoco_holds_an_edge_while_it_is_closed(monkeypatch):
     assert found(0.1, mr.simulate, accuracy=1e-5) == pytest.approx(found(0.1, mr.solve_compliant), rel=2e-3)
     pressed, engine = found(0.3, mr.solve_compliant), found(0.3, mr.simulate, accuracy=1e-5)
     assert engine / pressed - 1 > 0.02
-    monkeypatch.setattr(compliant._Wall, "edge_load", held_while_closed)
+    monkeypatch.setattr(equations.Wall, "edge_load", held_while_closed)
     assert engine == pytest.approx(found(0.3, mr.solve_compliant), rel=2e-3)
     assert np.isfinite(engine)
