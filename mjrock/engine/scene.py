@@ -259,8 +259,7 @@ class Scene:
     @cached_property
     def release_energy(self) -> float:
         """Energy at the release above the scene at rest [J]."""
-        pose, velocity = self.started
-        return float(self.energy(np.array([pose]), np.array([velocity]))[0])
+        return float(self.energy(*(np.array([values]) for values in self.started))[0])
 
     @cached_property
     def highest_frequency(self) -> float:
@@ -279,8 +278,7 @@ class Scene:
 
     @cached_property
     def rocking_frequency(self) -> float:
-        """The largest p = sqrt(m g R / (I + m R^2)) of the bodies, R from the centroid to the farthest point
-        [rad/s]."""
+        """The largest p = sqrt(m g R / (I + m R^2)) of the bodies [rad/s], R to the farthest point of each."""
         R = np.array([np.hypot(*corners.T).max() for corners in self.outlines])
         return math.sqrt(float(np.max(self.mass * GRAVITY * R / (self.inertia + self.mass * R**2))))
 
