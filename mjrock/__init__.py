@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 
 from ._version import __version__
 from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
+from .engine.inspection import InspectedContact, inspect_contacts
 from .engine.masonry import masonry_mjcf, masonry_scene
 from .engine.model import SimulationError, wall_mjcf
+from .engine.pair import PairContact
+from .engine.pairing import contact_for
 from .engine.scene import Scene
 from .engine.simulation import automatic_timestep, simulate, simulate_batch
 from .engine.wall import wall_scene
@@ -64,6 +67,7 @@ __all__ = [
     "Grid",
     "GroundMotion",
     "Impact",
+    "InspectedContact",
     "Interface",
     "Joint",
     "Ledger",
@@ -74,6 +78,7 @@ __all__ = [
     "MasonryResponse",
     "Opening",
     "Outcome",
+    "PairContact",
     "Plan",
     "Polygon",
     "PowerLaw",
@@ -91,9 +96,11 @@ __all__ = [
     "calibrate",
     "campaign",
     "compare",
+    "contact_for",
     "contact_parameters",
     "contact_stiffness",
     "ida",
+    "inspect_contacts",
     "joint_stiffness",
     "layered_stiffness",
     "masonry_mjcf",

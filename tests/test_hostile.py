@@ -24,6 +24,10 @@ SHORT = mr.Case(WALL, 0.05, 0.02)
 MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
 RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
+BALL = mujoco.MjModel.from_xml_string(
+    """<mujoco><option timestep="1e-5"/><worldbody><geom name="floor" type="plane" size="1 1 1"/>
+    <body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1"/></body></worldbody></mujoco>"""
+)
 PLAN = mr.Plan(base_count=2, side_count=2)
 COLUMN = mr.Masonry.stack([WALL], 5e8)
 
@@ -97,6 +101,18 @@ CALLS = {
         mr.contact_stiffness,
         {"solref": ROWS.solref, "solimp": ROWS.solimp, "inverse_weight": 1e-4},
     ),
+    "contact_for": (
+        mr.contact_for,
+        {
+            "model": BALL, "geom1": "ball", "geom2": "floor", "k": 1e6, "c": None, "restitution": 0.5, "xi": None,
+            "friction": 0.5, "mass": None, "at": None, "contacts": 1, "timestep": 1e-5, "newmark_beta": 0.25,
+        },
+    ),
+    "contact_for, by c": (
+        mr.contact_for,
+        {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
+    ),
+    "inspect_contacts": (mr.inspect_contacts, {"model": BALL, "candidates": True}),
     "automatic_timestep": (mr.automatic_timestep, {"wall": WALL, "contacts": CONTACTS, "side_stop": True}),
     "simulate": (
         mr.simulate,

@@ -36,6 +36,7 @@ WRITES = {
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
+    "inspect_contacts": {"inspect_contacts.txt"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}

@@ -145,9 +145,14 @@ class GeomPair:
 
         Returns:
             The mass; infinity, if the geoms cannot approach each other along the normal.
+
+        Raises:
+            TypeError, ValueError: unless `at` is a point.
         """
         data = data if data is not None else at_rest(self.model)
         point = None if at is None else require_array("at", at, (3,))
+        if point is not None and np.abs(point).max() > FARTHEST:
+            raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
         jacobian = np.zeros((3, self.model.nv))
         for body, sign in zip(self.bodies, (1.0, -1.0), strict=True):
             rows = np.zeros((3, self.model.nv))

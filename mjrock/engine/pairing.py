@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
 
-from ..problem.quantities import require_real, require_whole, require_within, shown
+from ..problem.quantities import Array, require_real, require_whole, require_within, shown
 from ..problem.rebound import rebound_damping
 from .contact import WITHIN, inertia_of, longest_step, pair_values, row
 from .geompair import GeomPair, compiled
@@ -35,7 +36,7 @@ def contact_for(
     xi: float | None = None,
     friction: float | None = None,
     mass: float | None = None,
-    at: object = None,
+    at: Sequence[float] | Array | None = None,
     contacts: int | None = None,
     timestep: float | None = None,
     newmark_beta: float = 0.25,
