@@ -58,6 +58,9 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/cracked_facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/drums.py --out docs/figures
+	$(BIN)/python scripts/panel.py --out docs/figures
 	$(BIN)/python scripts/throughput.py --out docs/figures
 	$(BIN)/python scripts/speed.py
 

@@ -33,6 +33,9 @@ WRITES = {
     "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "pushover": {f"pushover.{ending}" for ending in ("png", "csv", "txt")} | {"pushover_bases.png"},
+    "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
+    "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
@@ -57,6 +60,9 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "ida",
     "effect_costs",
     "peers",
+    "cracked_facade",
+    "drums",
+    "panel",
 }
 """Scripts that take a while even with --quick."""
 
