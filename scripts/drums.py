@@ -96,7 +96,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     frequencies = FREQUENCIES[1::5] if args.quick else FREQUENCIES
     count = math.ceil(math.log(HIGHEST / LOWEST) / math.log(RATIO))
-    amplitudes: NDArray[np.float64] = LOWEST * RATIO ** np.arange(count + 1)
+    amplitudes = np.array([LOWEST * RATIO**i for i in range(count + 1)])
     if args.quick:
         amplitudes = amplitudes[::10]
     grid = mr.Grid(build, drums=DRUMS, frequency=frequencies, amplitude=amplitudes.tolist())
