@@ -26,7 +26,7 @@ from mjrock.study.campaign import completed
 
 COLUMN = mr.Block.from_size(thickness=0.75, height=6.0, length=0.75, density=2500.0)
 DRUMS = (1, 2, 4, 8)
-FREQUENCIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0)
+FREQUENCIES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0)
 RATIO = 1.1
 """Of two amplitudes that follow each other [-]."""
 LOWEST, HIGHEST = 0.9, 16.0
@@ -94,7 +94,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run the columns, draw their spectra, and print."""
     args = suite.parser(__doc__, "drums", records=False).parse_args(argv)
     out = cli.folder(args.out)
-    frequencies = FREQUENCIES[1::5] if args.quick else FREQUENCIES
+    frequencies = FREQUENCIES[1::6] if args.quick else FREQUENCIES
     count = math.ceil(math.log(HIGHEST / LOWEST) / math.log(RATIO))
     amplitudes = np.array([LOWEST * RATIO**i for i in range(count + 1)])
     if args.quick:
