@@ -133,9 +133,9 @@ def studied(sides: str, name: str, motion: mr.GroundMotion) -> Found:
 def asked(motions: Sequence[mr.GroundMotion]) -> list[tuple[str, str, mr.GroundMotion]]:
     """Sides, name and motion of every study: both polarities where the façade is one-sided, which is not symmetric."""
     names = [f"{number} {motion.name.split()[0]}" for number, motion in enumerate(motions, 1)]
-    both = [
-        (name, sign, one) for name, of in zip(names, motions, strict=True) for sign, one in zip("+-", of.polarities)
-    ]
+    both = []
+    for name, motion in zip(names, motions, strict=True):
+        both += [(name, sign, one) for sign, one in zip("+-", motion.polarities, strict=True)]
     one_sided = [("one-sided", f"{name} {sign}", one) for name, sign, one in both]
     return one_sided + [("two-sided", name, one) for name, one in zip(names, motions, strict=True)]
 

@@ -3,7 +3,7 @@
 The column is 6 m high and 0.75 m wide, of stone of 2500 kg/m3, two-sided, with friction of 0.7. Its drums are square
 prisms. Each joint is damped by the calibrated law for the wall above it. Squat walls lie outside the fit of the law.
 Amplitudes are in multiples of g tan(alpha), which lifts the whole column, frequencies in multiples of its p.
-Prints the least amplitude that overturns for every frequency, with rocking theory for one drum beside it.
+Prints the least amplitude that overturns for every frequency, to 10 %, with rocking theory for one drum beside it.
 A column has overturned when a drum has fallen.
 """
 
@@ -33,7 +33,8 @@ LOWEST, HIGHEST = 0.9, 16.0
 """Amplitudes [g tan(alpha)]."""
 FOLLOWED = 10.0
 """How long a column is followed after the pulse [1/p]."""
-STYLES = {1: ("#f0a35e", "o"), 2: ("#b5402a", "s"), 4: ("#6c8a4e", "^"), 8: ("#12406b", "D")}
+STYLES = {1: ("#f0a35e", "o", 11.0), 2: ("#b5402a", "s", 8.0), 4: ("#6c8a4e", "^", 5.5), 8: ("#12406b", "D", 3.0)}
+"""Colour, marker and its size: where curves fall together, all of them are seen."""
 
 
 def pulse(frequency: float, amplitude: float) -> mr.GroundMotion:
@@ -77,9 +78,10 @@ def drawn(frequencies: Sequence[float], least: NDArray[np.float64], theory: NDAr
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     ax = figure.subplots()
     ax.plot(frequencies, theory, **plotting.STYLES["analytical"] | {"label": "rocking theory, 1 block"})
-    for (drums, (colour, marker)), curve in zip(STYLES.items(), least, strict=True):
+    for (drums, (colour, marker, size)), curve in zip(STYLES.items(), least, strict=True):
         name = f"{drums} drums" if drums > 1 else "1 drum"
-        ax.plot(frequencies, curve, color=colour, marker=marker, markersize=4.5, linewidth=1.4, label=name)
+        ax.plot(frequencies, curve, color=colour, linewidth=0.8 + size / 4, label=name)
+        ax.lines[-1].set(marker=marker, markersize=size, markerfacecolor="none")
     ax.set_yscale("log")
     ticks = [1, 2, 3, 5, 10, 15]
     ax.set_yticks(ticks, [f"{tick}" for tick in ticks])
