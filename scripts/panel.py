@@ -5,7 +5,8 @@ a constant acceleration, a multiple of g, in half a second. The panel fails at t
 has opened or slid by more than 20 mm 0.7 s later, which takes 0.008 more than lets it slide. Limit analysis tilts rigid
 blocks and takes friction as associated: joints that slide also open, which locks a stair if friction is strong.
 The bounds are mechanisms: the panel or the part above a bed joint slides (mu), it turns about its toe as a whole (b/h),
-or it turns without the units below a stair, where joints that open do not rub (stair). Prints the multiples for some coefficients of friction.
+or it turns without the units below a stair, where joints that open do not rub (stair).
+Prints the multiples for some coefficients of friction.
 """
 
 from __future__ import annotations
