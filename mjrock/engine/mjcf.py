@@ -1,10 +1,12 @@
 """The MJCF text of a scene: its bodies and contacts, at full precision.
 
 The text is complete. Stock MuJoCo and its viewer load it, the keyframe `release` sets the bodies at their release, and
-stepping it is the simulation at that fixed step. Contacts are explicit `<pair>` elements between small spheres, centred
-on the contact points, and planes or boxes whose surface lies one radius behind the face. Gap and lever are then those
-of the point at every rotation. (The bodies are raised by the radius instead of lowering the ground, because MuJoCo
-takes a static geom within 1e-6 m of the origin to be at the origin.)
+stepping it is the simulation at that fixed step. Newton's method starts from the accelerations of the step before where
+there are several bodies, which saves half of its iterations; for one body this saves little. Contacts are explicit
+`<pair>` elements between small spheres, centred on the contact points, and planes or boxes whose surface lies one
+radius behind the face. Gap and lever are then those of the point at every rotation. (The bodies are raised by the
+radius instead of lowering the ground, because MuJoCo takes a static geom within 1e-6 m of the origin to be at the
+origin.)
 """
 
 from __future__ import annotations
@@ -31,8 +33,8 @@ HEAD = """\
        shift the velocities by half of its change. -->
   <compiler angle="radian"/>
   <option timestep={timestep} gravity={gravity} integrator="Euler" cone="elliptic" impratio={impratio} solver="Newton"
-          iterations="50" tolerance="1e-10">
-    <flag warmstart="disable" island="disable" autoreset="disable"/>
+          iterations="50" tolerance="1e-10"{rows}>
+    <flag {start}island="disable" autoreset="disable"/>
   </option>
   <statistic center={center} extent={extent}/>
   <visual>
@@ -52,6 +54,10 @@ HEAD = """\
     <material name="plaster" rgba="0.85 0.82 0.76 1"/>{meshes}
   </asset>
 """
+
+SPARSE_FROM = 4
+"""Bodies from which MuJoCo keeps the rows of the contacts sparse. A row moves two bodies. A step of sixteen blocks in a
+stack takes half the time with sparse rows, one of four blocks as much."""
 
 
 def scene_mjcf(
@@ -88,6 +94,8 @@ def scene_mjcf(
         timestep=_value(timestep),
         gravity=_value((0.0, 0.0, -GRAVITY)),
         impratio=_value(rows.impratio),
+        rows=' jacobian="sparse"' if len(scene.names) >= SPARSE_FROM else "",
+        start="" if len(scene.names) > 1 else 'warmstart="disable" ',
         center=_value((middle[0], 0.0, middle[1])),
         extent=_value(2 * half),
         meshes="".join(f"\n    {mesh}" for mesh in _meshes(scene)),

@@ -31,10 +31,13 @@ def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], ord
     return ax
 
 
-def work_precision(points: Sequence[tuple[str, str, float, int, float]]) -> Figure:
+def work_precision(
+    points: Sequence[tuple[str, str, float, int, float]], error: str = "largest error of $e$ per rebound [-]"
+) -> Figure:
     """Error against wall time and against steps, a column a case, with the Pareto front.
 
-    Points are (case, method, seconds, steps, error); for a solver of SciPy's, steps are evaluations.
+    Points are (case, method, seconds, steps, error); for a solver of SciPy's, steps are evaluations. `error` says what
+    the errors are.
     """
     cases = list(dict.fromkeys(point[0] for point in points))
     methods = list(dict.fromkeys(point[1] for point in points if "lines" not in point[1]))
@@ -42,13 +45,13 @@ def work_precision(points: Sequence[tuple[str, str, float, int, float]]) -> Figu
     axes = figure.subplots(2, len(cases), squeeze=False, sharey="col")
     for column, case in zip(axes.T, cases, strict=True):
         here = [point for point in points if point[0] == case and point[1] in methods]
-        _errors(column[0], [(seconds, error, method) for _, method, seconds, _, error in here], methods)
-        _errors(column[1], [(steps, error, method) for _, method, _, steps, error in here], methods)
+        _errors(column[0], [(seconds, value, method) for _, method, seconds, _, value in here], methods)
+        _errors(column[1], [(steps, value, method) for _, method, _, steps, value in here], methods)
         column[0].set_xlabel("wall time [s]")
         column[1].set_xlabel("steps [-]")
         column[0].set_title(case, fontsize=10)
     for ax in axes[:, 0]:
-        ax.set_ylabel("largest error of $e$ per rebound [-]")
+        ax.set_ylabel(error)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
