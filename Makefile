@@ -50,6 +50,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/trouble.py --out docs/figures
 	$(BIN)/python scripts/work_precision.py --out docs/figures
 	$(BIN)/python scripts/peers.py --out docs/figures
+	$(BIN)/python scripts/masonry_precision.py --out docs/figures
 	$(BIN)/python scripts/thresholds.py --out docs/figures
 	$(BIN)/python scripts/overturning_spectrum.py --out docs/figures
 	$(BIN)/python scripts/ida.py --out docs/figures

@@ -25,6 +25,7 @@ WRITES = {
     "law_range": {"law_range.txt"},
     "work_precision": {"work_precision.csv", "work_precision.png", "work_precision.txt"},
     "peers": {"peers.csv", "peers.png", "peers.txt"},
+    "masonry_precision": {f"masonry_precision.{ending}" for ending in ("png", "csv", "txt")},
     "convergence": {"convergence.png", "convergence.txt"},
     "make_models": {"figure3_one_sided"},
     "overturning_spectrum": {f"overturning_spectrum.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
@@ -63,6 +64,7 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "cracked_facade",
     "drums",
     "panel",
+    "masonry_precision",
 }
 """Scripts that take a while even with --quick."""
 
