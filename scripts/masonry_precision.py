@@ -55,7 +55,7 @@ class Study:
     timesteps: Sequence[float] = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5)
     finest_accuracy: float = 1e-6
     finest_timestep: float = 5e-6
-    repeats: int = 5
+    repeats: int = 4
     arch: float = 60.0
 
 

@@ -218,3 +218,12 @@ def test_a_base_sticks_up_to_mu(share, slides):
     t, dt = np.linspace(0, 1, 100001, retstep=True)
     speed = np.cumsum(np.maximum(push * np.minimum(2 * t, 1.0) - mu * mr.GRAVITY, 0.0)) * dt
     assert run.stats["base_displacement"] == pytest.approx(speed.sum() * dt, rel=2e-2)
+
+
+def test_between_blocks_the_extra_dashpot_is_only_what_the_joint_lacks():
+    for xi in (0.0, 1e-4, 0.05):
+        scene = two_blocks(xi=xi)
+        pace = Pace.of(scene, 1e-3)
+        lacking = np.maximum(RINGING_BORNE - scene.c / scene.k / pace.longest, 0)
+        np.testing.assert_allclose(pace.ringing[1], lacking)
+        assert (lacking[0] == RINGING_BORNE, lacking[0] == 0) == (xi == 0, xi == 0.05)

@@ -58,7 +58,9 @@ RINGING_BORNE, RINGING_OPEN = 0.1, 1.0
 bears weight at rest, and of one that is open at rest. beta above 1/4 alone would let what is left of a vibration ring
 on from step to step. Where weight is borne, the dashpot takes a third of the energy of the vibration in a step, and
 next to nothing of the rocking. A contact that is open at rest, such as a side stop, carries only what has just hit it.
-What is too faint to be met with a short step has to die there, and not to be thrown back with more energy."""
+What is too faint to be met with a short step has to die there, and not to be thrown back with more energy. Between
+several bodies a dashpot of the joint that already takes as much counts, because columns of flat blocks rock at
+frequencies at which the extra dashpot would be felt: it is only what the joint lacks in the longest step."""
 
 
 class Pace(NamedTuple):
@@ -92,10 +94,12 @@ class Pace(NamedTuple):
         longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
         longest = min(longest, STABLE / max(scene.tie_frequency, 1e-300))
         longest = min([longest, *(motion.dt for motion in (scene.motion, scene.vertical) if motion is not None)])
-        ringing = np.where(scene.points.bears > 0, RINGING_BORNE, RINGING_OPEN)
+        longest = max(short, longest)
+        own = scene.c / (longest * scene.k) if len(scene.names) > 1 else 0.0
+        ringing = np.where(scene.points.bears > 0, np.maximum(RINGING_BORNE - own, 0.0), RINGING_OPEN)
         return cls(
             short,
-            max(short, longest),
+            longest,
             math.sqrt(TAUT * accuracy) / scene.tie_frequency if len(scene.tie_k) else math.inf,
             accuracy,
             2 * float(scene.rest_energies[2]),
