@@ -2,9 +2,10 @@
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
+DOCS := .venv/.docs
 OLDEST := .venv-oldest
 
-.PHONY: demo test test-slow test-oldest mutants lint calibrate models figures clean stale
+.PHONY: demo docs test test-slow test-oldest mutants lint calibrate models figures clean stale
 
 demo: $(READY)
 	$(BIN)/python scripts/compare_wall.py --check --out out/demo
@@ -12,7 +13,12 @@ demo: $(READY)
 test: $(READY)
 	$(BIN)/pytest -n auto
 
-test-slow: $(READY)
+docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.html; a warning is an error
+	rm -rf docs/build docs/auto_examples
+	$(BIN)/python -m sphinx -b html -W --keep-going -q -d docs/build/doctrees docs docs/build/html
+	@echo "docs/build/html/index.html"
+
+test-slow: $(DOCS)
 	$(BIN)/pytest -n auto -m slow
 
 mutants: $(READY) # changes one operator or number of the physics at a time and names what no test notices; some minutes
@@ -39,6 +45,7 @@ models: $(READY)
 
 figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
 	$(BIN)/python scripts/compare_wall.py --check --out docs/figures/demo
+	$(BIN)/python scripts/sketch.py --out docs/figures
 	$(BIN)/python scripts/figure3.py --out docs/figures
 	$(BIN)/python scripts/animate.py --out docs/figures
 	$(BIN)/python scripts/table2.py --out docs/figures
@@ -84,5 +91,9 @@ $(READY) $(OLDEST)/.ready: %/.ready: pyproject.toml $$(STALE)
 	$*/bin/python -m $(INSTALL) --editable '.[test]'
 	@touch $@
 
+$(DOCS): $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	@touch $@
+
 clean:
-	rm -rf .venv $(OLDEST) out .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv $(OLDEST) out docs/build docs/auto_examples .pytest_cache .mypy_cache .ruff_cache

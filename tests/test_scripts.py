@@ -41,6 +41,7 @@ WRITES = {
     "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
+    "sketch": {"sketch.png"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}

@@ -1,0 +1,89 @@
+"""How Sphinx builds this documentation: `make docs` writes docs/build/html/index.html and needs no network."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import matplotlib
+
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+import mjrock  # noqa: E402
+
+matplotlib.use("agg")
+
+project = "mjrock"
+author = "The mjrock developers"
+copyright = "the mjrock developers, Apache-2.0"
+release = version = mjrock.__version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+exclude_patterns = ["build", "examples", "figures"]
+default_role = "py:obj"  # docstrings name things in single backticks
+nitpicky = False
+
+myst_heading_anchors = 3
+myst_enable_extensions = ["attrs_inline"]
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_default_options = {"members": True}
+python_maximum_signature_line_length = 88
+napoleon_numpy_docstring = False
+napoleon_custom_sections = [("Warns", "returns_style")]
+
+sphinx_gallery_conf = {
+    "examples_dirs": "examples",
+    "gallery_dirs": "auto_examples",
+    "filename_pattern": r"/\d\d_",
+    "ignore_pattern": r"__init__\.py",
+    "image_scrapers": ("figure_scraper",),
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "notebook_extensions": (),
+    "remove_config_comments": True,
+    "show_memory": False,
+    "show_signature": False,
+    "matplotlib_animations": False,
+    "write_computation_times": False,
+    "reset_modules": (),
+}
+
+html_theme = "furo"
+html_title = "mjrock"
+html_static_path = ["static"]
+html_css_files = ["mjrock.css"]
+html_copy_source = False
+html_show_sourcelink = False
+templates_path: list[str] = []
+
+MARKS = re.compile(r"(`[^`]*`)|([|*])")
+"""Text between backticks, or a mark that reStructuredText would take for its own."""
+
+
+def plain(app: object, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
+    """Keep |e| and 2**53 in docstrings as they are written."""
+    lines[:] = [MARKS.sub(lambda found: found[1] or "\\" + found[2], line) for line in lines]
+
+
+def compile_loops() -> None:
+    """Simulate a wall once, so that no example shows the line that is printed while loops are compiled."""
+    wall = mjrock.Block.from_size(thickness=0.6, height=4.2)
+    contacts = mjrock.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
+    motion = mjrock.GroundMotion.sine(1.0, 0.1)
+    tie = mjrock.Tie(height=4.0, stiffness=1e6, strength=10.0)
+    case = mjrock.Case(wall, 0.0, 0.1, side_stop=False, motion=motion, effects=(tie,))
+    mjrock.simulate(case, contacts)
+    mjrock.solve_analytical(case, mjrock.Restitution.from_geometry(wall))
+
+
+compile_loops()
+
+
+def setup(app: object) -> None:
+    """Read docstrings as plain text, before napoleon does."""
+    app.connect("autodoc-process-docstring", plain, priority=100)  # type: ignore[attr-defined]
