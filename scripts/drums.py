@@ -115,7 +115,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         rows.append([f"{frequency:g}", *(f"{a:.2f}" for a in (theory[i], *least[:, i]))])
     plotting.save(drawn(frequencies, least, theory), out / "drums.png")
     names = [f"{drums} drums" if drums > 1 else "1 drum" for drums in DRUMS]
-    header = ["omega_p/p [-]", "theory, 1 block", *names]
+    header = ["omega_p/p [-]", "theory 1 block", *names]
     rows.append(["safe islands", "-", *(f"{share:.3f}" for share in islands)])
     stood = np.where(falls, 0.0, slid).max(axis=(1, 2))
     rows.append(["most slid and stood [m]", "-", *(f"{most:.3f}" for most in stood)])

@@ -278,7 +278,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         ]
         for p in found
     ]
-    cli.write(out / "peers.csv", cli.csv_text(header, rows))
+    plain = [[str(cell).replace(",", " and") for cell in row] for row in rows]  # NumPy reads no quoted commas
+    cli.write(out / "peers.csv", cli.csv_text(header, plain))
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
     plotting.save(plotting.peers(drawn), out / "peers.png")
     lines = [summary(problem.label, found) for problem in problems]

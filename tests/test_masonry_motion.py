@@ -249,3 +249,21 @@ def test_an_arch_that_collapses():
     answer = follow(mr.Masonry.arch(5.0, 0.75), 5.0, mr.GroundMotion.sine(5.0, 0.7))
     assert len(answer.fallen) > 5
     assert answer.t[-1] < 3
+
+
+def test_a_cracked_facade_that_falls_away_from_a_side_wall_has_fallen():
+    """Both halves turn about the toe. The joint with the tall wall behind them opens far before the base has let go."""
+
+    def block(left, right, low, high, fixed=False, name=None):
+        return mr.Polygon([(left, low), (right, low), (right, high), (left, high)], fixed=fixed, name=name)
+
+    ground, behind = block(-1, 2, -1, 0, True, "ground"), block(-1, 0, 0, 6, True, "behind")
+    facade = block(0, 0.5, 0, 3, name="low"), block(0, 0.5, 3, 6, name="high")
+    masonry = mr.Masonry((ground, behind, *facade), k_n=1e9, friction=lambda joint: 0.7 if joint.is_bed else 0.0)
+    pushed = [(0.8 * z, -0.8 * -0.25, 0.8) for z in (1.5, 4.5)]
+    times = []
+    for step in (None, 2e-4):
+        run = mr.simulate(mr.MasonryCase(masonry, 10.0, velocity=pushed), timestep=step)
+        assert (run.outcome, set(run.fallen)) == (mr.Outcome.OVERTURNED, {"low", "high"})
+        times.append(run.fallen["low"])
+    assert times[0] == pytest.approx(times[1], rel=0.01)

@@ -33,7 +33,8 @@ class Points(NamedTuple):
         friction: coefficient of friction [-], zero for none, shape (m,).
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (m,).
         held, growth: inertia of the friction row [kg], zero for no friction, and its growth [1/s], see `set_rows`.
-        radius, reach: of MuJoCo's spheres for the points, and largest gap that a run follows [m], infinite for a wall.
+        radius: of MuJoCo's spheres for the points [m].
+        reach, overlap: largest gap and deepest penetration that a run follows [m], infinite for a wall.
         bears: penetration of the point while the scene is at rest [m], zero where it is open, shape (m,).
     """
 
@@ -51,6 +52,7 @@ class Points(NamedTuple):
     growth: float
     radius: float
     reach: float
+    overlap: float
     bears: Array
 
 

@@ -123,7 +123,7 @@ def fallen(q: Array) -> bool:
 def apart(points: Points, motion: Array) -> bool:
     """Whether a contact has opened, or is overlapped, by more than a run follows."""
     for i in range(len(points.k)):  # noqa: SIM110, numba knows no any()
-        if abs(motion[i, 0]) > points.reach:
+        if not -points.overlap <= motion[i, 0] <= points.reach:
             return True
     return False
 

@@ -59,8 +59,18 @@ class MasonryRun:
         self.opening, self.sliding, self.deepest, lost = joint_motion(case, scene, steps)
         sizes = np.array([case.masonry.blocks[i].size for i in case.masonry.free])
         drop = (scene.at_rest[:, 1] - steps.pose[:, 1::3]) / sizes
-        self.fallen = fallen_blocks(case.masonry, steps.t, lost, drop)
+        self.fallen = fallen_blocks(case.masonry, steps.t, lost, drop) or self._left_behind()
         self._require_no_gain()
+
+    def _left_behind(self) -> dict[str, float]:
+        """When a run ended that a block left by going too far or turning over [s], by the name of each that did."""
+        end = float(self.steps.t[-1])
+        if end >= self.case.duration - 0.5 * float(self.steps.h[-1]):
+            return {}
+        moved = self.steps.pose[-1].reshape(-1, 3) - self.scene.at_rest
+        far = np.hypot(moved[:, 0], moved[:, 1]) + np.abs(moved[:, 2]) * self.scene.extent
+        names = self.scene.names
+        return {name: end for name, gone in zip(names, far, strict=True) if gone >= 0.5 * far.max()}
 
     def _require_no_gain(self) -> None:
         """Raise a StepError where the energy, less the work of the ground, has grown from one mark to a later one.
@@ -87,8 +97,11 @@ class MasonryRun:
 
     @property
     def quiet(self) -> bool:
-        """Whether the energy left at the end opens no joint: it is less than that of the springs at rest."""
-        return bool(self.energy[-1] < self.scene.rest_energies[2])
+        """Whether the energy left at the end opens no joint: it is less than that of the springs at rest.
+
+        A structure that is falling has less energy than at rest, and is not quiet.
+        """
+        return bool(abs(self.energy[-1]) < self.scene.rest_energies[2])
 
     def response(self, spacing: float | None, stride: int, want_ledger: bool, stats: dict[str, Any]) -> MasonryResponse:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None; `stats` says how."""

@@ -183,6 +183,8 @@ class Scene:
     @cached_property
     def _points(self) -> Points:
         """The contacts for the compiled functions, before it is known which of them bear the weight."""
+        corners = np.concatenate([rest + outline for rest, outline in zip(self.rest, self.outlines, strict=True)])
+        span = float(np.hypot(*np.ptp(corners, axis=0))) if len(self.names) > 1 else np.inf
         return Points(
             body=self.point_body,
             at=self.point,
@@ -197,7 +199,8 @@ class Scene:
             held=frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
             growth=HELD_GROWTH if len(self.names) > 1 else 0.0,
             radius=self.radius,
-            reach=2 * self.extent if len(self.names) > 1 else np.inf,
+            reach=span,
+            overlap=2 * self.extent if len(self.names) > 1 else np.inf,
             bears=np.zeros(len(self.k)),
         )
 

@@ -37,8 +37,8 @@ class Masonry:
 
     Blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block does after
     it has left its joints is therefore not followed: the answer names such blocks, and with steps that fit the motion
-    the run ends when two blocks of a joint are farther apart than a block is large, or when a block has turned by 90
-    degrees.
+    the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block has
+    turned by 90 degrees.
 
     Friction that holds is a strong dashpot in MuJoCo. A joint under a sustained force F along it creeps at about
     F / (3e8 m) [m/s], with m the reduced mass of its two blocks [kg]: an arch at rest by some 0.05 mm in a minute. What
