@@ -14,7 +14,7 @@ import mjrock as mr
 
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 WRITES = {
-    "animate": {"figure3.gif"},
+    "animate": {"arch.gif", "figure3.gif"},
     "compare_wall": {"scene.xml", "comparison.png", "comparison.csv"},
     "figure3": {"figure3_one_sided.png", "figure3_two_sided.png", "figure3.csv"},
     "table2": {"table2.png", "table2.csv"},
