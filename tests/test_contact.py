@@ -90,7 +90,7 @@ def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
     c = np.array([1.0, 2.0]) * 2 / H
     rows = np.zeros((2, 2)), np.zeros((2, 5)), np.zeros((2, 2))
     weight, none = np.full(2, 0.01), np.zeros(2)
-    found = set_rows(np.full(2, 1e-9), c, weight, np.array(held), 0.0, H, none, none, *rows)
+    found = set_rows(np.full(2, 1e-9), c, weight, np.array(held), 0.0, H, none, none, np.full(2, 0.2), *rows)
     assert found == pytest.approx(impratio, rel=1e-9)
     impedance = rows[1][:, 0]
     assert impedance == pytest.approx([0.01 / 1.01, 0.02 / 1.02])

@@ -123,7 +123,9 @@ def take_rows(points: Points, h: float, beta: Array, ringing: Array, rows: Array
     """Write dashpot [N s/m] and inertia [kg] of every contact in a step, shape (m, 2), and return impratio [-]."""
     impratio = math.inf
     for i in range(len(points.k)):
-        rows[i, 0], rows[i, 1] = row(points.k[i], points.c[i], h, points.weight[i], beta[i], ringing[i])
+        rows[i, 0], rows[i, 1] = row(
+            points.k[i], points.c[i], h, points.weight[i], beta[i], ringing[i], points.overdamped[i]
+        )
         if points.held[i] > 0:
             impratio = min(impratio, max(points.growth * h, 1.0) * points.held[i] / rows[i, 1])
     return impratio

@@ -31,6 +31,9 @@ WITHIN = (IMPEDANCE_RANGE[0] * (1 + 1e-9), IMPEDANCE_RANGE[1] * (1 - 1e-9))
 OVERDAMPED = 0.2
 """c h W above which a dashpot acts on the velocity at the end of the step instead of the mean velocity [-]. The inverse
 mass that a contact of the wall feels is up to six times W. A centred dashpot leaves a quarter of the velocity there."""
+BORNE = 2.0
+"""The same for a joint of several bodies that bears weight, whose dashpot a resolving step centres well [-]. It stays
+closed in long steps, and a dashpot at their end would damp the rocking of flat blocks to first order in the step."""
 HELD_MASSES = 1e3
 """Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
 a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
@@ -88,7 +91,13 @@ def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) ->
 
 @jitable
 def row(
-    k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float
+    k: float,
+    c: float,
+    timestep: float,
+    inverse_weight: float,
+    newmark_beta: float,
+    ringing: float,
+    overdamped: float = OVERDAMPED,
 ) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
 
@@ -96,8 +105,8 @@ def row(
 
     * A dashpot that would take more than half the inertia that MuJoCo represents is no stronger than that. This is
       thousands of times the mass of the body.
-    * A dashpot that is stiff for the step (OVERDAMPED) acts on the velocity at the end of the step, m_i = h c instead
-      of h c / 2. Centred in the step, it would throw back the contact that it should stop.
+    * A dashpot that is stiff for the step, c h W > `overdamped`, acts on the velocity at the end of the step, m_i = h c
+      instead of h c / 2. Centred in the step, it would throw back the contact that it should stop.
     * A row whose impedance MuJoCo would clamp has the least inertia that it represents. More inertia than asked for
       then changes a frequency by less than 1e-4, and it damps nothing.
 
@@ -107,11 +116,12 @@ def row(
         inverse_weight: W [1/kg].
         newmark_beta: beta [-].
         ringing: an extra dashpot in units of h k [-], for steps that do not resolve the contact.
+        overdamped: c h W from which the dashpot is stiff [-].
     """
     strongest = 0.5 * inertia_of(WITHIN[1], inverse_weight) / timestep
     dashpot = min(c + ringing * timestep * k, strongest)
     inertia = newmark_inertia(k, dashpot, timestep, newmark_beta)
-    if dashpot * timestep * inverse_weight > OVERDAMPED:
+    if dashpot * timestep * inverse_weight > overdamped:
         inertia += 0.5 * timestep * dashpot
     return dashpot, max(inertia, inertia_of(WITHIN[0], inverse_weight))
 
@@ -134,6 +144,7 @@ def set_rows(
     timestep: float,
     newmark_beta: Array,
     ringing: Array,
+    overdamped: Array,
     solref: Array,
     solimp: Array,
     solreffriction: Array,
@@ -150,12 +161,12 @@ def set_rows(
         held: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
         growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
         timestep: step h [s].
-        newmark_beta, ringing: as in `row`, shape (m,).
+        newmark_beta, ringing, overdamped: as in `row`, shape (m,).
         solref, solimp, solreffriction: what is written, shapes (m, 2), (m, 2 or more) and (m, 2).
     """
     impratio = np.inf
     for i in range(len(k)):
-        dashpot, inertia = row(k[i], c[i], timestep, inverse_weight[i], newmark_beta[i], ringing[i])
+        dashpot, inertia = row(k[i], c[i], timestep, inverse_weight[i], newmark_beta[i], ringing[i], overdamped[i])
         solref[i, 0], solref[i, 1], d = pair_values(k[i], dashpot, inertia, inverse_weight[i])
         solimp[i, 0] = solimp[i, 1] = d
         if held[i] > 0:

@@ -36,6 +36,7 @@ class Points(NamedTuple):
         radius: of MuJoCo's spheres for the points [m].
         reach, overlap: largest gap and deepest penetration that a run follows [m], infinite for a wall.
         bears: penetration of the point while the scene is at rest [m], zero where it is open, shape (m,).
+        overdamped: c h W from which its dashpot is stiff for a step, see `contact.row` [-], shape (m,).
     """
 
     body: Integers
@@ -54,6 +55,7 @@ class Points(NamedTuple):
     reach: float
     overlap: float
     bears: Array
+    overdamped: Array
 
 
 class Ties(NamedTuple):

@@ -157,6 +157,7 @@ def change_step(memory: Memory, points: Points, pace: Pace, state: State, now: f
         now,
         pace.beta[kind],
         pace.ringing[kind],
+        points.overdamped,
         memory.solref,
         memory.solimp,
         memory.solreffriction,

@@ -131,11 +131,10 @@ class Rows(NamedTuple):
 
 def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> Rows:
     """The rows of a scene at a fixed step."""
-    points, m = scene.points, len(scene.k)
+    p, m = scene.points, len(scene.k)
     solref, solimp, hold = np.zeros((m, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (m, 1)), np.zeros((m, 2))
-    beta, none = np.full(m, newmark_beta), np.zeros(m)
-    held, growth = points.held, points.growth
-    impratio = set_rows(points.k, points.c, points.weight, held, growth, timestep, beta, none, solref, solimp, hold)
+    asked = timestep, np.full(m, newmark_beta), np.zeros(m), p.overdamped
+    impratio = set_rows(p.k, p.c, p.weight, p.held, p.growth, *asked, solref, solimp, hold)
     return Rows(solref, solimp, hold, impratio)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..problem.motion import GroundMotion
 from ..problem.quantities import GRAVITY, Array, Integers
-from .contact import HELD_GROWTH, HELD_MASSES, planar_weight
+from .contact import BORNE, HELD_GROWTH, HELD_MASSES, OVERDAMPED, planar_weight
 from .kinematics import Forces, Points, Ties, energies, gaps
 from .rest import gap_rates, lowered, settled
 from .tables import checked, frozen, nothing
@@ -202,6 +202,7 @@ class Scene:
             reach=span,
             overlap=2 * self.extent if len(self.names) > 1 else np.inf,
             bears=np.zeros(len(self.k)),
+            overdamped=np.full(len(self.k), OVERDAMPED),
         )
 
     def _between(self, body: Integers, at: Array, other: Integers, start: Array) -> Array:
@@ -230,7 +231,9 @@ class Scene:
     @cached_property
     def points(self) -> Points:
         """The contacts for the compiled functions."""
-        return self._points._replace(bears=np.maximum(-gaps(self._points, _one(self.at_rest))[0], 0))
+        bears = np.maximum(-gaps(self._points, _one(self.at_rest))[0], 0)
+        mild = (len(self.names) > 1) & (bears > 0) & (self.c * self.weight < self.highest_frequency)
+        return self._points._replace(bears=bears, overdamped=np.where(mild, BORNE, OVERDAMPED))
 
     @cached_property
     def at_rest(self) -> Array:

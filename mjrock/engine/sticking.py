@@ -86,7 +86,7 @@ def sticks(
     g, rate, _, _ = gap(points, i, frame, before, before)
     if g >= 0:
         return False
-    dashpot, inertia = row(points.k[i], points.c[i], h, points.weight[i], beta, ringing)
+    dashpot, inertia = row(points.k[i], points.c[i], h, points.weight[i], beta, ringing, points.overdamped[i])
     acceleration = (gap(points, i, frame, after, after)[1] - rate) / h
     pressing = -(points.k[i] * g + dashpot * rate + inertia * acceleration)
     dragging = impratio * inertia * along(points, i, frame, after)[2] / h
