@@ -292,7 +292,7 @@ REFUSED = [
     (lambda: released((mr.Tie(1.0, 1e6, block=2),)), r"effects\[0\], block = 2, is outside the valid range"),
     (
         lambda: released((mr.Thrust(4.0, 4000.0), mr.Load(1e3, 4.0, 0.2))),
-        r"the loads and thrusts overturn the wall outwards as it stands: .* is -106\d N m; the valid range is above 0",
+        r"the loads and thrusts overturn the wall outwards as it stands: .* is -106\d N m, and no tie makes up for it; the valid range is above 0",
     ),
     (lambda: released((mr.Thrust(4.0, -4000.0),), side_stop=False), "overturn the wall inwards"),
     (lambda: released((), vertical=3), "vertical = 3 of type int is not a GroundMotion"),
@@ -322,6 +322,23 @@ REFUSED = [
 def test_effects_that_cannot_be(make, complaint):
     with pytest.raises((ValueError, TypeError), match=complaint):
         make()
+
+
+def test_a_wall_that_only_a_tie_holds_leans_on_it():
+    """By hand: the moment of the thrust less that of the weight is the pull of the tie times its height."""
+    wall = mr.Block.from_size(0.6, 9.0, 5.0, 1800.0)
+    contacts = mr.Contacts.from_damping(wall, k_base=2e9, xi_base=0.02, k_side=2e9, xi_side=0.005)
+    case = mr.Case(wall, 0.0, 0.3, effects=(mr.Thrust(8.8, 25e3), mr.Tie(6.0, 15e6, 0.01)))
+    at = case.pulls[0]
+    theta = 0.01 / 6.0
+    for _ in range(20):  # (slack + pull / stiffness) / height
+        lacking = 25e3 * (8.8 + 0.3 * theta) - wall.weight * (0.3 - 4.5 * theta)
+        theta = (0.01 + lacking / 6.0 / at.stiffness) / 6.0
+    for run in (mr.simulate(case, contacts), mr.solve_compliant(case, contacts)):
+        assert run.theta[0] == pytest.approx(theta, rel=0.02)
+        assert np.abs(run.theta - run.theta[0]).max() < 1e-4 * wall.alpha
+    with pytest.raises(ValueError, match="rocking theory knows no rest but upright; simulate and solve_compliant do"):
+        mr.solve_analytical(case, mr.Restitution.from_geometry(wall))
 
 
 def test_a_wall_that_leans_rests_where_its_springs_carry_it():

@@ -52,6 +52,19 @@ def test_a_thrust_that_overturns_the_upper_block_names_it():
         mr.simulate(mr.MasonryCase(masonry, 0.01, effects=mr.Thrust(3.15, 1.05 * most, block=upper)))
 
 
+def test_two_blocks_beside_a_rough_wall_stand():
+    """Friction at the side could carry them. No such pose is found, and the one in which it does not is."""
+
+    def block(left, right, low, high, fixed=False):
+        return mr.Polygon([(left, low), (right, low), (right, high), (left, high)], fixed=fixed)
+
+    behind = block(-1, -0.3, 0, 9, True)
+    blocks = (block(-1, 2, -1, 0, True), behind, block(-0.3, 0.3, 0, 4.5), block(-0.3, 0.3, 4.5, 9))
+    run = mr.simulate(mr.MasonryCase(mr.Masonry(blocks, k_n=2e8, friction=0.7), 0.2))
+    assert run.outcome is mr.Outcome.AT_REST
+    assert run.pose[0, :, 1] == pytest.approx([-8.829e-4, -1.3244e-3], rel=1e-3)
+
+
 def test_left_end_of_a_block():
     trapezium = mr.Polygon([(0, 0), (4, 0), (3, 2), (1, 2)])
     assert [trapezium.left_at(z) for z in (0.0, 1.0, 2.0, 9.0)] == [0.0, 0.5, 1.0, 0.0]

@@ -161,11 +161,26 @@ def potential(points: Points, ties: Ties, forces: Forces, masses: Array, pose: A
 def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
     """The pose in which the springs of contacts and ties carry weight and forces, shape (n, 3).
 
-    Newton's method on the potential energy, which every step lowers. Friction holds every joint that is pressed. Where
-    nothing holds a direction, the bodies stay where they are.
+    Friction holds every joint that touches. Where no pose is found so, it holds those that are pressed: a block beside
+    a wall that touches and does not press would else carry it by friction alone.
 
     Raises:
         UnsettledError: if no such pose is found near the undeformed one.
+    """
+    try:
+        return _settled(points, ties, forces, masses, pressed=False)
+    except UnsettledError as error:
+        try:
+            return _settled(points, ties, forces, masses, pressed=True)
+        except UnsettledError:
+            raise error from None
+
+
+def _settled(points: Points, ties: Ties, forces: Forces, masses: Array, *, pressed: bool) -> Array:
+    """As `settled`, by Newton's method on the potential energy, which every step lowers.
+
+    Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, or those that
+    are `pressed`.
     """
     pose, k = np.zeros_like(masses), np.append(points.k, ties.k)
     closed = np.append(np.ones(len(points.k), dtype=bool), openings(points, ties, pose)[len(points.k) :] < 0)
@@ -177,7 +192,7 @@ def settled(points: Points, ties: Ties, forces: Forces, masses: Array) -> Array:
         carrying = np.where(closed, k, 0.0)
         stiffness = (rates.T * np.where(closed, k, LEANING * k)) @ rates
         residual = load(forces, masses, pose) + rates.T @ (carrying * depth)
-        grip = k.max() * slip_rates(points, closed, pose)
+        grip = k.max() * slip_rates(points, closed & (depth > 0) if pressed else closed, pose)
         matrix = np.block([[stiffness, grip.T], [grip, np.zeros((len(grip), len(grip)))]])
         found = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-14)[0]
         moved, friction = found[: len(pose)], found[len(pose) :]

@@ -53,20 +53,32 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     return ax
 
 
-def fragility(ax: Axes, fit: Fragility, levels: ArrayLike, shares: ArrayLike, solver: str, marker: str) -> Axes:
-    """A fragility curve with its 90 % band, and the share overturned at each level."""
+def fragility(
+    ax: Axes, fit: Fragility, levels: ArrayLike, shares: ArrayLike, solver: str, marker: str = "o", unit: str = "g"
+) -> Axes:
+    """A fragility curve with its 90 % band, and the share overturned at each level; `ax.legend()` shows the labels.
+
+    Args:
+        ax: where to draw.
+        fit: the curve.
+        levels: peak ground accelerations, in the unit of the fit, shape (n,).
+        shares: share of the runs that overturned at each, shape (n,).
+        solver: name of the curve; those of `STYLES` have their own colours, any other the next one.
+        marker: of the shares, as matplotlib names it.
+        unit: of the accelerations, for axis and label.
+    """
     style = STYLES.get(solver, {})
-    colour = style.get("color", "C0")
+    colour = style.get("color", f"C{len(ax.lines) // 2}")
     points = np.asarray(levels, dtype=float)
     x = np.linspace(0.02 * points.max(), points.max(), 300)
     low, high = fit.band(x)
     ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
     ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8)
-    label = f"{style.get('label', solver)}: {fit.median:.2f} g, {fit.dispersion:.2f}"
+    label = f"{style.get('label', solver)}: {fit.median:.2f} {unit}, {fit.dispersion:.2f}"
     ax.plot(points, shares, marker=marker, linestyle="", color=colour, markersize=5, label=label)
-    ax.set_xlim(0, points.max())
+    ax.set_xlim(0, max(1.02 * points.max(), ax.get_xlim()[1] if len(ax.lines) > 2 else 0.0))
     ax.set_ylim(-0.02, 1.02)
-    ax.set_xlabel("peak ground acceleration [g]")
+    ax.set_xlabel(f"peak ground acceleration [{unit}]")
     ax.set_ylabel("share of walls overturned [-]")
     return ax
 

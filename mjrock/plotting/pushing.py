@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -48,10 +49,10 @@ def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Close
 
 
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
-    for (name, (x, y)), style in zip(lines.items(), LINES, strict=False):
+    for (name, (x, y)), style in zip(lines.items(), cycle(LINES), strict=False):
         ax.plot(x, y, label=name, **style)
     for i, (name, (x, y)) in enumerate(points.items()):
-        colour = LINES[list(lines).index(name)]["color"] if name in lines else "0.4"
+        colour = LINES[list(lines).index(name) % len(LINES)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
     ax.set_xlim(left=0)

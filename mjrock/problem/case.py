@@ -93,10 +93,12 @@ class Case:
             if isinstance(one, Load):
                 require_within(f"effects[{i}], offset of the Load", one.offset, -b, b, "m")
         for side, name in ((1.0, "outwards"), (-1.0, "inwards")):
-            if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0:
+            held = side > 0 and self.overturning_rotation > 0  # by ties
+            if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not held:
                 raise ValueError(
                     f"the loads and thrusts overturn the wall {name} as it stands: their moment about the toe and "
-                    f"that of the weight is {self.restoring.towards(side).P:.4g} N m; the valid range is above 0"
+                    f"that of the weight is {self.restoring.towards(side).P:.4g} N m, and no tie makes up for it; the "
+                    "valid range is above 0: lower the thrust, or give a tie that can hold it"
                 )
 
     def __repr__(self) -> str:
@@ -187,7 +189,7 @@ class Case:
         """
         moment = self.restoring.outer
         if not self.pulls:
-            return moment.alpha
+            return max(moment.alpha, 0.0)
         phi = np.linspace(0.0, ON_ITS_FACE, 2001)[1:]
         held = moment.at(phi) + sum(pull.moment(phi) for pull in self.pulls)
         back = np.flatnonzero(held > 0)

@@ -80,7 +80,7 @@ class Thrust:
 
     Args:
         height: where it acts, on the middle of the wall [m].
-        force: its size, positive outwards [N], -1e9 to 1e9.
+        force: its size on the whole length of the wall, positive outwards [N], -1e9 to 1e9.
         block: the block that it pushes.
 
     Raises:
@@ -102,7 +102,7 @@ class Load:
     """A vertical force on the wall that has weight but no mass of its own here: a floor or roof that rests on it.
 
     Args:
-        force: its size, downwards [N], 0 to 1e9.
+        force: its size on the whole length of the wall, downwards [N], 0 to 1e9.
         height: where it acts [m].
         offset: from the middle of the base, outwards [m], -10 to 10.
         block: the block that it rests on.

@@ -95,12 +95,12 @@ def require_openings(openings: Sequence[Opening], length: float, height: float) 
                 "height of the wall"
             )
     for one in openings:
-        z = one.sill + 1e-9 * height
+        z = one.sill + 1e-9 * height  # just above the sill
         across = sum(other.width for other in openings if other.sill <= z < other.head)
         if not across < length * (1 - 1e-9):
             raise ValueError(
-                f"the openings at a height of {z:.4g} m are {across:g} m wide together; the valid range is less than "
-                f"{length:g} m, the length of the wall"
+                f"the openings at a height of {one.sill:.4g} m are {across:g} m wide together; the valid range is "
+                f"less than {length:g} m, the length of the wall"
             )
 
 

@@ -93,10 +93,18 @@ class Wall:
             rates = self.held(0.0, np.append(pose(found), np.zeros(3)), shaken=False)
             return rates[4:] * (1 / GRAVITY, self.inertia / (self.weight * self.up))
 
-        best, _, success, why = fsolve(unbalanced, (1.0, 0.0), xtol=1e-13, full_output=True)
+        best, _, success, why = fsolve(unbalanced, (1.0, 1e3 * self._leaning()), xtol=1e-13, full_output=True)
         if success != 1 and np.abs(unbalanced(best)).max() > 1e-9:
             raise ValueError(f"the wall does not stand on its contacts: {why}")
         return pose(best)
+
+    def _leaning(self) -> float:
+        """About where a wall that its thrusts would overturn leans on its ties [rad]; zero for any other."""
+        if self.case.restoring.outer.P > 0:
+            return 0.0
+        phi = np.linspace(0.0, 0.2, 4001)
+        held = self.case.restoring.outer.at(phi) + sum(pull.moment(phi) for pull in self.case.pulls)
+        return float(phi[np.argmax(held > 0)])
 
     def energy(self, history: Array) -> Array:
         """Kinetic, potential and elastic energy of many states above the wall at rest [J], shape (n,)."""

@@ -97,7 +97,15 @@ def solve_analytical(
 def _require_solvable(case: Case, e: Restitution) -> None:
     """Raise ValueError for a case that rocking theory has no answer to."""
     if case.side_stop and not -1 <= e.lumped < 0:
-        raise ValueError(f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop")
+        low = "" if case.stop_top == 2 * case.block.h else f": a stop of {case.stop_top:g} m may be too low"
+        raise ValueError(
+            f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{low}"
+        )
+    if case.restoring.outer.P <= 0:
+        raise ValueError(
+            "the thrust tilts the wall until its ties hold it, and rocking theory knows no rest but upright; "
+            "simulate and solve_compliant do"
+        )
     if case.vertical is not None and case.vertical.accel.min() <= -GRAVITY:
         raise ValueError(
             f"the vertical ground motion reaches {case.vertical.accel.min():.4g} m/s2, which lifts the wall off its "
