@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from dataclasses import dataclass
 
@@ -26,9 +27,12 @@ def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
     """The compiled model of either; an MjSpec stays as it is.
 
     Raises:
-        TypeError: unless it is one of them.
+        TypeError: unless it is one of them; for a text or a path with the call that loads it.
         ValueError: with the compiler's message, if the specification does not compile.
     """
+    if isinstance(model, str | os.PathLike):
+        load = "from_xml_string" if isinstance(model, str) and model.lstrip().startswith("<") else "from_xml_path"
+        raise TypeError(f"model = {shown(model)} is not a MjModel or MjSpec; load it with mujoco.MjModel.{load}")
     require_kind("model", model, mujoco.MjModel, mujoco.MjSpec)
     if isinstance(model, mujoco.MjModel):
         return model
@@ -56,8 +60,11 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
             return int(number)
         body = mujoco.mj_name2id(model, BODY, value)
         if body < 0:
-            known = ", ".join(name for name in (geom_name(model, i) for i in range(model.ngeom)) if name) or "none"
-            raise ValueError(f"{argument} = {value!r} is no geom or body of this model; its named geoms are: {known}")
+            geoms, bodies = _known(model, GEOM, model.ngeom), _known(model, BODY, model.nbody)
+            raise ValueError(
+                f"{argument} = {value!r} is no geom or body of this model; its named geoms are: {geoms}; "
+                f"its named bodies are: {bodies}"
+            )
         if model.body_geomnum[body] != 1:
             raise ValueError(f"{argument} = {value!r} is a body with {model.body_geomnum[body]} geoms; name the geom")
         return int(model.body_geomadr[body])
@@ -73,6 +80,11 @@ def geom_name(model: mujoco.MjModel, geom: int) -> str:
     return mujoco.mj_id2name(model, GEOM, geom) or ""
 
 
+def _known(model: mujoco.MjModel, kind: mujoco.mjtObj, count: int) -> str:
+    names = (mujoco.mj_id2name(model, kind, number) for number in range(count))
+    return ", ".join(name for name in names if name) or "none"
+
+
 @dataclass(frozen=True)
 class GeomPair:
     """Two geoms of a compiled model.
@@ -80,10 +92,12 @@ class GeomPair:
     Args:
         model: the model, which is only read.
         geoms: the numbers of the geoms.
+        chosen: the number of one of the model's explicit pairs of these geoms. None is the first, if there is one.
     """
 
     model: mujoco.MjModel
     geoms: tuple[int, int]
+    chosen: int | None = None
 
     @classmethod
     def named(cls, model: mujoco.MjModel, geom1: object, geom2: object) -> GeomPair:
@@ -115,11 +129,14 @@ class GeomPair:
 
     @property
     def explicit(self) -> int:
-        """The number of the model's explicit pair of these geoms, or -1."""
-        for i in range(self.model.npair):
-            if {int(self.model.pair_geom1[i]), int(self.model.pair_geom2[i])} == set(self.geoms):
-                return i
-        return -1
+        """The number of the chosen explicit pair of these geoms, or -1."""
+        return self.chosen if self.chosen is not None else next(iter(self.listed), -1)
+
+    @property
+    def listed(self) -> tuple[int, ...]:
+        """The numbers of all explicit pairs of these geoms. MuJoCo makes a contact of each."""
+        ends = zip(self.model.pair_geom1, self.model.pair_geom2, strict=True)
+        return tuple(i for i, (a, b) in enumerate(ends) if {int(a), int(b)} == set(self.geoms))
 
     @property
     def inverse_weight(self) -> float:

@@ -7,25 +7,25 @@ W of the two bodies,
 
 In the direct format K = stiffness / dw^2 and B = damping / dw, else K = 1 / (dw timeconst dampratio)^2 and
 B = 2 / (dw timeconst), where dw is the impedance at the full width. With friction and the pyramidal cone all three
-change by the factor of `_pyramid`. An Euler step of length h uses up h c / 2 of the inertia m_i (see `contact`). What
-is left moves with the mass in a contact.
+change by the factor of `Mixed.pyramid`. An Euler step of length h uses up h c / 2 of the inertia m_i (see `contact`).
+What is left moves with the mass in a contact.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
-from ..problem.quantities import require_flag
+from ..problem.quantities import require_flag, require_whole
 from ..problem.rebound import rebound_restitution
 from .contact import IMPEDANCE_RANGE
 from .geompair import GeomPair, at_rest, compiled
 from .mixing import Mixed
-from .spoilers import model_spoilers
+from .spoilers import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,7 @@ class InspectedContact:
         mass: effective mass of an approach of the centres of mass along the normal at `qpos0` [kg]; infinity if there
             is none.
         impedance: d at zero penetration [-].
+        points: contact points that share the mass; frequency, xi and restitution are those of so many.
         notes: what else is to be known of it, one sentence each.
     """
 
@@ -51,51 +52,67 @@ class InspectedContact:
     inertia: float
     mass: float
     impedance: float
+    points: int
     notes: tuple[str, ...]
 
     @property
     def frequency(self) -> float:
-        """Circular frequency omega in a contact of a single point [rad/s]."""
-        return math.sqrt(self.k / (self.mass + self.inertia))
+        """Circular frequency omega in a contact of these points [rad/s]."""
+        return math.sqrt(self.k / self._moved)
 
     @property
     def xi(self) -> float:
-        """Damping ratio of a contact of a single point, with the inertia of the row [-]; NaN without a mass."""
+        """Damping ratio xi of a contact of these points, with the inertia of the row [-]; NaN without a mass."""
         if not self.mass < math.inf:
             return math.nan
         if self.k == 0:
             return math.inf if self.c > 0 else 0.0
-        return self.c / (2 * math.sqrt(self.k * (self.mass + self.inertia)))
+        return self.c / (2 * math.sqrt(self.k * self._moved))
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution e of a contact of a single point, see `rebound_restitution` [-]."""
+        """Coefficient of restitution e of an approach along the normal that meets these points [-].
+
+        It is that of a spring and dashpot that never pull, exp(-2 xi acos(xi) / sqrt(1 - xi^2)), beyond xi = 1 with
+        acosh(xi) and sqrt(xi^2 - 1). It knows nothing of the time step; a note says where the step is too long for it.
+        """
         return math.nan if math.isnan(self.xi) else rebound_restitution(self.xi)
 
+    @property
+    def _moved(self) -> float:
+        """What moves with each contact point [kg]."""
+        return self.mass / self.points + self.inertia
 
-def inspect_contacts(model: mujoco.MjModel | mujoco.MjSpec, *, candidates: bool = True) -> tuple[InspectedContact, ...]:
+
+def inspect_contacts(
+    model: mujoco.MjModel | mujoco.MjSpec, *, candidates: bool = True, contacts: int = 1
+) -> tuple[InspectedContact, ...]:
     """Every contact that a model can make, in physical units.
 
     Args:
         model: a compiled model or a specification; it is not changed.
         candidates: whether geoms without an explicit pair are listed too, where MuJoCo lets them collide: contype and
             conaffinity match, and their bodies are neither one, nor parent and child, nor excluded.
+        contacts: contact points that share the mass, 1 to 50, of geoms that can meet in several points: 4 for a box
+            that lands flat on a plane. 1 is a single point that bears the whole mass.
 
     Returns:
         Explicit pairs first, then candidates. Pairs of which neither body can move are left out.
 
     Raises:
-        TypeError: unless it is a model.
-        ValueError: if the specification does not compile.
+        TypeError: unless it is a model, and `contacts` a whole number.
+        ValueError: if the specification does not compile, or `contacts` is outside its range.
     """
     require_flag("candidates", candidates)
+    points = require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
     made = compiled(model)
     data = at_rest(made)
-    pairs = [GeomPair(made, (int(a), int(b))) for a, b in zip(made.pair_geom1, made.pair_geom2, strict=True)]
+    ends = zip(made.pair_geom1, made.pair_geom2, strict=True)
+    pairs = [GeomPair(made, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
     listed = {frozenset(pair.geoms) for pair in pairs}
     if candidates:
         pairs += [pair for pair in _candidates(made) if frozenset(pair.geoms) not in listed]
-    return tuple(_inspected(pair, data) for pair in pairs if pair.inverse_weight > 0)
+    return tuple(_inspected(pair, data, points) for pair in pairs if pair.inverse_weight > 0)
 
 
 def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
@@ -118,7 +135,7 @@ def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
                 yield pair
 
 
-def _inspected(pair: GeomPair, data: mujoco.MjData) -> InspectedContact:
+def _inspected(pair: GeomPair, data: mujoco.MjData, contacts: int) -> InspectedContact:
     mixed, option = Mixed.of(pair), pair.model.opt
     if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_OVERRIDE):
         solref, solimp = option.o_solref, option.o_solimp
@@ -131,36 +148,60 @@ def _inspected(pair: GeomPair, data: mujoco.MjData) -> InspectedContact:
         d = 0.5 * (d + full)
     spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, _is_safe(pair.model))
     scale = d / ((1 - d) * pair.inverse_weight)
-    pyramidal = mixed.condim > 1 and option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
-    if pyramidal:
-        scale *= _pyramid(mixed, float(option.impratio))
-    c = scale * dashpot
+    if mixed.condim > 1 and option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
+        scale *= mixed.pyramid(float(option.impratio))
+    k, c = scale * d * spring, scale * dashpot
     staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    inertia = scale if staged else max(0.0, scale - 0.5 * h * c)
-    notes = []
-    if not constant:
-        notes.append("the impedance grows with penetration, and stiffness and damping with it")
-    if pyramidal:
-        notes.append("the cone is pyramidal: k and c hold for a head-on approach")
-    elif mixed.condim > 1 and max(mixed.friction[:2]) ** 2 > 0.02 * option.impratio:
-        notes.append(f"impratio = {option.impratio:g} is small: sliding changes the normal force")
-    if mixed.margin != 0:
-        notes.append(f"it begins at a distance of {mixed.margin:g} m")
-    if mixed.adhesion != 0:
-        notes.append(f"it pulls with up to {mixed.adhesion:g} N")
-    if pair.makes_several_points:
-        notes.append("it can have several points, which share the mass")
     first, second = (name or f"[{geom}]" for name, geom in zip(pair.names, pair.geoms, strict=True))
-    return InspectedContact(
+    found = InspectedContact(
         first,
         second,
         explicit=pair.explicit >= 0,
-        k=scale * d * spring,
+        k=k,
         c=c,
-        inertia=inertia,
+        inertia=scale if staged else max(0.0, scale - 0.5 * h * c),
         mass=pair.mass(data),
         impedance=d,
-        notes=(*notes, *model_spoilers(pair.model)),
+        points=contacts if pair.makes_several_points else 1,
+        notes=(),
+    )
+    ringing = scale < (h * c + 0.5 * h**2 * k) * (1 - 1e-6)  # the row of `contact_for` for a step that resolves nothing
+    notes = (*_notes(pair, mixed, constant), *_step_notes(found, h, ringing), *model_spoilers(pair.model))
+    return replace(found, notes=(*notes, *_points_notes(pair, found.points)))
+
+
+def _notes(pair: GeomPair, mixed: Mixed, constant: bool) -> Iterator[str]:
+    option = pair.model.opt
+    yield from duplicates(pair)
+    if not constant:
+        yield "the impedance grows with penetration, and stiffness and damping with it"
+    if mixed.condim > 1 and option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
+        yield "the cone is pyramidal: k and c hold for a head-on approach"
+    elif mixed.condim > 1 and max(mixed.friction[:2]) ** 2 > 0.02 * option.impratio:
+        yield f"impratio = {option.impratio:g} is small: sliding changes the normal force"
+    if mixed.margin != 0:
+        yield f"it begins at a distance of {mixed.margin:g} m"
+    if mixed.adhesion != 0:
+        yield f"it pulls with up to {mixed.adhesion:g} N"
+
+
+def _points_notes(pair: GeomPair, points: int) -> Iterator[str]:
+    if pair.makes_several_points:
+        shared = f"{points} that share the mass" if points > 1 else "a single one that bears the whole mass"
+        yield f"it can have several points: xi and e are those of {shared}; contacts says how many do, 4 for a flat box"
+
+
+def _step_notes(found: InspectedContact, h: float, ringing: bool) -> Iterator[str]:
+    """Where the step is too long for the formula of e."""
+    if not found.mass < math.inf:
+        return
+    longest = resolving_step(found.k, found.c, found.mass / found.points + found.inertia)
+    if h <= longest:
+        return
+    gain = ", and it can gain energy" if ringing and found.frequency * h > UNSOUND else ""
+    yield (
+        f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: the rebound is not the e of this "
+        f"table{gain}; {rounded_down(longest)} s resolves it"
     )
 
 
@@ -177,13 +218,3 @@ def _reference(first: float, second: float, full: float, h: float, safe: bool) -
 def _is_safe(model: mujoco.MjModel) -> bool:
     """Whether MuJoCo keeps time constants above two steps."""
     return not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
-
-
-def _pyramid(mixed: Mixed, impratio: float) -> float:
-    """Factor of the pyramidal cone on stiffness, damping and inertia of an approach without sliding [-].
-
-    Each friction dimension has two edges. All have the regularisation 2 mu^2 R / impratio of a row of the weight
-    W (1 + mu^2), with mu the first coefficient.
-    """
-    mu = mixed.friction[0]
-    return (mixed.condim - 1) * impratio / (mu**2 * (1 + mu**2))

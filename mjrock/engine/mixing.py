@@ -73,6 +73,15 @@ class Mixed:
             float(model.geom_adhesion[geoms].sum()),
         )
 
+    def pyramid(self, impratio: float) -> float:
+        """Factor of the pyramidal cone on stiffness, damping and inertia of an approach without sliding [-].
+
+        Each friction dimension has two edges. All have the regularisation 2 mu^2 R / impratio of a row of the weight
+        W (1 + mu^2), with mu the first coefficient.
+        """
+        mu = self.friction[0]
+        return (self.condim - 1) * impratio / (mu**2 * (1 + mu**2))
+
 
 def _numbers(values: Array | tuple[float, ...]) -> tuple[float, ...]:
     return tuple(float(value) for value in values)

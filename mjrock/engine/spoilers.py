@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from decimal import ROUND_DOWN, Context
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
+from ..problem.rebound import rebound_restitution
+from .contact import inertia_of
 from .geompair import GeomPair
 from .mixing import Mixed
 
@@ -54,6 +57,7 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     """What `apply` does not mend."""
     model = pair.model
     yield from model_spoilers(model)
+    yield from duplicates(pair)
     if pair.explicit >= 0:
         mixed = Mixed.of(pair)
         if mixed.margin != 0:
@@ -68,24 +72,49 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     yield from step_spoilers(contact)
 
 
-def step_spoilers(contact: PairContact) -> Iterator[str]:
-    """What a long step does to the restitution.
+def duplicates(pair: GeomPair) -> Iterator[str]:
+    """More than one explicit pair of the geoms."""
+    if len(pair.listed) > 1:
+        yield (
+            f"the model has {len(pair.listed)} explicit <pair>s of these geoms, and MuJoCo makes the contacts of each; "
+            "remove all but one"
+        )
+
+
+def resolving_step(k: float, c: float, mass: float) -> float:
+    """The longest step that resolves the contact of a mass [s].
 
     A touch lies anywhere in a step, and the dashpot acts from the next step on. Uniform touches give e a standard
     deviation of e c h / (m sqrt(12)).
+
+    Args:
+        k, c, mass: spring [N/m], dashpot [N s/m] and mass [kg] of a contact point, positive; c and k may be zero.
     """
+    if k == 0:
+        return math.inf
+    omega = math.sqrt(k / mass)
+    e = rebound_restitution(c / (2 * mass * omega))
+    return min(RESOLVED / omega, SCATTER * math.sqrt(12) * mass / max(e * c, 1e-300))
+
+
+def rounded_down(value: float, digits: int = 2) -> str:
+    """A positive number as text with so many digits, never above what it is."""
+    return f"{Context(prec=digits, rounding=ROUND_DOWN).create_decimal_from_float(value):g}"
+
+
+def step_spoilers(contact: PairContact) -> Iterator[str]:
+    """What a long step does to the restitution."""
     h, omega = contact.timestep, contact.frequency
-    spread = h * contact.restitution * contact.c / (contact.mass * math.sqrt(12))
-    longest = min(RESOLVED / omega, h * SCATTER / max(spread, 1e-300))
+    longest = resolving_step(contact.k, contact.c, contact.mass)
     if omega * h > UNSOUND:
         yield (
             f"timestep = {h:g} s does not resolve a contact of omega = {omega:.4g} rad/s: it rebounds with less than "
-            f"0.6 whatever is asked; {longest:.2g} s resolves it"
+            f"0.6 whatever is asked; {rounded_down(longest)} s resolves it"
         )
     elif h > longest:
         yield (
             f"timestep = {h:g} s is long for a contact of omega = {omega:.4g} rad/s and xi = {contact.xi:.3g}: the "
-            f"restitution depends on where in a step the geoms touch; {longest:.2g} s resolves it"
+            f"restitution depends on where in a step the geoms touch; {rounded_down(longest)} s resolves it"
         )
 
 
@@ -112,6 +141,17 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     if contact.condim == 1:
         return
     if option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
-        yield "the friction cone is pyramidal, which changes stiffness and damping of a contact with friction"
+        yield f"the friction cone is pyramidal, which {_pyramidal(pair, contact)}"
     if option.impratio < contact.impratio * (1 - 1e-5):
         yield f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force"
+
+
+def _pyramidal(pair: GeomPair, contact: PairContact) -> str:
+    """What the pyramidal cone does to a contact: all three numbers of the row grow, the mass and the step do not."""
+    factor, h, d = Mixed.of(pair).pyramid(float(pair.model.opt.impratio)), contact.timestep, contact.solimp[0]
+    dashpot = -contact.solref[1] / ((1 - d) * contact.inverse_weight)
+    inertia = factor * max(0.0, inertia_of(d, contact.inverse_weight) - 0.5 * h * dashpot)
+    text = f"makes stiffness and damping of a contact with friction {factor:.3g} times as large"
+    if h * math.sqrt(factor * contact.k / (contact.mass + inertia)) <= UNSOUND:
+        return text
+    return f"{text}: the step does not resolve it, and the contact can gain energy; set cone to elliptic"
