@@ -279,6 +279,11 @@ def test_dask_survives_the_death_of_a_worker(tmp_path):
     ):
         client.run(sys.path.append, str(Path(__file__).parent))
         path = mr.campaign(tasks, tmp_path / "c.sqlite", executor=executor)
+        blocks = mr.Masonry.stack([mr.Block.from_size(0.6, 2.1)] * 2, k_n=5e8)
+        column = mr.MasonryAnalysis(mr.MasonryCase(blocks, 0.05), labels={"name": "column"})
+        stands = mr.campaign([column], tmp_path / "m.sqlite", executor=executor)
+    with mr.Store(stands) as store:
+        assert [row["outcome"] for row in store.rows()] == ["at rest"]
     assert (tmp_path / "died-11-0").exists()
     with mr.Store(path) as store:
         assert [r["square"] for r in store.rows()] == [i**2 for i in range(40)]

@@ -292,7 +292,7 @@ REFUSED = [
     (lambda: released((mr.Tie(1.0, 1e6, block=2),)), r"effects\[0\], block = 2, is outside the valid range"),
     (
         lambda: released((mr.Thrust(4.0, 4000.0), mr.Load(1e3, 4.0, 0.2))),
-        r"the loads and thrusts overturn the wall outwards as it stands: .* is -106\d N m, and no tie makes up for it; the valid range is above 0",
+        r"the loads and thrusts overturn the wall outwards as it stands: .* is -106\d N m, and no tie makes up for it;",
     ),
     (lambda: released((mr.Thrust(4.0, -4000.0),), side_stop=False), "overturn the wall inwards"),
     (lambda: released((), vertical=3), "vertical = 3 of type int is not a GroundMotion"),

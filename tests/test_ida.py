@@ -146,3 +146,16 @@ def test_a_share_that_cannot_be():
     found = module.IncrementalAnalysis(("a",), np.array([1.0]), np.array([[0.5]]), ())
     with pytest.raises(ValueError, match=r"shares\[0\] = 101 % is outside the valid range 0 to 100 %"):
         found.percentiles((101,))
+
+
+def build_column(scale):
+    masonry = mr.Masonry.stack([mr.Block.from_size(0.6, 2.1)] * 2, k_n=5e8, xi=0.05, friction=0.8)
+    return mr.MasonryAnalysis(mr.MasonryCase(masonry, 1.5, motion=mr.GroundMotion.half_sine(scale, 0.6)))
+
+
+def test_masonry_is_taken_as_a_wall_is(tmp_path):
+    found = mr.ida(build_column, [0.5, 2.0, 6.0], tmp_path / "ida.sqlite", workers=1)
+    assert found.peaks[0, 0] < found.peaks[0, 1] < found.peaks[0, 2] == math.inf
+    assert found.capacity == [6.0]
+    least = mr.overturning_intensity(build_column, 1.0, 6.0, tolerance=0.2)
+    assert 2.0 < least < 6.0

@@ -61,6 +61,9 @@ class Analysis:
         "message",
     )
 
+    PEAK: ClassVar[str] = "peak_over_alpha"
+    """The column that an incremental dynamic analysis gathers; it is infinite for a wall that has overturned."""
+
     case: Case
     solver: str = "MuJoCo"
     e: Restitution | None = None

@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike
 from ..problem.quantities import Array, require_array, require_kind, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
+from .masonry import MasonryAnalysis
 from .task import Row
 
-Build = Callable[[float], Analysis]
+Build = Callable[[float], Analysis | MasonryAnalysis]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,7 +75,8 @@ def ida(
     analyses have labels of these names.
 
     Args:
-        build: `build(scale)` makes the `Analysis` of a scale; or one such function for each record, by name.
+        build: `build(scale)` makes the `Analysis` or `MasonryAnalysis` of a scale; or one such function for each
+            record, by name. The peaks of masonry are those of the rotation of a block [rad].
         scales: increasing, not negative, in the unit that `build` takes, shape (scales,).
         store: the SQLite file.
         options: those of `campaign`, such as `workers`.
@@ -88,7 +90,7 @@ def ida(
     if not builds:
         raise ValueError("build holds no records; at least one is needed")
     levels = require_scales(scales)
-    tasks = []
+    tasks: list[Analysis | MasonryAnalysis] = []
     for name, make in builds.items():
         require_kind("the name of a record in build", name, str)
         for scale in levels.tolist():
@@ -96,7 +98,7 @@ def ida(
             tasks.append(replace(analysis, labels={"record": name, "scale": scale} | dict(analysis.labels)))
     rows = completed(tasks, store, **options)
     table = tuple(tuple(rows[i : i + len(levels)]) for i in range(0, len(rows), len(levels)))
-    peaks = np.array([[row["peak_over_alpha"] for row in own] for own in table], dtype=float)
+    peaks = np.array([[row[tasks[0].PEAK] for row in own] for own in table], dtype=float)
     return IncrementalAnalysis(tuple(builds), levels, peaks, table)
 
 
@@ -123,7 +125,7 @@ def overturning_intensity(build: Build, low: float, high: float, *, tolerance: f
     require_within("tolerance", tolerance, 1e-9, 0.5)
     if not low < high:
         raise ValueError(f"high = {high:g} is outside the valid range, which is above low = {low:g}")
-    peaks = [built(build, scale, "build").solve().peak_over_alpha for scale in (low, high)]
+    peaks = [_peak(build, scale) for scale in (low, high)]
     if peaks[0] == math.inf:
         raise ValueError(f"low = {low:g}: the wall overturns at that scale already; give a lower one")
     if peaks[1] < math.inf:
@@ -133,14 +135,20 @@ def overturning_intensity(build: Build, low: float, high: float, *, tolerance: f
         )
     while high - low > tolerance * high:
         middle = 0.5 * (low + high)
-        if built(build, middle, "build").solve().peak_over_alpha == math.inf:
+        if _peak(build, middle) == math.inf:
             high = middle
         else:
             low = middle
     return high
 
 
-def built(build: Build, scale: float, name: str) -> Analysis:
+def _peak(build: Build, scale: float) -> float:
+    """The peak at a scale, infinite where the wall has overturned."""
+    analysis = built(build, scale, "build")
+    return float(analysis()[analysis.PEAK])
+
+
+def built(build: Build, scale: float, name: str) -> Analysis | MasonryAnalysis:
     """The analysis that a function makes of a scale.
 
     Raises:
@@ -149,7 +157,7 @@ def built(build: Build, scale: float, name: str) -> Analysis:
     if not callable(build):
         raise TypeError(f"{name} = {shown(build)} is no function of a scale")
     analysis = build(scale)
-    if not isinstance(analysis, Analysis):
+    if not isinstance(analysis, Analysis | MasonryAnalysis):
         raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
     return analysis
 

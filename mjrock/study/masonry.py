@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -48,6 +49,9 @@ class MasonryAnalysis:
         "message",
     )
 
+    PEAK: ClassVar[str] = "largest_rotation_rad"
+    """The column that an incremental dynamic analysis gathers; it is infinite where a block has fallen."""
+
     case: MasonryCase
     options: Mapping[str, Any] = field(default_factory=dict)
     labels: Mapping[str, object] = field(default_factory=dict, compare=False)
@@ -80,7 +84,7 @@ class MasonryAnalysis:
             min(answer.fallen.values(), default=None),
             float(answer.opening.max()),
             float(answer.sliding.max()),
-            float(answer.peak.max()),
+            math.inf if answer.fallen else float(answer.peak.max()),
             float(answer.t[-1]),
             answer.message,
         )
