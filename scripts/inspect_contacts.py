@@ -3,8 +3,8 @@
     python scripts/inspect_contacts.py model.xml
 
 Prints a table with a row for each explicit `<pair>` and for each two geoms that can collide without one, and below it
-what else is to be known of them. Values hold at zero penetration, for one contact point and an approach of the centres
-of mass along the normal. Without a model, the one-sided wall of `models/` is taken.
+what else is to be known of them. Values hold at zero penetration, for an approach of the centres of mass along the
+normal, and xi and e for as many points as are given by --contacts. Without a model, the one-sided wall of `models/` is taken.
 """
 
 from __future__ import annotations
@@ -27,11 +27,17 @@ def main(argv: Sequence[str] | None = None) -> None:
         "model", type=Path, nargs="?", default=MODELS / "figure3_one_sided" / "scene.xml", help="MJCF or URDF file"
     )
     options.add_argument("--pairs", action="store_true", help="explicit pairs only")
+    options.add_argument(
+        "--contacts",
+        type=int,
+        default=1,
+        help="points that share the mass where there can be several: 4 for a flat box",
+    )
     args = options.parse_args(argv)
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is no file")
     model = mujoco.MjModel.from_xml_path(str(args.model))
-    found = mr.inspect_contacts(model, candidates=not (args.pairs or args.quick))
+    found = mr.inspect_contacts(model, candidates=not (args.pairs or args.quick), contacts=args.contacts)
     out = cli.folder(args.out)
     text = report(found)
     cli.write(out / "inspect_contacts.txt", text + "\n")
@@ -49,13 +55,27 @@ def report(found: Sequence[mr.InspectedContact]) -> str:
             contact.geom2,
             "pair" if contact.explicit else "geoms",
             *(f"{value:.4g}" for value in (contact.k, contact.c, contact.mass, contact.inertia, contact.impedance)),
+            str(contact.points),
             f"{contact.xi:.3f}",
             f"{contact.restitution:.3f}",
             ",".join(str(notes.index(note) + 1) for note in contact.notes),
         ]
         for contact in found
     ]
-    header = ["geom", "geom", "by", "k [N/m]", "c [N s/m]", "mass [kg]", "row adds [kg]", "d", "xi", "e", "notes"]
+    header = [
+        "geom",
+        "geom",
+        "by",
+        "k [N/m]",
+        "c [N s/m]",
+        "mass [kg]",
+        "row adds [kg]",
+        "d",
+        "points",
+        "xi",
+        "e",
+        "notes",
+    ]
     lines = [f"{number}: {note}" for number, note in enumerate(notes, 1)]
     return "\n".join([cli.table(header, rows), *([""] if lines else []), *lines])
 

@@ -112,7 +112,7 @@ CALLS = {
         mr.contact_for,
         {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
     ),
-    "inspect_contacts": (mr.inspect_contacts, {"model": BALL, "candidates": True}),
+    "inspect_contacts": (mr.inspect_contacts, {"model": BALL, "candidates": True, "contacts": 1}),
     "automatic_timestep": (mr.automatic_timestep, {"wall": WALL, "contacts": CONTACTS, "side_stop": True}),
     "simulate": (
         mr.simulate,

@@ -1,10 +1,11 @@
 """`inspect_contacts` against the rows that MuJoCo makes, and against measured rebounds."""
 
-import inspect_contacts as script
 import mujoco
 import numpy as np
 import pytest
+from pairs import FLAT_BOX, ON_A_PLANE, made_for
 
+import inspect_contacts as script
 import mjrock as mr
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>
@@ -110,6 +111,35 @@ def test_a_box_can_have_several_points():
     text = MODEL.format(h=1e-3, cone="elliptic", impratio=1, flags="", floor="", ball='type="box"', pair="")
     (found,) = mr.inspect_contacts(mujoco.MjModel.from_xml_string(text.replace('size=".1" ', 'size=".1 .1 .1" ')))
     assert any("several points" in note for note in found.notes)
+
+
+def test_the_points_share_the_mass():
+    """e of a flat landing is that of four points, and of a ball that of one."""
+    for text, geom, points in ((FLAT_BOX, "box", 4), (ON_A_PLANE, "ball", 1)):
+        contact, model = made_for(text, geom, "floor", restitution=0.5, contacts=points)
+        (found,) = mr.inspect_contacts(model, contacts=4)
+        assert (found.points, found.mass) == (points, pytest.approx(2.0))
+        assert found.restitution == pytest.approx(0.5, rel=1e-3)
+        assert found.frequency == pytest.approx(contact.frequency, rel=1e-3)
+        (single,) = mr.inspect_contacts(model)
+        assert single.restitution == pytest.approx(0.69 if points == 4 else 0.5, abs=0.003)
+        assert any("contacts says how many" in note for note in single.notes) == (points == 4)
+    for wrong, error in ((0, ValueError), (51, ValueError), (1.5, (TypeError, ValueError))):
+        with pytest.raises(error, match="contacts"):
+            mr.inspect_contacts(model, contacts=wrong)
+
+
+@pytest.mark.parametrize(("stretch", "is_long"), [(0.9, False), (1.1, True)])
+def test_a_dashpot_that_throws_back_is_told(stretch, is_long):
+    """Centred in the step it leaves (1 - x / 2) / (1 + x / 2) of the speed, with x = c h / m, and throws back from 2 on."""
+    h = 1e-4
+    c, k = stretch * 2 * 2 / h, 1e5
+    d = 0.5 * h * c * 0.5 / (1 + 0.5 * h * c * 0.5)
+    both = f'solref="{-(1 - d) * 0.5 * k} {-(1 - d) * 0.5 * c}" solimp="{d} {d} .001" condim="1"'
+    (found,) = mr.inspect_contacts(made(h=h, floor=both, ball=both))
+    assert found.inertia == pytest.approx(0, abs=1e-9)
+    assert any("the rebound is not the e of this table" in note for note in found.notes) == is_long
+    assert not any("gain" in note for note in found.notes)
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4"])

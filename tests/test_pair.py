@@ -103,7 +103,44 @@ def test_the_step_that_it_names_is_not_warned_of():
         with pytest.warns(UserWarning, match="is long") as caught:
             mr.contact_for(spec, "ball", "floor", k=1e6, restitution=e, timestep=1e-3)
         named = float(str(caught[0].message).split("; ")[-1].split()[0])
-        mr.contact_for(spec, "ball", "floor", k=1e6, restitution=e, timestep=0.95 * named)
+        mr.contact_for(spec, "ball", "floor", k=1e6, restitution=e, timestep=named)
+
+
+@pytest.mark.parametrize(("k", "timestep"), [(3e5, 1e-3), (4e5, 1e-3), (1e12, 1e-3), (1e12, 8e-5)])
+def test_the_step_that_it_names_is_the_last_word(k, timestep):
+    """The step is rounded down. Where MuJoCo represents no such contact, both steps are named at once."""
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    asked = {"k": k, "restitution": 0.5}
+    if k == 1e12 and timestep == 1e-3:
+        with pytest.raises(ValueError, match=r"the longest step is 8.94e-05 s, and 3.8e-07 s resolves") as refused:
+            mr.contact_for(spec, "ball", "floor", **asked, timestep=timestep)
+        words = str(refused.value)
+    else:
+        with pytest.warns(UserWarning, match="s resolves it") as caught:
+            mr.contact_for(spec, "ball", "floor", **asked, timestep=timestep)
+        words = str(caught[0].message)
+    mr.contact_for(spec, "ball", "floor", **asked, timestep=float(words.split(" s resolves")[0].split()[-1]))
+
+
+def test_two_pairs_of_the_same_geoms():
+    """MuJoCo makes the contacts of both, whichever comes first."""
+    contact, _ = made_for(ON_A_PLANE, "ball", "floor", restitution=0.5)
+    other = '<contact><pair geom1="floor" geom2="ball" solref="-1000 -10" solimp=".5 .5 .001"/></contact>'
+    for added, softer in ((contact.xml + other, 1), (other + contact.xml, 0)):
+        model = mujoco.MjModel.from_xml_string(ON_A_PLANE.replace("</mujoco>", added + "</mujoco>"))
+        data = mujoco.MjData(model)
+        data.qpos[2] -= 1e-6
+        mujoco.mj_forward(model, data)
+        assert data.ncon == 2
+        assert any("has 2 explicit <pair>s of these geoms" in caveat for caveat in contact.caveats(model))
+        found = mr.inspect_contacts(model)
+        assert all("has 2 explicit <pair>s" in one.notes[0] for one in found)
+        assert (found[1 - softer].k, found[softer].k) == (pytest.approx(1e6), pytest.approx(1000 / 0.5 * 2))
+
+
+def test_of_two_options_the_last_is_taken():
+    later = ON_A_PLANE.replace("</mujoco>", '<option impratio="1e9"/><option impratio="1e3"/></mujoco>')
+    assert mujoco.MjModel.from_xml_string(later).opt.impratio == 1e3
 
 
 def test_caveats_say_what_was_not_written():
@@ -143,12 +180,17 @@ def _write(owner, name, value):
         ({"xi": -0.1}, "damping ratio xi = -0.1"),
         ({"c": -1.0}, "damping c = -1 N s/m"),
         ({"c": 1.0, "k": 0.0}, "stiffness k = 0 N/m"),
-        ({"c": 1.0, "geom1": "bal"}, "geom1 = 'bal' is no geom or body .* floor, ball"),
+        (
+            {"c": 1.0, "geom1": "bal"},
+            "geom1 = 'bal' is no geom or body .* geoms are: floor, ball; its named bodies are: world, ball",
+        ),
         ({"c": 1.0, "geom1": -1}, "geom1 = -1 is outside"),
         ({"c": 1.0, "geom1": 2}, "geom1 = 2 is outside the valid range 0 to 1"),
         ({"c": 1.0, "geom1": 1.0}, "geom1 = 1.0 of type float is neither the name nor the number"),
         ({"c": 1.0, "geom1": "floor"}, "geom1 and geom2 = 'floor' .* are the same geom"),
-        ({"c": 1.0, "model": ON_A_PLANE}, "model = .* is not a MjModel or MjSpec"),
+        ({"c": 1.0, "model": ON_A_PLANE}, "model = .* is not a MjModel or MjSpec; load .*from_xml_string"),
+        ({"c": 1.0, "model": "model.xml"}, "model = 'model.xml' .* load it with mujoco.MjModel.from_xml_path"),
+        ({"c": 1.0, "model": 1}, "model = 1 .* is not a MjModel or MjSpec"),
         ({"c": 1.0, "friction": -0.1}, "friction = -0.1"),
         ({"c": 1.0, "mass": 0.0}, "mass = 0 kg"),
         ({"c": 1.0, "mass": 1.0, "at": (0, 0, 0)}, "mass = 1.0 .* and at = .* are both given"),
@@ -180,7 +222,7 @@ def test_what_cannot_be_applied_is_refused():
     nameless = mujoco.MjSpec.from_string(ON_A_PLANE.replace('<geom name="floor"', "<geom"))
     contact = mr.contact_for(nameless, "ball", 0, k=1e6, restitution=0.5)
     for use in (lambda: contact.xml, lambda: contact.apply(nameless)):
-        with pytest.raises(ValueError, match="has no name"):
+        with pytest.raises(ValueError, match=r"has no name.*apply.model, on_geoms=True"):
             use()
     broken = mujoco.MjSpec.from_string("<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>")
     with pytest.raises(ValueError, match="model does not compile"):

@@ -195,7 +195,10 @@ def _step_notes(found: InspectedContact, h: float, ringing: bool) -> Iterator[st
     """Where the step is too long for the formula of e."""
     if not found.mass < math.inf:
         return
-    longest = resolving_step(found.k, found.c, found.mass / found.points + found.inertia)
+    moved = found.mass / found.points + found.inertia
+    longest = resolving_step(found.k, found.c, moved)
+    if found.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
+        longest = min(longest, moved / found.c)
     if h <= longest:
         return
     gain = ", and it can gain energy" if ringing and found.frequency * h > UNSOUND else ""
