@@ -4,7 +4,8 @@
 
 Prints a table with a row for each explicit `<pair>` and for each two geoms that can collide without one, and below it
 what else is to be known of them. Values hold at zero penetration, for an approach of the centres of mass along the
-normal, and xi and e for as many points as are given by --contacts. Without a model, the one-sided wall of `models/` is taken.
+normal, and xi and e for as many points as are given by --contacts. Without a model, the one-sided wall of `models/` is
+taken.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ class InspectedContact:
         """Coefficient of restitution e of an approach along the normal that meets these points [-].
 
         It is that of a spring and dashpot that never pull, exp(-2 xi acos(xi) / sqrt(1 - xi^2)), beyond xi = 1 with
-        acosh(xi) and sqrt(xi^2 - 1). It knows nothing of the time step; a note says where the step is too long for it.
+        acosh(xi) and sqrt(xi^2 - 1). It leaves out the time step; a note says where the step is too long for it.
         """
         return math.nan if math.isnan(self.xi) else rebound_restitution(self.xi)
 
@@ -203,8 +203,8 @@ def _step_notes(found: InspectedContact, h: float, ringing: bool) -> Iterator[st
         return
     gain = ", and it can gain energy" if ringing and found.frequency * h > UNSOUND else ""
     yield (
-        f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: the rebound is not the e of this "
-        f"table{gain}; {rounded_down(longest)} s resolves it"
+        f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: e leaves out the step, and the "
+        f"rebound can be another{gain}; {rounded_down(longest)} s resolves it"
     )
 
 

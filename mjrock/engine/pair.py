@@ -68,7 +68,7 @@ class PairContact:
 
         Put it behind every other `<option>`, because the last one is taken, and in place of any `<pair>` of the same
         geoms, because MuJoCo makes the contacts of both. Of several contacts keep one `<option>`, with the largest
-        impratio. An impratio of 1e6 to 1e10 is normal here.
+        impratio. An impratio of 1e6 to 1e9 is normal here.
 
         Raises:
             ValueError: if one of the geoms has no name.
