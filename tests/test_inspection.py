@@ -88,6 +88,18 @@ def test_its_restitution_is_measured(row, friction, cone):
     assert found.restitution == pytest.approx(data.qvel[2] / 0.1, rel=0.002)
 
 
+def test_a_pyramid_without_friction():
+    """MuJoCo takes a coefficient of 1e-5 in place of 0."""
+    both = 'friction="0" solimp=".9 .9 .001"'
+    model = made(cone="pyramidal", floor=both, ball=both)
+    data = mujoco.MjData(model)
+    data.qpos[2] -= 1e-9
+    mujoco.mj_forward(model, data)
+    (found,) = mr.inspect_contacts(model)
+    stiffness, _, impedance, _ = data.efc_KBIP[0]
+    assert found.k == pytest.approx((1 / data.efc_R[:4]).sum() * stiffness * impedance, rel=1e-4)
+
+
 def test_the_default_of_mujoco():
     """Its damping ratio of 1 is that of the contact in motion, whatever the mass: e = exp(-2)."""
     for mass in ("2", "2000"):

@@ -77,9 +77,9 @@ class Mixed:
         """Factor of the pyramidal cone on stiffness, damping and inertia of an approach without sliding [-].
 
         Each friction dimension has two edges. All have the regularisation 2 mu^2 R / impratio of a row of the weight
-        W (1 + mu^2), with mu the first coefficient.
+        W (1 + mu^2), with mu the first coefficient, which MuJoCo takes as 1e-5 at least.
         """
-        mu = self.friction[0]
+        mu = max(self.friction[0], mujoco.mjMINMU)
         return (self.condim - 1) * impratio / (mu**2 * (1 + mu**2))
 
 

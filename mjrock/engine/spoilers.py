@@ -153,7 +153,8 @@ def _pyramidal(pair: GeomPair, contact: PairContact) -> str:
     """What the pyramidal cone does to a contact: all three numbers of the row grow, the mass and the step do not."""
     factor, h, d = Mixed.of(pair).pyramid(float(pair.model.opt.impratio)), contact.timestep, contact.solimp[0]
     dashpot = -contact.solref[1] / ((1 - d) * contact.inverse_weight)
-    inertia = factor * max(0.0, inertia_of(d, contact.inverse_weight) - 0.5 * h * dashpot)
+    used = 0.0 if contact.integrator == "RK4" else 0.5 * h * dashpot
+    inertia = factor * max(0.0, inertia_of(d, contact.inverse_weight) - used)
     text = f"makes stiffness and damping of a contact with friction {factor:.3g} times as large"
     if h * math.sqrt(factor * contact.k / (contact.mass + inertia)) <= GAINS:
         return text
