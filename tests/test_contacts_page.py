@@ -63,6 +63,28 @@ def test_the_pyramidal_cone_gains_what_it_says():
     assert "gain" not in caveat
 
 
+def test_the_inertia_of_the_row_is_counted():
+    """Undamped in short steps the row has more inertia than asked for. The pyramid multiplies it too: no gain."""
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    contact = mr.contact_for(spec, "ball", "floor", k=1e5, restitution=1.0, friction=0.5, timestep=1e-5)
+    contact.apply(spec)
+    model = spec.compile()
+    model.opt.cone, model.opt.impratio = mujoco.mjtCone.mjCONE_PYRAMIDAL, 1e7
+    assert inspected(model).frequency * 1e-5 == pytest.approx(0.224, abs=0.001)
+    assert rebound(contact, model, phase=0.05)[0] < 1.005
+    assert not any("gain" in caveat for caveat in contact.caveats(model))
+    assert not any("is long" in note for note in inspected(model).notes)
+
+
+def test_a_contact_for_a_step_that_resolves_nothing_is_not_said_to_gain():
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    with pytest.warns(UserWarning, match="does not resolve"):
+        contact = mr.contact_for(spec, "ball", "floor", k=1e6, restitution=1.0, timestep=5e-3)
+    contact.apply(spec)
+    (note,) = inspected(spec.compile()).notes
+    assert "omega h = 0.96: e leaves out the step, and the rebound can be another; " in note
+
+
 def test_the_cost_of_impratio():
     """Iterations of the solver in a step, of three boxes of which the top one slides, and of a single one."""
     assert "1.1 iterations in a step instead of\n1.0; 1e8 takes 1.4 and 1e10 takes 5.5." in PAGE

@@ -165,8 +165,7 @@ def _inspected(pair: GeomPair, data: mujoco.MjData, contacts: int) -> InspectedC
         points=contacts if pair.makes_several_points else 1,
         notes=(),
     )
-    ringing = scale < (h * c + 0.5 * h**2 * k) * (1 - 1e-6)  # the row of `contact_for` for a step that resolves nothing
-    notes = (*_notes(pair, mixed, constant), *_step_notes(found, h, ringing), *model_spoilers(pair.model))
+    notes = (*_notes(pair, mixed, constant), *_step_notes(found, h), *model_spoilers(pair.model))
     return replace(found, notes=(*notes, *_points_notes(pair, found.points)))
 
 
@@ -191,8 +190,11 @@ def _points_notes(pair: GeomPair, points: int) -> Iterator[str]:
         yield f"it can have several points: xi and e are those of {shared}; contacts says how many do, 4 for a flat box"
 
 
-def _step_notes(found: InspectedContact, h: float, ringing: bool) -> Iterator[str]:
-    """Where the step is too long for the formula of e."""
+def _step_notes(found: InspectedContact, h: float) -> Iterator[str]:
+    """Where the step is too long for the formula of e.
+
+    No row of `contact_for` has an omega h above 1, because its inertia is h^2 k where the step resolves nothing.
+    """
     if not found.mass < math.inf:
         return
     moved = found.mass / found.points + found.inertia
@@ -201,7 +203,7 @@ def _step_notes(found: InspectedContact, h: float, ringing: bool) -> Iterator[st
         longest = min(longest, moved / found.c)
     if h <= longest:
         return
-    gain = ", and it can gain energy" if ringing and found.frequency * h > UNSOUND else ""
+    gain = ", and it can gain energy" if found.frequency * h > UNSOUND else ""
     yield (
         f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: e leaves out the step, and the "
         f"rebound can be another{gain}; {rounded_down(longest)} s resolves it"
