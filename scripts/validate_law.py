@@ -164,8 +164,8 @@ def table_2(compared: Mapping[int, Sequence[DampingLaw]], out: Path) -> str:
                     ]
                 )  # fmt: skip
     header = [
-        "specimen", "lines", "law", "xi_b", "xi_s", "uplift/alpha", "peak/alpha theory", "MuJoCo", "error",
-        "|e_1s| measured", "MuJoCo", "error",
+        "specimen", "lines", "law", "xi_b", "xi_s", "uplift/alpha", "peak/alpha theory", "peak/alpha MuJoCo",
+        "error of peak", "|e_1s| measured", "|e_1s| MuJoCo", "error of |e_1s|",
     ]  # fmt: skip
     cli.write(out / "table2_laws.csv", cli.csv_text(header, rows))
     return cli.table(header, rows)
