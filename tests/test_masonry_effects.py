@@ -87,3 +87,9 @@ MASONRY = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)
 def test_effects_that_are_not_on_their_block(effect, complaint):
     with pytest.raises((ValueError, TypeError), match=complaint):
         mr.MasonryCase(MASONRY, 1.0, effects=effect)
+
+
+def test_a_start_does_not_say_what_ties_have_yielded():
+    case = mr.MasonryCase(MASONRY, 0.1, effects=mr.Tie(3.0, 1e6, strength=1e3, block=2))
+    with pytest.raises(ValueError, match="start does not say what ties have yielded"):
+        mr.simulate(case, start=(np.zeros((2, 3)), np.zeros((2, 3))))

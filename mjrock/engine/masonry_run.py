@@ -6,42 +6,27 @@ import math
 import time
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from ..compiled import compiled
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import (
-    Array,
-    Flags,
-    Integers,
-    require_array,
-    require_flag,
-    require_size,
-    require_within,
-    shown,
-)
+from ..problem.quantities import Array, Flags, Integers, require_flag, require_size, require_within
 from ..result.masonry import LOST, MasonryResponse, fallen_blocks, masonry_ending
 from ..result.response import State
-from ..result.samples import interpolated
 from .accounts import ground_work, ledger
+from .attempts import fitted, fixed, required_start, stride_of
 from .caveats import warn_if_coarse
 from .kinematics import Points, along, depth, take_frame
 from .masonry import masonry_scene
 from .mjcf import pair_rows
-from .model import SimulationError, engine_of
-from .pace import short_step
-from .run import ENERGY_GAIN, broken, plastic_of, sound_timestep
+from .run import ENERGY_GAIN, plastic_of, told
 from .scene import Scene
-from .stepping import fitted_steps, fixed_steps
 from .steps import StepError, Steps
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
 MARKS = 1000
 """Times in a run between which no energy may appear."""
-PARTS = ("pose", "velocity")
-"""What a state is made of."""
 
 
 class MasonryRun:
@@ -106,21 +91,14 @@ class MasonryRun:
     def response(self, spacing: float | None, stride: int, want_ledger: bool, stats: dict[str, Any]) -> MasonryResponse:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None; `stats` says how."""
         case, steps, scene = self.case, self.steps, self.scene
-        finish = min(float(steps.t[-1]), case.duration)
-        if spacing is None:
-            t, pose, velocity = steps.t[::stride], steps.pose[::stride], steps.velocity[::stride]
-            end = steps.pose[-1], steps.velocity[-1]
-        else:
-            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
-            pose, velocity = interpolated(steps.t, steps.pose, steps.velocity, t)
-            end = pose[-1], velocity[-1]
-        outcome, message = masonry_ending(self.fallen, self.quiet, finish)
+        t, pose, velocity, end = steps.sampled(case.duration, spacing, stride)
+        outcome, message = masonry_ending(self.fallen, self.quiet, min(float(steps.t[-1]), case.duration))
         return MasonryResponse(
             case=case,
             solver="MuJoCo",
             t=t,
-            pose=pose.reshape(len(t), -1, 3),
-            velocity=velocity.reshape(len(t), -1, 3),
+            pose=pose,
+            velocity=velocity,
             energy=np.interp(t, steps.t, self.energy),
             opening=self.opening,
             sliding=self.sliding,
@@ -129,16 +107,8 @@ class MasonryRun:
             message=message,
             plastic=self.plastic,
             ledger=ledger(scene, steps).at(t) if want_ledger else None,
-            stats={
-                "steps": len(steps.t),
-                "longest_timestep": float(steps.h.max()),
-                "sound_timestep": sound_timestep(scene.highest_frequency),
-                "touches": steps.touches,
-                "deepest": self.deepest,
-                "mujoco": mujoco.__version__,
-            }
-            | stats,
-            end=(end[0].reshape(-1, 3), end[1].reshape(-1, 3)),
+            stats=told(scene, steps) | {"deepest": self.deepest} | stats,
+            end=end,
         )
 
 
@@ -208,87 +178,31 @@ def simulate_masonry(
     require_flag("ledger", want_ledger)
     if output_step is not None:
         require_within("output_step", output_step, 1e-9, case.duration, "s")
-    scene = masonry_scene(case)
-    started = scene.started if start is None else _required_state(start, len(scene.names))
-    if timestep is not None:
-        made = _fixed(case, scene, started, timestep, newmark_beta, output_step, want_ledger)
+    bodies, scene = len(case.masonry.free), masonry_scene(case)
+    begin = scene.started if start is None else _required_state(start, bodies, case)
+
+    def judge(steps: Steps) -> MasonryRun:
+        return MasonryRun(case, scene, steps)
+
+    if timestep is None:
+        spacing = output_step or 1e-3
+        require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
+        run, settings = fitted(scene, begin, accuracy, newmark_beta, judge)
+        made = run.response(spacing, 1, want_ledger, settings)
     else:
-        made = _fitted(case, scene, started, accuracy, newmark_beta, output_step or 1e-3, want_ledger)
+        require_within("timestep", timestep, 1e-9, 1.0, "s")
+        require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
+        warn_if_coarse(scene, timestep)
+        rows = pair_rows(scene, timestep, newmark_beta)
+        run, settings = fixed(scene, begin, timestep, newmark_beta, rows, judge)
+        made = run.response(None, stride_of(output_step, timestep), want_ledger, settings)
     made.stats["wall_time"] = time.perf_counter() - begun
     return made
 
 
-def _fitted(
-    case: MasonryCase,
-    scene: Scene,
-    started: State,
-    accuracy: float,
-    newmark_beta: float,
-    output_step: float,
-    want_ledger: bool,
-) -> MasonryResponse:
-    """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
-    require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
-    used = accuracy
-    while True:
-        h = short_step(scene, used)
-        try:
-            with engine_of(scene) as engine:
-                engine.follow(h, pair_rows(scene, h, newmark_beta))
-                engine.release(started)
-                begun = time.perf_counter()
-                steps = fitted_steps(engine, scene, used)
-            stepping_time = time.perf_counter() - begun
-            run = MasonryRun(case, scene, steps)
-            break
-        except StepError as error:
-            if used < 0.02 * accuracy:
-                raise broken(error, scene, h, used) from None
-            used /= 10
-    settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
-    return run.response(output_step, 1, want_ledger, settings)
-
-
-def _fixed(
-    case: MasonryCase,
-    scene: Scene,
-    started: State,
-    timestep: float,
-    newmark_beta: float,
-    output_step: float | None,
-    want_ledger: bool,
-) -> MasonryResponse:
-    """A run at one step.
-
-    Raises:
-        SimulationError: if it breaks down.
-    """
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
-    warn_if_coarse(scene, timestep)
-    try:
-        with engine_of(scene) as engine:
-            engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
-            engine.release(started)
-            begun = time.perf_counter()
-            steps = fixed_steps(engine, scene, timestep, newmark_beta)
-        stepping_time = time.perf_counter() - begun
-        run = MasonryRun(case, scene, steps)
-    except StepError as error:
-        broke: SimulationError = broken(error, scene, timestep, None)
-        raise broke from None
-    settings = {"timestep": timestep, "accuracy": None, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
-    stride = max(1, round(output_step / timestep)) if output_step else 1
-    return run.response(None, stride, want_ledger, settings)
-
-
-def _required_state(start: object, bodies: int) -> State:
-    """A start as pose and velocity of all bodies, each of shape (bodies, 3) and finite."""
-    if not isinstance(start, tuple | list) or len(start) != 2:
-        raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
-    pose, velocity = (
-        require_array(f"start, {name}", part, (bodies, 3)) for name, part in zip(PARTS, start, strict=True)
-    )
+def _required_state(start: object, bodies: int, case: MasonryCase) -> State:
+    """A start as pose and velocity of all bodies, none of them out of any proportion."""
+    pose, velocity = required_start(start, bodies, case.effects)
     for name, values in (("pose", pose), ("velocity", velocity)):
         require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
     return pose, velocity

@@ -13,7 +13,6 @@ from ..problem.quantities import Array
 from ..problem.uplift import Uplift
 from ..result.history import rocking_history
 from ..result.response import Plastic, Response, ending
-from ..result.samples import interpolated
 from .accounts import ground_work, ledger
 from .kinematics import gaps
 from .model import SimulationError
@@ -27,6 +26,17 @@ ENERGY_GAIN = 1e-3
 def sound_timestep(frequency: float) -> float:
     """`automatic_timestep` for the highest frequency of the closed contacts [rad/s]."""
     return 2 * math.sqrt(ENERGY_GAIN) / frequency
+
+
+def told(scene: Scene, steps: Steps) -> dict[str, Any]:
+    """What a run took, for the `stats` of its response."""
+    return {
+        "steps": len(steps.t),
+        "longest_timestep": float(steps.h.max()),
+        "sound_timestep": sound_timestep(scene.highest_frequency),
+        "touches": steps.touches,
+        "mujoco": mujoco.__version__,
+    }
 
 
 def plastic_of(scene: Scene, t: Array, taken: Array, duration: float) -> dict[str, Plastic]:
@@ -85,38 +95,25 @@ class Run:
     def response(self, spacing: float | None, stride: int, want_ledger: bool, stats: dict[str, Any]) -> Response:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None; `stats` says how."""
         case, steps, scene = self.case, self.steps, self.scene
-        if spacing is None:
-            end = steps.pose[-1], steps.velocity[-1]
-            t, pose, velocity = steps.t[::stride], steps.pose[::stride], steps.velocity[::stride]
-        else:
-            finish = min(float(steps.t[-1]), case.duration)
-            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
-            pose, velocity = interpolated(steps.t, steps.pose, steps.velocity, t)
-            end = pose[-1], velocity[-1]
+        t, pose, velocity, end = steps.sampled(case.duration, spacing, stride)
         outcome, message = ending(case, steps.t, self.theta, self.energy, self.uplift.energy)
         deepest = -gaps(scene.points, steps.pose).min(axis=0)
         return Response(
             case=case,
             solver="MuJoCo",
             t=t,
-            theta=pose[:, 2],
-            omega=velocity[:, 2],
+            theta=pose[:, 0, 2],
+            omega=velocity[:, 0, 2],
             impacts=self.impacts,
             peaks=self.peaks,
             outcome=outcome,
             message=message,
-            compliant=(np.interp(t, steps.t, self.energy), pose.reshape(len(t), -1, 3)),
+            compliant=(np.interp(t, steps.t, self.energy), pose),
             ledger=ledger(scene, steps).at(t) if want_ledger else None,
             plastic=self.plastic,
-            end=(end[0].reshape(-1, 3), end[1].reshape(-1, 3)),
-            stats={
-                "steps": len(steps.t),
-                "longest_timestep": float(steps.h.max()),
-                "sound_timestep": sound_timestep(scene.highest_frequency),
-                "touches": steps.touches,
-                "base_displacement": float(self.slip[-1] - self.slip[0]),
-                "mujoco": mujoco.__version__,
-            }
+            end=end,
+            stats=told(scene, steps)
+            | {"base_displacement": float(self.slip[-1] - self.slip[0])}
             | {
                 f"deepest_{name}": float(max(0.0, *deepest[np.array(scene.group) == name]))
                 for name in dict.fromkeys(scene.group)

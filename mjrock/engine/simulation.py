@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -15,7 +14,6 @@ from ..problem.contacts import Contacts
 from ..problem.masonry_case import MasonryCase
 from ..problem.quantities import (
     ON_ITS_FACE,
-    require_array,
     require_flag,
     require_kind,
     require_size,
@@ -25,19 +23,15 @@ from ..problem.quantities import (
 from ..problem.uplift import Uplift
 from ..result.masonry import MasonryResponse
 from ..result.response import Response, State
+from .attempts import fitted, fixed, required_start, stride_of
 from .caveats import warn_if_coarse, warn_if_open, warn_if_slid
 from .masonry_run import simulate_masonry
 from .mjcf import pair_rows
-from .model import SimulationError, engine_of
-from .pace import short_step
-from .run import Run, broken, sound_timestep
+from .model import SimulationError
+from .run import Run, sound_timestep
 from .scene import Scene
-from .stepping import fitted_steps, fixed_steps
-from .steps import StepError
+from .steps import Steps
 from .wall import wall_scene
-
-PARTS = ("pose", "velocity")
-"""What a state is made of."""
 
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
@@ -184,24 +178,12 @@ def _simulate_fitted(
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     started = time.perf_counter()
     scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts)
-    used = accuracy
-    while True:
-        h = short_step(scene, used)
-        try:
-            with engine_of(scene) as engine:
-                engine.follow(h, pair_rows(scene, h, newmark_beta))
-                engine.release(scene.started if start is None else start)
-                begun = time.perf_counter()
-                steps = fitted_steps(engine, scene, used)
-            stepping_time = time.perf_counter() - begun
-            run = Run(case, uplift, scene, steps, released=start is None)
-            break
-        except StepError as error:
-            if used < 0.02 * accuracy:
-                raise broken(error, scene, h, used) from None
-            used /= 10
+
+    def judge(steps: Steps) -> Run:
+        return Run(case, uplift, scene, steps, released=start is None)
+
+    run, settings = fitted(scene, scene.started if start is None else start, accuracy, newmark_beta, judge)
     warn_if_slid(run, contacts)
-    settings = {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": stepping_time}
     response = run.response(output_step, 1, want_ledger, settings)
     warn_if_open(response, run, f"lower accuracy = {accuracy:g}")
     response.stats["wall_time"] = time.perf_counter() - started
@@ -225,27 +207,20 @@ def _simulate_fixed(
     scenes, uplift = [wall_scene(case, contacts) for case in cases], Uplift.of(cases[0], contacts)
     warn_if_coarse(scenes[0], timestep)
     rows = pair_rows(scenes[0], timestep, newmark_beta)
-    stride = max(1, round(output_step / timestep)) if output_step else 1
+    stride = stride_of(output_step, timestep)
 
     def one(case: Case, scene: Scene) -> Response | SimulationError:
         started = time.perf_counter()
+
+        def judge(steps: Steps) -> Run:
+            return Run(case, uplift, scene, steps, released=start is None)
+
         try:
-            with engine_of(scene) as engine:
-                engine.follow(timestep, rows)
-                engine.release(scene.started if start is None else start)
-                begun = time.perf_counter()
-                steps = fixed_steps(engine, scene, timestep, newmark_beta)
-            stepping_time = time.perf_counter() - begun
-            run = Run(case, uplift, scene, steps, released=start is None)
-        except StepError as error:
-            return broken(error, scene, timestep, None)
+            begin = scene.started if start is None else start
+            run, settings = fixed(scene, begin, timestep, newmark_beta, rows, judge)
+        except SimulationError as error:
+            return error
         warn_if_slid(run, contacts)
-        settings = {
-            "timestep": timestep,
-            "accuracy": None,
-            "newmark_beta": newmark_beta,
-            "stepping_time": stepping_time,
-        }
         response = run.response(None, stride, want_ledger, settings)
         warn_if_open(response, run, "take a shorter timestep")
         response.stats["wall_time"] = time.perf_counter() - started
@@ -271,12 +246,8 @@ def _require_asked(case: object, contacts: object, output_step: object, ledger: 
 
 
 def _required_state(start: object, case: Case) -> State:
-    """A start as pose and velocity of one wall, each of shape (1, 3) and finite, and not beyond its face."""
-    if any(pull.strength < math.inf for pull in case.pulls):
-        raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
-    if not isinstance(start, tuple | list) or len(start) != 2:
-        raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
-    pose, velocity = (require_array(f"start, {name}", part, (1, 3)) for name, part in zip(PARTS, start, strict=True))
+    """A start as pose and velocity of one wall, which does not lie beyond its face."""
+    pose, velocity = required_start(start, 1, case.effects)
     require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
     for name, value in zip(("x", "z", "rotation"), velocity[0].tolist(), strict=True):
         require_within(f"start, rate of {name}", value, -1e3, 1e3, "m/s or rad/s")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -9,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problem.quantities import Array, Integers
+from ..result.response import State
+from ..result.samples import interpolated
 
 
 class StepError(RuntimeError):
@@ -49,6 +52,25 @@ class Steps:
         """Velocities at the times of the poses, shape (steps, 3 n)."""
         velocity: Array = 0.5 * (self.before + self.after)
         return velocity
+
+    def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, State]:
+        """Samples of a motion: times [s], poses and velocities of shape (n, bodies, 3), and the state at the end.
+
+        Args:
+            duration: up to when samples that are interpolated reach [s].
+            spacing: their distance [s]; None takes every `stride`-th step as it is.
+            stride: which steps are taken then.
+        """
+        if spacing is None:
+            t, pose, velocity = self.t[::stride], self.pose[::stride], self.velocity[::stride]
+            last = self.pose[-1], self.velocity[-1]
+        else:
+            finish = min(float(self.t[-1]), duration)
+            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
+            pose, velocity = interpolated(self.t, self.pose, self.velocity, t)
+            last = pose[-1], velocity[-1]
+        shape = (len(t), -1, 3)
+        return t, pose.reshape(shape), velocity.reshape(shape), (last[0].reshape(-1, 3), last[1].reshape(-1, 3))
 
     @property
     def seams(self) -> Array:
