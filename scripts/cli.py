@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from mjrock.files import write_text as write_text
 from mjrock.result.table import csv_text as csv_text
 
 
@@ -31,21 +31,7 @@ def parser(description: str | None, out: str) -> argparse.ArgumentParser:
 def folder(path: Path) -> Path:
     """Make the output folder, and find out before any work whether it can be written to."""
     path.mkdir(parents=True, exist_ok=True)
-    write(path / ".writable", "").unlink()
-    return path
-
-
-def write(path: Path, text: str) -> Path:
-    """Write a text file whole or not at all: an interrupted or failed write leaves the old file as it was."""
-    partial = path.with_name(path.name + ".partial")
-    try:
-        with open(partial, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_text(path / ".writable", "").unlink()
     return path
 
 

@@ -33,7 +33,7 @@ HEAD = """\
        shift the velocities by half of its change. -->
   <compiler angle="radian"/>
   <option timestep={timestep} gravity={gravity} integrator="Euler" cone="elliptic" impratio={impratio} solver="Newton"
-          iterations="50" tolerance="1e-10"{rows}>
+          iterations="500" tolerance="1e-10"{rows}>
     <flag {start}island="disable" autoreset="disable"/>
   </option>
   <statistic center={center} extent={extent}/>

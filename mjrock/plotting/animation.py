@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
+from ..files import replacing
 from ..problem.case import Case
 from ..problem.quantities import Array, require_kind, require_within
 from ..result.masonry import MasonryResponse
@@ -115,15 +115,14 @@ def _film(
     title: str,
     dpi: float,
 ) -> Path:
-    """Check, draw frame by frame, and write the file whole or not at all."""
+    """Check, draw frame by frame, and write the file."""
     path = Path(path)
     writer, interval = writer_for(path, require_within("fps", fps, 1.0, 120.0, "1/s"))
     times = frame_times(bodies.t, require_within("speed", speed, 1e-3, 1e3) * interval)
     require_within("dpi", dpi, 20.0, 600.0)
     require_kind("title", title, str)
     figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title)
-    partial = path.with_name(f"{path.stem}.{os.getpid()}.partial{path.suffix}")
-    try:
+    with replacing(path) as partial:
         with writer.saving(figure, str(partial), dpi):
             for frame in tqdm(range(len(times)), desc=path.name, unit="frame", delay=2, disable=None, leave=False):
                 update(frame)
@@ -131,9 +130,6 @@ def _film(
         if path.suffix.lower() == ".html":
             text = standalone(partial.read_text(encoding="utf-8"), title or path.stem)
             partial.write_text(text, encoding="utf-8")
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

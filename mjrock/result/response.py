@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..files import write_text
 from ..problem.case import Case
 from ..problem.quantities import Array
 from .history import Impact, peak_energies, restitution_of
 from .ledger import Ledger
-from .table import csv_text, write_text
+from .table import csv_text
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3)."""
