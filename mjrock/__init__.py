@@ -47,9 +47,11 @@ from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
 from .study.masonry import MasonryAnalysis
 from .study.matched import as_theory, matched_contacts
+from .study.matched_masonry import matched_masonry
 from .study.pushover import pushover
 from .study.store import Store
 from .theory.analytical import solve_analytical
+from .theory.impact import RigidImpact, rigid_impact
 
 __all__ = [
     "CALIBRATED",
@@ -84,6 +86,7 @@ __all__ = [
     "PowerLaw",
     "Response",
     "Restitution",
+    "RigidImpact",
     "Scene",
     "SideStop",
     "SimulationError",
@@ -106,11 +109,13 @@ __all__ = [
     "masonry_mjcf",
     "masonry_scene",
     "matched_contacts",
+    "matched_masonry",
     "measured_stiffness",
     "overturning_intensity",
     "pushover",
     "reference_frequency",
     "results",
+    "rigid_impact",
     "simulate",
     "simulate_batch",
     "solve_analytical",

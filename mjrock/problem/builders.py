@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from .block import Block
+from .effects import SideStop
 from .polygon import Polygon
 from .quantities import require_flag, require_kind, require_real, require_whole, require_within, shown
 
@@ -53,6 +54,23 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
         b, length = max(block.b for block in blocks), max(block.length for block in blocks)
         made.insert(0, ground_under(-b, b, length))
     return made
+
+
+def side_of(blocks: Sequence[Polygon], side_stop: bool | SideStop) -> Polygon | None:
+    """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
+
+    Raises:
+        ValueError: if the stop ends above the stack.
+    """
+    require_kind("side_stop", side_stop, bool, SideStop)
+    if not side_stop:
+        return None
+    face = min(float(block.corners[:, 0].min()) for block in blocks if block.name != "ground")
+    height = max(float(block.corners[:, 1].max()) for block in blocks)
+    top = height
+    if isinstance(side_stop, SideStop):
+        top = require_within("top of the side stop", side_stop.top, 0.01, height, "m")
+    return rectangle(2 * face, face, 0.0, top, 2000.0, max(block.length for block in blocks), True, "side")
 
 
 def voussoirs_of(
