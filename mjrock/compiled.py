@@ -98,7 +98,8 @@ else:
         """Compile a function at its first call, and store the result on disk where that is possible.
 
         The function allocates nothing: it writes into arrays that it is given. numba then need not count references to
-        arrays, which would take longer than the arithmetic.
+        arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
+        numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
         """
         made = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
         if made is not function:  # it is with NUMBA_DISABLE_JIT=1

@@ -1,7 +1,8 @@
-"""Rigid blocks on springs, integrated explicitly with kinematics of its own: what masonry in MuJoCo is checked against.
+"""Rigid blocks on springs, integrated explicitly with kinematics of its own: what MuJoCo's runs are checked against.
 
-Each contact line is a spring and a dashpot that push only, and a spring along the face that slides at mu times the
-pressure. MuJoCo's friction has no such spring, so it is taken stiff. Steps are those of the symplectic Euler method.
+Each contact is a spring and a dashpot that push only. Friction is Coulomb's and has no spring: in each step impulses
+along the faces, at most mu times the pressure, stop the slip of every contact as far as they can (projected
+Gauss-Seidel). They act halfway into the overlap. Steps are those of the symplectic Euler method.
 """
 
 import numpy as np
@@ -9,8 +10,10 @@ import numpy as np
 from mjrock.compiled import compiled, jitable
 from mjrock.problem.quantities import GRAVITY
 
-SHEAR = 10.0
-"""Stiffness along a face over that across it [-]."""
+SWEEPS = 20
+"""Most sweeps over the contacts in a step."""
+SETTLED = 1e-9
+"""Change of an impulse in a sweep, over the largest that friction allows, below which the sweeps end [-]."""
 
 
 @jitable
@@ -28,69 +31,103 @@ def shaken(accel, dt, t):
     return accel[i] + (place - i) * (accel[i + 1] - accel[i]) if place < len(accel) - 1 else 0.0
 
 
+@jitable
+def pushed(v, rows, p, first, a, b, inverse, impulse):
+    """Change the velocities of bodies a and b by an impulse along a row, six numbers of line p of the rows."""
+    for j in range(3):
+        v[3 * a + j] += inverse[3 * a + j] * rows[p, first + j] * impulse
+    if b >= 0:
+        for j in range(3):
+            v[3 * b + j] += inverse[3 * b + j] * rows[p, first + 3 + j] * impulse
+
+
 @compiled
 def _integrate(
-    mass, inertia, rest, body, at, face, base, normal, k, c, mu, accel, dt, up, up_dt, h, every, q, v, slip, force, out
+    inverse, rest, body, at, face, base, normal, k, c, mu, accel, dt, up, up_dt, h, every, q, v, rows, most, held, out
 ):
-    steps, bodies = (len(out) - 1) * every, len(mass)
+    steps, bodies = (len(out) - 1) * every, len(rest)
     for n in range(steps + 1):
         if n % every == 0:
             for j in range(3 * bodies):
                 out[n // every, j] = q[j]
         a_x, a_z = shaken(accel, dt, n * h), shaken(up, up_dt, n * h)
-        for j in range(bodies):
-            force[3 * j], force[3 * j + 1], force[3 * j + 2] = -mass[j] * a_x, -mass[j] * (GRAVITY + a_z), 0.0
+        scale = 0.0
         for p in range(len(k)):
             a, b = body[p], face[p]
             rx, rz = turned(at[p, 0], at[p, 1], q[3 * a + 2])
             px, pz = rest[a, 0] + q[3 * a] + rx, rest[a, 1] + q[3 * a + 1] + rz
-            ux, uz = v[3 * a] + v[3 * a + 2] * rz, v[3 * a + 1] - v[3 * a + 2] * rx
             ox, oz, nx, nz, sx, sz = base[p, 0], base[p, 1], normal[p, 0], normal[p, 1], 0.0, 0.0
+            ux, uz = v[3 * a] + v[3 * a + 2] * rz, v[3 * a + 1] - v[3 * a + 2] * rx
             if b >= 0:
                 ox, oz = turned(base[p, 0], base[p, 1], q[3 * b + 2])
                 ox, oz = ox + rest[b, 0] + q[3 * b], oz + rest[b, 1] + q[3 * b + 1]
                 nx, nz = turned(nx, nz, q[3 * b + 2])
                 sx, sz = px - rest[b, 0] - q[3 * b], pz - rest[b, 1] - q[3 * b + 1]
                 ux, uz = ux - v[3 * b] - v[3 * b + 2] * sz, uz - v[3 * b + 1] + v[3 * b + 2] * sx
-            g, rate, along = nx * (px - ox) + nz * (pz - oz), nx * ux + nz * uz, nz * ux - nx * uz
-            push = max(0.0, -k[p] * g - c[p] * rate) if g < 0 else 0.0
-            slip[p] = slip[p] + h * along if push > 0 else 0.0
-            drag = -SHEAR * (k[p] * slip[p] + c[p] * along)
-            if abs(drag) > mu[p] * push:
-                drag = np.copysign(mu[p] * push, drag)
-                slip[p] = -drag / (SHEAR * k[p])
-            fx, fz = push * nx + drag * nz, push * nz - drag * nx
-            force[3 * a], force[3 * a + 1] = force[3 * a] + fx, force[3 * a + 1] + fz
-            force[3 * a + 2] += rz * fx - rx * fz
-            if b >= 0:
-                force[3 * b], force[3 * b + 1] = force[3 * b] - fx, force[3 * b + 1] - fz
-                force[3 * b + 2] -= sz * fx - sx * fz
+            gap, rate = nx * (px - ox) + nz * (pz - oz), nx * ux + nz * uz
+            push = max(0.0, -k[p] * gap - c[p] * rate) if gap < 0 else 0.0
+            # the force pushes at the point, and friction rubs halfway between the faces that overlap there
+            rows[p, 0], rows[p, 1], rows[p, 2] = nx, nz, rz * nx - rx * nz
+            rows[p, 3], rows[p, 4], rows[p, 5] = -nx, -nz, -(sz * nx - sx * nz)
+            most[p, 0] = push * h
+            rx, rz, sx, sz = rx - 0.5 * gap * nx, rz - 0.5 * gap * nz, sx - 0.5 * gap * nx, sz - 0.5 * gap * nz
+            rows[p, 6], rows[p, 7], rows[p, 8] = nz, -nx, rz * nz + rx * nx
+            rows[p, 9], rows[p, 10], rows[p, 11] = -nz, nx, -(sz * nz + sx * nx)
+            most[p, 1] = mu[p] * push * h
+            scale = max(scale, most[p, 1])
+            light = 0.0
+            for j in range(3):
+                light += rows[p, 6 + j] ** 2 * inverse[3 * a + j]
+                if b >= 0:
+                    light += rows[p, 9 + j] ** 2 * inverse[3 * b + j]
+            most[p, 2] = 1 / light
         for j in range(bodies):
-            v[3 * j] += h * force[3 * j] / mass[j]
-            v[3 * j + 1] += h * force[3 * j + 1] / mass[j]
-            v[3 * j + 2] += h * force[3 * j + 2] / inertia[j]
+            v[3 * j] -= h * a_x
+            v[3 * j + 1] -= h * (GRAVITY + a_z)
+        for p in range(len(k)):
+            if most[p, 0] > 0:
+                pushed(v, rows, p, 0, body[p], face[p], inverse, most[p, 0])
+            held[p] = min(max(held[p], -most[p, 1]), most[p, 1])  # starts as in the last step
+            if held[p] != 0:
+                pushed(v, rows, p, 6, body[p], face[p], inverse, held[p])
+        for sweep in range(SWEEPS):
+            changed = 0.0
+            for turn in range(len(k)):
+                p = turn if sweep % 2 else len(k) - 1 - turn
+                if most[p, 1] == 0:
+                    continue
+                i, j, slip = 3 * body[p], 3 * face[p], 0.0
+                for m in range(3):
+                    slip += rows[p, 6 + m] * v[i + m]
+                    if j >= 0:
+                        slip += rows[p, 9 + m] * v[j + m]
+                impulse = min(max(held[p] - slip * most[p, 2], -most[p, 1]), most[p, 1])
+                pushed(v, rows, p, 6, body[p], face[p], inverse, impulse - held[p])
+                changed = max(changed, abs(impulse - held[p]))
+                held[p] = impulse
+            if changed <= SETTLED * scale:
+                break
         for j in range(3 * bodies):
             q[j] += h * v[j]
 
 
-def explicit(masonry, pose, duration, motion, h=2e-6, every=500, vertical=None):
-    """Times and poses (n, bodies, 3) of masonry that starts at a pose, from its blocks and contact lines."""
-    blocks, lines = masonry.blocks, masonry.lines
-    free = list(masonry.free)
-    number = {block: i for i, block in enumerate(free)}
-    body = np.array([number[i] for i in lines.body.tolist()])
-    face = np.array([number.get(i, -1) for i in lines.face.tolist()])
-    at = lines.at - np.array([blocks[i].centroid for i in lines.body])
-    base = lines.at - np.array([np.zeros(2) if blocks[i].fixed else blocks[i].centroid for i in lines.face])
-    shaking = [(np.zeros(2), 1.0) if one is None else (np.array(one.accel), one.dt) for one in (motion, vertical)]
-    out = np.empty((round(duration / h) // every + 1, 3 * len(free)))
+def explicit(scene, duration, h=2e-6, every=500):
+    """Times and poses (n, bodies, 3) of the bodies of a scene from its release, from where its contacts are at rest."""
+    shaking = [
+        (np.zeros(2), 1.0) if motion is None else (np.array(motion.accel), motion.dt)
+        for motion in (scene.motion, scene.vertical)
+    ]
+    pose, velocity = (np.ravel(part).copy() for part in scene.started)
+    count = len(scene.k)
+    out = np.empty((round(duration / h) // every + 1, len(pose)))
+    # the face passes through its point of the contact at rest, so that the gap is zero there
+    origin = scene.rest[scene.point_body] + scene.point
+    along = np.where(scene.face_body[:, None] < 0, scene.face, scene.rest[scene.face_body] + scene.face) - origin
+    origin = origin + scene.normal * np.sum(along * scene.normal, axis=1)[:, None]
     _integrate(
-        np.array([blocks[i].mass for i in free]),
-        np.array([blocks[i].inertia for i in free]),
-        np.array([blocks[i].centroid for i in free]),
-        body, at, face, base, np.array(lines.normal), np.array(lines.k),
-        masonry.retardation[lines.joint] * lines.k, masonry.joint_friction[lines.joint],
-        *shaking[0], *shaking[1], h, every, np.ravel(pose).copy(), np.zeros(3 * len(free)), np.zeros(len(body)),
-        np.zeros(3 * len(free)), out,
+        1 / scene.masses, scene.rest, scene.point_body, scene.point, scene.face_body,
+        origin - np.where(scene.face_body[:, None] < 0, 0.0, scene.rest[scene.face_body]), scene.normal,
+        scene.k, scene.c, scene.friction, *shaking[0], *shaking[1], h, every, pose, velocity,
+        np.zeros((count, 12)), np.zeros((count, 3)), np.zeros(count), out,
     )  # fmt: skip
     return h * every * np.arange(len(out)), out.reshape(len(out), -1, 3)

@@ -152,6 +152,12 @@ CALLS = {
         },
     ),
     "Masonry.stack": (mr.Masonry.stack, {"blocks": [WALL], "k_n": 5e8, "ground": True, "law": None, "friction": 0.7}),
+    "Masonry.stack, side": (
+        mr.Masonry.stack,
+        {"blocks": [WALL], "k_n": 5e8, "side_stop": True, "k_side": 1e8, "side_friction": 0.1, "xi": 0.05},
+    ),
+    "rigid_impact": (mr.rigid_impact, {"masonry": COLUMN, "velocity": [[-2.0, 0.3, -1.0]]}),
+    "matched_masonry": (mr.matched_masonry, {"masonry": COLUMN, "e": E, "amplitude": 0.5, "accuracy": 1e-2}),
     "Masonry.arch": (
         mr.Masonry.arch,
         {
@@ -269,9 +275,9 @@ def test_every_public_entry_is_tried():
     """What is not called here is made by a solver, or tested with the campaigns and the records."""
     elsewhere = {
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
-        "Outcome", "Response", "MasonryResponse", "Joint", "SimulationError", "__version__", "PowerLaw", "DampingLaw",
-        "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results", "calibrate",
-        "GroundMotion",
+        "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
+        "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
+        "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}

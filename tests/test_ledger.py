@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.engine import caveats
 from mjrock.engine.kinematics import gaps
 from paper import FIGURE_3, K_N
 
@@ -26,23 +27,33 @@ def test_it_closes(contacts, side_stop):
 
 
 def test_it_closes_with_the_accuracy(contacts):
-    """In the median over releases: one release may meet its touches up to five times better or worse than another."""
+    """In the median over releases: one release may meet its touches up to five times better or worse than another.
+
+    What is left is what an impact loses to the steps, the change of (1/4 - beta) h^2 k v^2 / 2 from touch to touch, and
+    what a change of the step within an impact misplaces for a moment.
+    """
     releases = np.linspace(0.3, 0.7, 9) * FIGURE_3.alpha
-    for accuracy, most in ((1e-3, 2e-3), (3e-4, 6e-4), (1e-4, 2e-4)):
+    for accuracy, most in ((1e-3, 2.5e-3), (3e-4, 7e-4), (1e-4, 2.5e-4), (1e-5, 4e-5)):
         cases = [mr.Case(FIGURE_3, float(theta0), 3.0) for theta0 in releases]
         runs = [mr.simulate(case, contacts, accuracy=accuracy, ledger=True) for case in cases]
         assert np.median([closure(run) for run in runs]) < most
 
 
 @pytest.mark.filterwarnings("ignore:xi = ")
-def test_one_that_does_not_close_says_so():
-    """Released at a speed into dashpots of nearly four times critical damping, far outside Table 1."""
+def test_released_into_strong_dashpots():
+    """At a speed, into nearly four times critical damping: the accounts begin at the release, not before it."""
     wall = mr.Block.from_slenderness(1.988, 5.16, density=3278.0)
     contacts = mr.Contacts.from_damping(wall, k_base=1.4448e9, xi_base=3.79, points=3)
-    case = mr.Case(wall, 1e-6, 3.0, side_stop=False, omega0=-0.1036)
+    run = mr.simulate(mr.Case(wall, 1e-6, 3.0, side_stop=False, omega0=-0.1036), contacts, ledger=True)
+    assert run.ledger.held[0] == pytest.approx(run.energy[0] + run.ledger.held[-1] - run.energy[-1], rel=1e-3)
+    assert closure(run) < 5e-3
+
+
+def test_one_that_does_not_close_says_so(one_sided, contacts, monkeypatch):
+    mr.simulate(one_sided, contacts, ledger=True)  # silent: warnings are errors here
+    monkeypatch.setattr(caveats, "OPEN", -1.0)
     with pytest.warns(UserWarning, match=r"the ledger does not close: it has .* too much; lower accuracy = 0.001"):
-        mr.simulate(case, contacts, ledger=True)
-    mr.simulate(case, contacts, ledger=True, accuracy=1e-5)  # silent: warnings are errors here
+        mr.simulate(one_sided, contacts, ledger=True)
 
 
 def test_order_of_closure(one_sided, contacts):

@@ -22,8 +22,9 @@ def follow(masonry, duration, motion=None, *, accuracy=1e-3, timestep=None, ledg
 
 def against_explicit(masonry, duration, motion, accuracy, h=2e-6, vertical=None):
     """Largest errors of peak rotation and of rotation, over the peaks of the explicit integration."""
-    answer = follow(masonry, duration, motion, accuracy=accuracy, vertical=vertical)
-    t, pose = explicit(masonry, answer.pose[0], duration, motion, h, round(1e-3 / h), vertical)
+    case = mr.MasonryCase(masonry, duration, motion, vertical=vertical)
+    answer = mr.simulate(case, accuracy=accuracy)
+    t, pose = explicit(mr.masonry_scene(case), duration, h, round(1e-3 / h))
     theta = pose[: len(answer.t), :, 2]
     assert t[: len(answer.t)] == pytest.approx(answer.t, abs=1e-9)
     peaks = np.abs(theta).max(axis=0)
@@ -31,26 +32,29 @@ def against_explicit(masonry, duration, motion, accuracy, h=2e-6, vertical=None)
 
 
 def test_two_blocks_against_an_explicit_integration():
-    """The springs along the faces of the explicit integration, 10 k, make most of the difference."""
     level = against_explicit(columns(2, xi=0.049), 1.5, STRONG, 1e-4)
-    assert max(level) < 6e-4
+    assert max(level) < 1e-4
     with_lift = against_explicit(columns(2, xi=0.049), 1.5, STRONG, 1e-4, vertical=mr.GroundMotion.sine(4.0, 0.3))
-    assert max(with_lift) < 1e-3
+    assert max(with_lift) < 1e-4
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("blocks", "accuracy", "agrees"), [(2, 1e-3, 1e-3), (4, 1e-3, 2.5e-3), (4, 1e-5, 1e-3)])
-def test_stacks_against_an_explicit_integration(blocks, accuracy, agrees):
+@pytest.mark.parametrize(
+    ("blocks", "accuracy", "of_peak", "of_path"), [(2, 1e-3, 1e-5, 2e-4), (4, 1e-3, 3e-4, 2e-3), (4, 1e-5, 3e-5, 3e-4)]
+)
+def test_stacks_against_an_explicit_integration(blocks, accuracy, of_peak, of_path):
     """Five cycles of rocking: the peak, and the whole motion, whose phase adds up."""
     peak, path = against_explicit(columns(blocks, xi=0.049), 4.0, PULSE, accuracy, h=1e-6)
-    assert peak < agrees
-    assert path < 15 * agrees
+    assert peak < of_peak
+    assert path < of_path
 
 
 @pytest.mark.slow
 def test_an_arch_against_an_explicit_integration():
-    peak, _ = against_explicit(mr.Masonry.arch(5.0, 0.75), 1.5, PULSE, 1e-4)
-    assert peak < 0.01
+    """Each voussoir over its own peak, which is a small part of the largest for some."""
+    peak, path = against_explicit(mr.Masonry.arch(5.0, 0.75), 1.5, PULSE, 1e-4)
+    assert peak < 1e-3
+    assert path < 1e-2
 
 
 def test_one_block_is_the_single_wall():
@@ -101,7 +105,7 @@ def test_the_ledger_closes_without_damping():
 def test_a_course_slides_as_coulomb_has_it():
     """A flat block on shaken ground: a_rel = -(a_g - mu g sign v), integrated by hand."""
     masonry, motion = mr.Masonry([GROUND, box(-1, 1, 0, 0.2)], friction=0.3), mr.GroundMotion.sine(6.0, 0.7)
-    answer = follow(masonry, 1.2, motion)
+    answer = follow(masonry, 1.2, motion, accuracy=3e-4)
     x = v = 0.0
     h, far = 5e-5, 0.0
     for n in range(round(1.2 / h)):
@@ -176,6 +180,7 @@ def test_a_run_is_continued():
         mr.simulate(mr.MasonryCase(masonry, 0.2), start=([[0, 0, 0]], [[0, 0, 0]]))
 
 
+@pytest.mark.filterwarnings("ignore:contacts that slide")
 def test_stock_mujoco_repeats_the_run_from_the_text():
     case = mr.MasonryCase(mr.Masonry.arch(5.0, 0.75, 2.5, 6), 0.05, velocity=np.full((6, 3), 0.02))
     answer = mr.simulate(case, timestep=1e-4)
@@ -263,7 +268,7 @@ def test_a_cracked_facade_that_falls_away_from_a_side_wall_has_fallen():
     pushed = [(0.8 * z, -0.8 * -0.25, 0.8) for z in (1.5, 4.5)]
     times = []
     for step in (None, 2e-4):
-        run = mr.simulate(mr.MasonryCase(masonry, 10.0, velocity=pushed), timestep=step)
+        run = mr.simulate(mr.MasonryCase(masonry, 10.0, velocity=pushed), timestep=step, coulomb=True)
         assert (run.outcome, set(run.fallen)) == (mr.Outcome.OVERTURNED, {"low", "high"})
         times.append(run.fallen["low"])
     assert times[0] == pytest.approx(times[1], rel=0.01)

@@ -138,7 +138,7 @@ def with_stops(scene):
         "friction": [0.0] * 3,
         "group": ("stop", "stop", "pin"),
     }
-    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)} | {"holds": False}
     return mr.Scene(**parts | {name: (*parts[name], *values) for name, values in extra.items()})
 
 

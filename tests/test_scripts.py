@@ -2,6 +2,7 @@
 
 import csv
 import importlib
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -36,6 +37,8 @@ WRITES = {
     "pushover": {f"pushover.{ending}" for ending in ("png", "csv", "txt")} | {"pushover_bases.png"},
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "sliding": {"sliding.png", "sliding.txt"},
+    "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
@@ -66,6 +69,7 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "drums",
     "panel",
     "masonry_precision",
+    "stack_losses",
 }
 """Scripts that take a while even with --quick."""
 
@@ -132,13 +136,13 @@ def test_an_error_ends_the_process_with_its_code(tmp_path):
 
 
 def test_a_full_disk_leaves_the_old_file_whole(tmp_path, monkeypatch):
-    target = cli.write(tmp_path / "table.csv", "old")
+    target = cli.write_text(tmp_path / "table.csv", "old")
 
     def full(descriptor):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cli.os, "fsync", full)
+    monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space left"):
-        cli.write(target, "new")
+        cli.write_text(target, "new")
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]

@@ -48,9 +48,12 @@ def pull(force, point, name="pull"):
 def run(scene, accuracy=1e-3, timestep=None):
     with engine_of(scene) as engine:
         h = short_step(scene, accuracy) if timestep is None else timestep
+        if timestep is None:
+            engine.place(scene.started)
+            return fitted_steps(engine, scene, accuracy)
         engine.follow(h, pair_rows(scene, h, 0.25))
         engine.release(scene.started)
-        return fitted_steps(engine, scene, accuracy) if timestep is None else fixed_steps(engine, scene, h, 0.25)
+        return fixed_steps(engine, scene, h, 0.25)
 
 
 @pytest.fixture

@@ -8,10 +8,11 @@ import pytest
 import mjrock as mr
 from mjrock.engine.ground import Ground
 from mjrock.engine.kinematics import gaps
-from mjrock.engine.loop import Clock, State, fitted_loop
+from mjrock.engine.loop import Clock, Progress, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace
+from mjrock.engine.sliding import Sliding
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
@@ -42,15 +43,29 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         engine.follow(h, pair_rows(scene, h, 0.25))
         engine.release((start, np.array([[-SPEED, 0.0, 0.0]])))
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
-        state, record = State.of(engine.memory, Springs.of(scene.points, ties)), Record.of(1, 3)
+        state = Progress.of(engine.memory, Springs.of(scene.points, ties))
+        record, sliding = Record.of(1, 3, len(scene.k)), Sliding.of(scene.points, coulomb=True)
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.points, start)[0] < 0
         before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         joints, ground = Joints.of_scene(scene), Ground.of(None)
-        after, n = fitted_loop(
-            *(engine.memory, scene.points, ties, scene.masses, ground, pace, joints, state, before, record, 1.0)
+        values, n = fitted_loop(
+            *(
+                engine.memory,
+                scene.points,
+                ties,
+                scene.masses,
+                ground,
+                pace,
+                joints,
+                sliding,
+                state,
+                before,
+                record,
+                1.0,
+            )
         )
     assert n == 1
-    return after, record
+    return Clock(*values), record
 
 
 @pytest.mark.parametrize("share", [0.1, 0.9])
@@ -134,8 +149,7 @@ def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
     scene = scene.released(scene.at_rest, np.array([[SPEED, 0.0, 0.0]]), 1.0, None)
     short = Pace.of(scene, ACCURACY).short
     with engine_of(scene) as engine:
-        engine.follow(short, pair_rows(scene, short, 0.25))
-        engine.release(scene.started)
+        engine.place(scene.started)
         steps = fitted_steps(engine, scene, ACCURACY)
     elongation = scene.accounts(steps.pose, steps.velocity)[1][-1, 0] / 2e4
     assert elongation > 0.04

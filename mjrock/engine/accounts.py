@@ -10,26 +10,27 @@ the step shifts the energy of the contact.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..problem.quantities import Array, Integers
+from ..problem.quantities import Array, Flags, Integers
 from ..result.ledger import Ledger
 from .contact import row
 from .ground import Ground, Shaking, mean_acceleration
 from .kinematics import Points, along, gap, spring_energy, take_frame
 from .scene import Scene
-from .steps import Steps
+from .steps import Steps, Windows
 
 
 def ground_work(scene: Scene, steps: Steps) -> Array:
     """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
-    work, ground = np.zeros(len(steps.t)), Ground.of(scene.motion, scene.vertical)
+    work, ground, windows = np.zeros(len(steps.t)), Ground.of(scene.motion, scene.vertical), steps.windows
     for first, shaking in enumerate(ground):
         if len(shaking.accel):
-            momentum = steps.velocity[:, first::3] @ scene.mass
-            _ground_work(shaking, steps.t, steps.h, steps.widths, momentum, work)
+            momentum = windows.mean[:, first::3] @ scene.mass
+            _ground_work(shaking, steps.t, steps.h, windows.width, momentum, work)
     return work
 
 
@@ -39,34 +40,59 @@ def _ground_work(shaking: Shaking, t: Array, h: Array, width: Array, momentum: A
         work[n] -= mean_acceleration(shaking, t[n], h[n]) * momentum[n] * width[n]
 
 
-def ledger(scene: Scene, steps: Steps) -> Ledger:
-    """The ledger of a run."""
-    start = steps.pose - 0.5 * steps.h[:, None] * steps.before
-    stored, taken = scene.accounts(start, steps.before)
+class ContactWork(NamedTuple):
+    """What the contacts take from a motion.
+
+    Args:
+        groups: names of the groups of contacts.
+        dashpots, friction: work in the window of each step [J], shapes (steps, groups) and (steps,).
+        lift: impulse that the rows of sliding contacts add to their normal force, over the impulse of the contact law
+            in the steps in which they slide [-].
+    """
+
+    groups: tuple[str, ...]
+    dashpots: Array
+    friction: Array
+    lift: float
+
+
+def contact_work(scene: Scene, steps: Steps) -> ContactWork:
+    """What the contacts take from a motion."""
     groups = tuple(dict.fromkeys(scene.group))
-    number = np.array([groups.index(name) for name in scene.group])
     dashpots, friction = np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t))
+    impulses = np.zeros(2)
     _contact_work(
         scene.points,
-        number,
+        np.array([groups.index(name) for name in scene.group]),
         steps.h,
-        steps.widths,
         steps.pose,
         steps.before,
         steps.after,
-        start,
+        steps.windows,
         steps.beta,
         steps.ringing,
         steps.kind,
+        steps.friction,
+        steps.released_on,
         np.empty((3, len(scene.mass), 4)),
         np.empty((len(scene.k), 2)),
-        np.empty((2, len(scene.masses))),
+        np.empty((3, len(scene.masses))),
         dashpots,
         friction,
+        impulses,
     )
+    return ContactWork(groups, dashpots, friction, float(impulses[0] / impulses[1]) if impulses[1] else 0.0)
+
+
+def ledger(scene: Scene, steps: Steps) -> Ledger:
+    """The ledger of a run."""
+    windows = steps.windows
+    stored, taken = scene.accounts(windows.pose, windows.velocity)
+    stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
+    groups, dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
     return Ledger(
-        t=steps.seams,
+        t=windows.t,
         kinetic=stored[:, 0],
         potential=stored[:, 1],
         elastic=stored[:, 2],
@@ -154,54 +180,68 @@ def _contact_work(
     points: Points,
     number: Integers,
     h: Array,
-    width: Array,
     pose: Array,
     before: Array,
     after: Array,
-    start: Array,
+    windows: Windows,
     beta: Array,
     ringing: Array,
     kind: Integers,
+    sliding: Array,
+    released_on: Flags,
     frames: Array,
     rows: Array,
     rates: Array,
     dashpots: Array,
     friction: Array,
+    impulses: Array,
 ) -> None:
     """Add up the work that dashpots and friction take in the window of each step.
 
     Args:
         points: the contacts.
         number: the group of each contact, shape (m,).
-        h, width: lengths of the steps and of their windows [s], shape (steps,).
-        pose, before, after, start: poses, velocities around them, and poses at the seams, shape (steps, 3 n).
+        h: lengths of the steps [s], shape (steps,).
+        pose, before, after: poses, and velocities around them, shape (steps, 3 n).
+        windows: their windows.
         beta, ringing, kind: as in `Steps`.
-        frames, rows, rates: room for three frames, the rows and two rates, shapes (3, n, 4), (m, 2) and (2, 3 n).
+        sliding: friction of the contacts that slide by Coulomb's law, `Steps.friction`, shape (steps, m).
+        released_on: the contacts that are closed in the first step, shape (m,).
+        frames, rows, rates: room for three frames, the rows and three rates, shapes (3, n, 4), (m, 2) and (3, 3 n).
         dashpots, friction: the work [J], shapes (steps, groups) and (steps,).
+        impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
     """
     frame, seam, next_seam = frames[0], frames[1], frames[2]
-    middle, acceleration = rates[0], rates[1]
+    middle, acceleration, mean = rates[0], rates[1], rates[2]
     for n in range(len(h)):
         take_frame(pose[n], frame)
-        take_frame(start[n], seam)
-        take_frame(start[min(n + 1, len(h) - 1)], next_seam)
+        take_frame(windows.pose[n], seam)
+        take_frame(windows.pose[min(n + 1, len(h) - 1)], next_seam)
         for j in range(len(middle)):
             middle[j] = 0.5 * (before[n, j] + after[n, j])
             acceleration[j] = (after[n, j] - before[n, j]) / h[n]
+            mean[j] = windows.mean[n, j]
         impratio = take_rows(points, h[n], beta[kind[n]], ringing[kind[n]], rows)
         for i in range(len(points.k)):
             g, rate, curve, _ = gap(points, i, frame, middle, acceleration)
             given = spring_energy(points, i, seam) - spring_energy(points, i, next_seam)
-            if g >= 0:
-                dashpots[n, number[i]] += given
-                continue
             inertia = rows[i, 1]
             drag, sprung = drag_of(points, i, rows[i, 0], inertia, beta[kind[n], i], h[n], rate, curve)
             law = -(points.k[i] * g + drag + sprung)
+            if not released_on[i] if n == 0 else g >= 0:
+                dashpots[n, number[i]] += given
+                continue
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
-            dashpots[n, number[i]] += drag * rate * width[n] if law > 0 else given
+            opened = gap(points, i, frame, mean, mean)[1] * windows.width[n]
+            dashpots[n, number[i]] += drag * opened if law > 0 else given
             if points.friction[i] > 0:
-                stopping = -impratio * inertia * along(points, i, frame, after[n])[2] / h[n]
-                pressing, dragging = cone_force(law, stopping, impratio * inertia, inertia, points.friction[i])
-                lift = pressing - max(law, 0.0)  # what a sliding cone presses on top of the law
-                friction[n] -= (dragging * along(points, i, frame, middle)[2] + lift * rate) * width[n]
+                dragging, lift = sliding[n, i], 0.0
+                if math.isnan(dragging):
+                    stopping = -impratio * inertia * along(points, i, frame, after[n])[2] / h[n]
+                    pressing, dragging = cone_force(law, stopping, impratio * inertia, inertia, points.friction[i])
+                    lift = pressing - max(law, 0.0)  # what a sliding cone presses on top of the law
+                    if points.rubs[i] and abs(stopping) > points.friction[i] * max(law, 0.0):
+                        impulses[0] += lift * h[n]
+                        impulses[1] += max(law, 0.0) * h[n]
+                slipped = along(points, i, frame, mean)[2] * windows.width[n]
+                friction[n] -= dragging * slipped + lift * opened

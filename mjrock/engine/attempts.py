@@ -12,9 +12,9 @@ from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from ..problem.effects import Effect, Tie
-from ..problem.quantities import require_array, shown
+from ..problem.quantities import require_array, require_flag, shown
 from ..result.response import State
-from .mjcf import Rows, pair_rows
+from .mjcf import Rows
 from .model import engine_of
 from .pace import short_step
 from .run import broken
@@ -28,7 +28,7 @@ PARTS = ("pose", "velocity")
 
 
 def fitted(
-    scene: Scene, start: State, accuracy: float, newmark_beta: float, judge: Callable[[Steps], Judged]
+    scene: Scene, start: State, accuracy: float, coulomb: bool | None, judge: Callable[[Steps], Judged]
 ) -> tuple[Judged, dict[str, Any]]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it is broken.
 
@@ -40,13 +40,12 @@ def fitted(
         h = short_step(scene, used)
         try:
             with engine_of(scene) as engine:
-                engine.follow(h, pair_rows(scene, h, newmark_beta))
-                engine.release(start)
+                engine.place(start)
                 begun = time.perf_counter()
-                steps = fitted_steps(engine, scene, used)
+                steps = fitted_steps(engine, scene, used, coulomb=coulomb is not False)
             took = time.perf_counter() - begun
             run = judge(steps)
-            return run, {"timestep": h, "accuracy": used, "newmark_beta": newmark_beta, "stepping_time": took}
+            return run, {"timestep": h, "accuracy": used, "newmark_beta": None, "stepping_time": took}
         except StepError as error:
             if used < 0.02 * accuracy:
                 raise broken(error, scene, h, used) from None
@@ -54,7 +53,13 @@ def fitted(
 
 
 def fixed(
-    scene: Scene, start: State, timestep: float, newmark_beta: float, rows: Rows, judge: Callable[[Steps], Judged]
+    scene: Scene,
+    start: State,
+    timestep: float,
+    newmark_beta: float,
+    rows: Rows,
+    coulomb: bool | None,
+    judge: Callable[[Steps], Judged],
 ) -> tuple[Judged, dict[str, Any]]:
     """A run at one step with the rows of that step, and what it took.
 
@@ -66,12 +71,18 @@ def fixed(
             engine.follow(timestep, rows)
             engine.release(start)
             begun = time.perf_counter()
-            steps = fixed_steps(engine, scene, timestep, newmark_beta)
+            steps = fixed_steps(engine, scene, timestep, newmark_beta, coulomb=coulomb is True)
         took = time.perf_counter() - begun
         run = judge(steps)
     except StepError as error:
         raise broken(error, scene, timestep, None) from None
     return run, {"timestep": timestep, "accuracy": None, "newmark_beta": newmark_beta, "stepping_time": took}
+
+
+def require_coulomb(coulomb: object) -> None:
+    """Raise TypeError unless `coulomb` is True, False or None."""
+    if coulomb is not None:
+        require_flag("coulomb", coulomb)
 
 
 def stride_of(output_step: float | None, timestep: float) -> int:

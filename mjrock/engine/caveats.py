@@ -6,9 +6,11 @@ import warnings
 
 from ..problem.contacts import Contacts
 from ..result.response import Response
+from .accounts import contact_work
 from .pace import SMOOTH
 from .run import Run, sound_timestep
 from .scene import Scene
+from .steps import Steps
 
 SCATTER = 0.1
 """Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
@@ -19,6 +21,8 @@ WORTH_SAYING = 0.02
 OPEN = 0.05
 """Energy that the ledger may have too much before that is warned of, over the energy of the release and of the
 ground motion [-]."""
+LIFTED = 0.02
+"""Share of the normal force that the rows of sliding contacts may add to it before that is warned of [-]."""
 SLID = 0.01
 """Sliding of a base that should hold that is warned of, over b [-]."""
 
@@ -38,6 +42,20 @@ def warn_if_coarse(scene: Scene, h: float) -> None:
         warnings.warn(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
             f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
+            stacklevel=4,
+        )
+
+
+def warn_if_lifted(scene: Scene, steps: Steps) -> None:
+    """Warn of contacts that slide on the rows of a fixed step, which press them apart."""
+    if not scene.points.rubs.any():
+        return
+    lift = contact_work(scene, steps).lift
+    if lift > LIFTED:
+        warnings.warn(
+            f"contacts that slide are pressed apart by {lift:.0%} of their normal force on top of it: the rows of a "
+            "fixed step, which are those of the model text, do not slide as Coulomb has it. Pass coulomb=True, or take "
+            "steps that fit the motion",
             stacklevel=4,
         )
 

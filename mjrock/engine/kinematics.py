@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..problem.quantities import GRAVITY, Array, Integers
+from ..problem.quantities import GRAVITY, Array, Flags, Integers
 
 
 class Points(NamedTuple):
@@ -31,6 +31,7 @@ class Points(NamedTuple):
         k: stiffness [N/m], shape (m,).
         c: damping [N s/m], shape (m,).
         friction: coefficient of friction [-], zero for none, shape (m,).
+        rubs: which contacts slide by Coulomb's law, see `mjrock.engine.sliding`, shape (m,).
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (m,).
         held, growth: inertia of the friction row [kg], zero for no friction, and its growth [1/s], see `set_rows`.
         radius: of MuJoCo's spheres for the points [m].
@@ -48,6 +49,7 @@ class Points(NamedTuple):
     k: Array
     c: Array
     friction: Array
+    rubs: Flags
     weight: Array
     held: Array
     growth: float

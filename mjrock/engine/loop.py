@@ -9,7 +9,7 @@ timestep, rows, friction and velocities in the memory of the engine.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,12 +20,13 @@ from .ground import Ground, push
 from .kinematics import Points, Ties, frame_of, stretch, take_frame
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .pace import Pace, judged, resolves, while_loaded, while_taut
+from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .steps import Record
 from .sticking import Joints, deepest, put_back, sticks
 from .touches import ABRUPT, FADED, Springs, closure_changed, follow, step_to_touch
 
 
-class State(NamedTuple):
+class Progress(NamedTuple):
     """What one step hands to the next.
 
     Args:
@@ -51,11 +52,11 @@ class State(NamedTuple):
     springs: Springs
 
     @classmethod
-    def of(cls, memory: Memory, springs: Springs) -> State:
-        """The state at the release."""
+    def of(cls, memory: Memory, springs: Springs) -> Progress:
+        """The state before the first step."""
         n, touching = len(memory.pose), len(springs.k)
         return cls(
-            acceleration=np.array(memory.acceleration),
+            acceleration=np.zeros(n),
             rate=np.zeros(n),
             velocity_now=np.zeros(n),
             acceleration_now=np.zeros(n),
@@ -74,7 +75,7 @@ class Clock(NamedTuple):
     Args:
         t: time of the next pose [s].
         h: length of step that the pace allows [s].
-        last: length of the last step [s].
+        last: length of the last step, zero at the release [s].
         energy: twice the kinetic energy at the last touch [J], by which changes are measured.
         calm: how many steps in a row changed little.
         fresh: whether no rate of the acceleration is known: after a touch, and at the release.
@@ -129,7 +130,7 @@ def apart(points: Points, motion: Array) -> bool:
 
 
 @jitable
-def present(memory: Memory, state: State, last: float) -> None:
+def present(memory: Memory, state: Progress, last: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
     for j in range(len(state.rate)):
         state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * last
@@ -137,15 +138,16 @@ def present(memory: Memory, state: State, last: float) -> None:
 
 
 @jitable
-def change_step(memory: Memory, points: Points, pace: Pace, state: State, now: float, last: float) -> None:
-    """Set timestep, rows and friction for a step of another length.
-
-    The velocity lies half a step before the pose. It moves to half a new step before it, with the acceleration in
-    between.
-    """
+def shift_velocity(memory: Memory, state: Progress, now: float, last: float) -> None:
+    """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
     late, lag = 0.5 * (now - last), last - 0.25 * (last + now)
     for j in range(len(state.rate)):
         memory.velocity[j] -= late * (state.acceleration[j] + lag * state.rate[j])
+
+
+@jitable
+def set_step(memory: Memory, points: Points, pace: Pace, now: float) -> None:
+    """Set timestep, rows and friction for a step of another length."""
     kind = resolves(pace, now)
     memory.options[TIMESTEP] = now
     memory.options[IMPRATIO] = set_rows(
@@ -165,15 +167,25 @@ def change_step(memory: Memory, points: Points, pace: Pace, state: State, now: f
 
 
 @jitable
-def look_again(memory: Memory, ground: Ground, masses: Array, state: State, t: float, short: float) -> None:
-    """Take the acceleration from the engine where a contact has opened or closed unforeseen in a long step."""
-    push(ground, masses, t, short, memory.applied)
-    memory.forward(memory.model, memory.data)
-    copied(memory.acceleration, state.acceleration_now)
+def release(
+    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, velocity: Array
+) -> None:
+    """Set the velocity half the first step before the release, where the leapfrog keeps it.
+
+    The ground is quiet before the release. The dashpots act on the velocity that is being set: this is a contraction,
+    exact to rounding.
+    """
+    h = memory.options[TIMESTEP]
+    for _ in range(10):
+        find_acceleration(memory, points, ground, masses, sliding, frame, -h)
+        for j in range(len(masses)):
+            memory.velocity[j] = velocity[j] - 0.5 * h * memory.acceleration[j]
 
 
 @jitable
-def change_of_acceleration(memory: Memory, masses: Array, state: State, last: float, now: float, fresh: bool) -> float:
+def change_of_acceleration(
+    memory: Memory, masses: Array, state: Progress, last: float, now: float, fresh: bool
+) -> float:
     """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
     change = 0.0
     for j in range(len(masses)):
@@ -185,7 +197,7 @@ def change_of_acceleration(memory: Memory, masses: Array, state: State, last: fl
 
 
 @jitable
-def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: State, record: Record, n: int) -> None:
+def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: Progress, record: Record, n: int) -> None:
     """Take the frame of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
     h = record.h[n]
     kind = resolves(pace, h)
@@ -210,13 +222,31 @@ def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: Stat
 
 
 @jitable
-def make_step(memory: Memory, ground: Ground, masses: Array, record: Record, n: int, t: float, h: float) -> None:
+def make_step(
+    memory: Memory,
+    points: Points,
+    ground: Ground,
+    masses: Array,
+    sliding: Sliding,
+    frame: Array,
+    record: Record,
+    n: int,
+    t: float,
+    h: float,
+) -> None:
     """Let the engine make a step, and record it as step n."""
-    push(ground, masses, t, h, memory.applied)
     record.t[n], record.h[n] = t, h
     copied(memory.pose, record.pose[n])
     copied(memory.velocity, record.before[n])
-    memory.step(memory.model, memory.data)
+    if slide(memory, points, ground, masses, sliding, frame, t):
+        memory.finish(memory.model, memory.data)
+        for i in range(len(points.k)):
+            record.friction[n, i] = sliding.force[i] if sliding.slides[i] else math.nan
+        give_rows_back(memory, points, sliding)
+    else:
+        push(ground, masses, t, h, memory.applied)
+        memory.step(memory.model, memory.data)
+        record.friction[n, :] = math.nan
     copied(memory.velocity, record.after[n])
 
 
@@ -229,20 +259,29 @@ def fitted_loop(
     ground: Ground,
     pace: Pace,
     joints: Joints,
-    state: State,
+    sliding: Sliding,
+    state: Progress,
     clock: Clock,
     record: Record,
     duration: float,
-) -> tuple[Clock, int]:
-    """Steps that fit the motion until the record is full or the run is over; the clock, and how many they were."""
+) -> tuple[tuple[Any, ...], int]:
+    """Steps that fit the motion until the record is full or the run is over.
+
+    Returns the values of the clock, see `compiled`, and how many steps they were.
+    """
     t, h, last, energy, calm, fresh, abrupt, touches, ended = clock
     n = 0
+    if last == 0:
+        set_step(memory, points, pace, h)
+        find_acceleration(memory, points, ground, masses, sliding, state.frame, -h)
+        copied(memory.acceleration, state.acceleration)
     while n < len(record.t) and not ended:
         present(memory, state, last)
         motion, v, a = state.motion, state.velocity_now, state.acceleration_now
         follow(points, ties, state.frame, v, a, motion)
         if closure_changed(motion, state.closed) and last > pace.short and not fresh:
-            look_again(memory, ground, masses, state, t, pace.short)
+            find_acceleration(memory, points, ground, masses, sliding, state.frame, t)
+            copied(memory.acceleration, state.acceleration_now)
             follow(points, ties, state.frame, v, a, motion)
             h, calm, fresh = pace.short, 0, True
 
@@ -254,11 +293,17 @@ def fitted_loop(
             now = to_touch
 
         # step
-        if now != last:
-            change_step(memory, points, pace, state, now, last)
-        make_step(memory, ground, masses, record, n, t, now)
+        if last == 0:
+            set_step(memory, points, pace, now)
+            release(memory, points, ground, masses, sliding, state.frame, v)
+            copied(memory.acceleration, state.acceleration)
+        elif now != last:
+            shift_velocity(memory, state, now, last)
+            set_step(memory, points, pace, now)
+        make_step(memory, points, ground, masses, sliding, state.frame, record, n, t, now)
         ended = t >= duration or fallen(record.pose[n]) or apart(points, motion)
-        change = change_of_acceleration(memory, masses, state, last, now, fresh) / energy
+        turned = sliding_changed(sliding)
+        change = change_of_acceleration(memory, masses, state, last, now, fresh or turned) / energy
         abrupt = change > ABRUPT**2
         hold(memory, points, pace, joints, state, record, n)
         for i in range(len(ties.k)):
@@ -274,19 +319,30 @@ def fitted_loop(
             h, calm = judged(pace, now, math.inf if fresh else change, calm)
             fresh = False
         n += 1
-    return Clock(t, h, last, energy, calm, fresh, abrupt, touches, ended), n
+    return (t, h, last, energy, calm, fresh, abrupt, touches, ended), n
 
 
 @compiled
 def fixed_loop(
-    memory: Memory, masses: Array, ground: Ground, record: Record, first: int, h: float, last: int
+    memory: Memory,
+    points: Points,
+    masses: Array,
+    ground: Ground,
+    sliding: Sliding,
+    frame: Array,
+    record: Record,
+    first: int,
+    h: float,
+    last: int,
 ) -> tuple[bool, int]:
     """Steps of one length from number `first` until the record is full, number `last`, or a body lies on its face.
 
     Returns whether the run is over, and how many steps they were.
     """
     for n in range(len(record.t)):
-        make_step(memory, ground, masses, record, n, h * (first + n), h)
+        if sliding.coulomb:
+            take_frame(memory.pose, frame)
+        make_step(memory, points, ground, masses, sliding, frame, record, n, h * (first + n), h)
         if first + n >= last or fallen(record.pose[n]):
             return True, n + 1
     return False, len(record.t)

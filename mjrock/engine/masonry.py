@@ -40,7 +40,8 @@ def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.
 
     Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, timestep=timestep)` where the
     ground does not move. Names: bodies and geoms as the blocks that are not fixed; contact points `a|b_0`, `a|b_1`, ...
-    of the joint between the blocks a and b; joints `a_x`, `a_z`, `a_theta`; keyframe `release`; camera `front`.
+    of the joint between the blocks a and b; joints `a_x`, `a_z`, `a_theta`; keyframe `release`; camera `front`. What
+    slides in this text is pressed apart, see `wall_mjcf`.
 
     Args:
         case: the masonry and its release.

@@ -14,12 +14,12 @@ from ..problem.quantities import Array, Flags, Integers, require_flag, require_s
 from ..result.masonry import LOST, MasonryResponse, fallen_blocks, masonry_ending
 from ..result.response import State
 from .accounts import ground_work, ledger
-from .attempts import fitted, fixed, required_start, stride_of
-from .caveats import warn_if_coarse
+from .attempts import fitted, fixed, require_coulomb, required_start, stride_of
+from .caveats import warn_if_coarse, warn_if_lifted
 from .kinematics import Points, along, depth, take_frame
 from .masonry import masonry_scene
 from .mjcf import pair_rows
-from .run import ENERGY_GAIN, plastic_of, told
+from .run import ENERGY_GAIN, own_energy, plastic_of, told
 from .scene import Scene
 from .steps import StepError, Steps
 
@@ -65,11 +65,8 @@ class MasonryRun:
         until = next(iter(self.fallen.values()), math.inf)
         count = int(np.searchsorted(self.steps.t, until))
         work = ground_work(self.scene, self.steps)[:count]
-        put_in = np.append(0.0, np.cumsum(work[:-1]))
         marks = np.linspace(0, count - 1, min(count, MARKS)).astype(int)
-        before = self.steps.before[marks]
-        start = self.steps.pose[marks] - 0.5 * self.steps.h[marks, None] * before
-        own = self.scene.accounts(start, before)[0].sum(axis=1) - put_in[marks]
+        own = own_energy(self.scene, self.steps, work, marks)
         gains = own - np.minimum.accumulate(own)
         worst = int(gains.argmax())
         released, elastic = float(self.energy[0]), float(self.scene.rest_energies[2])
@@ -167,6 +164,7 @@ def simulate_masonry(
     timestep: float | None,
     accuracy: float,
     newmark_beta: float,
+    coulomb: bool | None,
     output_step: float | None,
     want_ledger: bool,
     start: object,
@@ -176,6 +174,7 @@ def simulate_masonry(
     require_within("accuracy", accuracy, 1e-8, 0.1)
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_flag("ledger", want_ledger)
+    require_coulomb(coulomb)
     if output_step is not None:
         require_within("output_step", output_step, 1e-9, case.duration, "s")
     bodies, scene = len(case.masonry.free), masonry_scene(case)
@@ -187,14 +186,16 @@ def simulate_masonry(
     if timestep is None:
         spacing = output_step or 1e-3
         require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
-        run, settings = fitted(scene, begin, accuracy, newmark_beta, judge)
+        run, settings = fitted(scene, begin, accuracy, coulomb, judge)
         made = run.response(spacing, 1, want_ledger, settings)
     else:
         require_within("timestep", timestep, 1e-9, 1.0, "s")
         require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
         warn_if_coarse(scene, timestep)
         rows = pair_rows(scene, timestep, newmark_beta)
-        run, settings = fixed(scene, begin, timestep, newmark_beta, rows, judge)
+        run, settings = fixed(scene, begin, timestep, newmark_beta, rows, coulomb, judge)
+        if coulomb is not True:
+            warn_if_lifted(scene, run.steps)
         made = run.response(None, stride_of(output_step, timestep), want_ledger, settings)
     made.stats["wall_time"] = time.perf_counter() - begun
     return made

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from ..problem.quantities import Array
+from ..problem.quantities import Array, Integers
 
 TIMESTEP, IMPRATIO = 0, 1
 """Places of the two options in `Memory.options`."""
@@ -31,25 +31,32 @@ class Memory(NamedTuple):
     """What a compiled loop needs of a model and its data.
 
     Args:
-        step, forward: `mj_step` and `mj_forward`, which take the two addresses.
+        step, forward, finish: `mj_step`, `mj_forward` and `mj_step2`, which take the two addresses.
+        accelerate: `mj_forwardSkip`, which takes them, the stage that is already done, and 1.
         model, data: addresses.
         options: timestep [s] and impratio [-].
         pose, velocity, acceleration, applied: of all joints, shape (3 n,).
+        guess: the acceleration that the engine starts its search from, shape (3 n,).
         solref, solimp, solreffriction: of all pairs, shapes (m, 2), (m, 5) and (m, 2).
+        dimension: of all pairs, 1 without friction and 3 with it, shape (m,).
     """
 
     step: Any
     forward: Any
+    finish: Any
+    accelerate: Any
     model: int
     data: int
     options: Array
     pose: Array
     velocity: Array
     acceleration: Array
+    guess: Array
     applied: Array
     solref: Array
     solimp: Array
     solreffriction: Array
+    dimension: Integers
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
@@ -58,26 +65,30 @@ class Memory(NamedTuple):
         Raises:
             RuntimeError: if the options are not where they should be, or the library is not found.
         """
-        step, forward = functions()
+        step, forward, finish, accelerate = functions()
         return cls(
             step,
             forward,
+            finish,
+            accelerate,
             model._address,
             data._address,
             _options(model),
             data.qpos,
             data.qvel,
             data.qacc,
+            data.qacc_warmstart,
             data.qfrc_applied,
             model.pair_solref,
             model.pair_solimp,
             model.pair_solreffriction,
+            model.pair_dim,
         )
 
 
 @cache
-def functions() -> tuple[Any, Any]:
-    """`mj_step` and `mj_forward` of the library that the bindings use.
+def functions() -> tuple[Any, ...]:
+    """`mj_step`, `mj_forward`, `mj_step2` and `mj_forwardSkip` of the library that the bindings use.
 
     Raises:
         RuntimeError: if the library is not found, or is not the one of the bindings.
@@ -88,9 +99,12 @@ def functions() -> tuple[Any, Any]:
     version = library.mj_versionString().decode()
     if version != mujoco.mj_versionString():
         raise RuntimeError(f"{path} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
-    for function in (library.mj_step, library.mj_forward):
-        function.argtypes, function.restype = (ctypes.c_void_p, ctypes.c_void_p), None
-    return library.mj_step, library.mj_forward
+    two = (ctypes.c_void_p, ctypes.c_void_p)
+    made = library.mj_step, library.mj_forward, library.mj_step2, library.mj_forwardSkip
+    for function in made:
+        function.argtypes, function.restype = two, None
+    library.mj_forwardSkip.argtypes = (*two, ctypes.c_int, ctypes.c_int)
+    return made
 
 
 def library_file(folder: Path) -> Path:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..problem.case import Case
 from ..problem.contacts import Contacts
-from ..problem.quantities import Array, require_kind, require_within
+from ..problem.quantities import Array, Flags, require_kind, require_within
 from .contact import planar_weight
 from .memory import Memory
 from .mjcf import Rows, pair_rows, scene_mjcf
@@ -24,6 +24,8 @@ from .wall import wall_scene
 
 CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""
+EVERYWHERE = 1e6
+"""Distance within which every contact is closed [m]."""
 KEPT = 16
 """Scenes whose compiled models are kept for the next run."""
 
@@ -73,7 +75,8 @@ class Engine:
         if tuple(model.pair(i).name for i in range(model.npair)) != scene.point_names:
             raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")
         data = mujoco.MjData(model)
-        return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv))
+        require_room(model, data)
+        return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv, model.npair))
 
     def follow(self, timestep: float, rows: Rows) -> None:
         """Set the step and the rows of all contacts."""
@@ -81,25 +84,64 @@ class Engine:
         self.memory.solref[:], self.memory.solimp[:] = rows.solref, rows.solimp
         self.memory.solreffriction[:] = rows.solreffriction
 
-    def release(self, started: tuple[Array, Array]) -> None:
-        """Set pose and velocity, shape (n, 3), the velocity half a step back, where the leapfrog keeps it.
+    def place(self, started: tuple[Array, Array]) -> None:
+        """Set pose and velocity, shape (n, 3) each.
 
-        Before the release the ground is quiet. Ties that the pose stretches too far have yielded: MuJoCo lets a tie
-        yield at the end of a step, and the first step would have its whole elastic force.
+        Ties that the pose stretches too far have yielded: MuJoCo lets a tie yield at the end of a step, and the first
+        step would have its whole elastic force.
         """
         model, data = self.model, self.data
         mujoco.mj_resetData(model, data)
-        pose, velocity = (np.ravel(values) for values in started)
-        data.qpos[:], data.qvel[:] = pose, velocity
+        data.qpos[:], data.qvel[:] = (np.ravel(values) for values in started)
         if model.nplastic:
             mujoco.mj_fwdPosition(model, data)
             yields = np.flatnonzero(model.tendon_plasticadr >= 0)
             upper = model.tendon_plasticadr[yields] + 1  # of the range in which a tie is slack
             reached = data.ten_length[yields] - model.tendon_springyield[yields]
             data.plastic[upper] = np.maximum(data.plastic[upper], reached)
+        mujoco.mj_forward(model, data)  # an error of the engine is one of Python here, and the end in a compiled loop
+
+    @property
+    def closed(self) -> Flags:
+        """Which contacts the engine sees closed at its last look, shape (m,). Gaps may be zero to rounding."""
+        pairs = np.sort(np.column_stack([self.model.pair_geom1, self.model.pair_geom2]), axis=1)
+        met = np.sort(self.data.contact.geom, axis=1)
+        closed: Flags = (pairs[:, None] == met[None]).all(axis=2).any(axis=1)
+        return closed
+
+    def release(self, started: tuple[Array, Array]) -> None:
+        """Set pose and velocity, shape (n, 3), the velocity half a step back, where the leapfrog keeps it.
+
+        Before the release the ground is quiet. Contacts that slide have their rows.
+        """
+        self.place(started)
         for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
-            mujoco.mj_forward(model, data)
-            data.qvel[:] = velocity - 0.5 * model.opt.timestep * data.qacc
+            mujoco.mj_forward(self.model, self.data)
+            self.data.qvel[:] = np.ravel(started[1]) - 0.5 * self.model.opt.timestep * self.data.qacc
+
+
+def require_room(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    """Make sure that the memory of the engine holds all contacts at once: in a compiled loop it would end the process.
+
+    One look with a margin within which every pair of geoms is in contact, through the bindings, which raise an error.
+
+    Raises:
+        SimulationError: if it does not.
+    """
+    margin, iterations = model.pair_margin.copy(), model.opt.iterations
+    model.pair_margin[:], model.opt.iterations = EVERYWHERE, 1
+    try:
+        mujoco.mj_forward(model, data)
+        full = data.ncon < model.npair or data.warning.number.any()
+    except mujoco.FatalError:
+        full = True
+    model.pair_margin[:], model.opt.iterations = margin, iterations
+    mujoco.mj_resetData(model, data)
+    if full:
+        raise SimulationError(
+            f"the memory of MuJoCo {mujoco.__version__} does not hold the {model.npair} contact lines of this scene at "
+            "once; give its joints fewer points, or fewer blocks"
+        )
 
 
 _idle: OrderedDict[str, deque[Engine]] = OrderedDict()
@@ -137,6 +179,10 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     bodies and geoms `wall`, `base`, `side`; contact points `base_0`, `base_1`, ... from the inner to the outer edge and
     `side_0`, ... from the bottom to the top; joints `x`, `z`, `theta`; keyframe `release`; camera `front`. Without a
     side stop there is no side geom and no side pair.
+
+    What slides in this text is pressed apart: a contact with the slip v adds mu (c / 2 + newmark_beta h k) |v| to its
+    normal force, as `simulate` at a fixed step does and warns of. Steps of the package that fit the motion, or
+    `simulate(..., coulomb=True)`, slide by Coulomb's law, and no text can say so.
 
     Args:
         case: the wall and its release.

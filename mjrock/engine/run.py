@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from ..problem.case import Case
-from ..problem.quantities import Array
+from ..problem.quantities import Array, Integers
 from ..problem.uplift import Uplift
 from ..result.history import rocking_history
 from ..result.response import Plastic, Response, ending
@@ -21,6 +21,10 @@ from .steps import StepError, Steps
 
 ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, as a share of the energy of release [-]."""
+
+
+SLIDING = 4.0
+"""omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
 
 
 def sound_timestep(frequency: float) -> float:
@@ -46,16 +50,33 @@ def plastic_of(scene: Scene, t: Array, taken: Array, duration: float) -> dict[st
     return {name: Plastic(energy / strength, energy) for name, energy, strength in each}
 
 
-def energy_gain(peak_times: Array, t: Array, energy: Array) -> tuple[float, float]:
-    """The largest gain of energy from release to peak to peak to the end [J], and when it had happened [s].
+def own_energy(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
+    """Energy at the starts of some windows, less what the ground has put in up to there [J], shape (marks,).
 
-    Peaks are compared and not neighbouring samples, because a touch inside a step misplaces energy while the contact
-    lasts. What matters is whether the impact as a whole has lost or gained.
+    Energy and work belong to the same time there, wherever the record jumps.
+
+    Args:
+        scene, steps: the run.
+        work: of the ground in each window [J], see `ground_work`.
+        marks: which windows, in order.
     """
-    marks = np.concatenate([t[:1], peak_times, t[-1:]])
-    gains = np.diff(np.interp(marks, t, energy))
-    worst = int(gains.argmax())
-    return float(gains[worst]), float(marks[worst + 1])
+    windows = steps.windows
+    yields = bool(np.isfinite(scene.tie_strength).any())  # a tie yields between the marks too
+    at = np.arange(marks[-1] + 1) if yields else marks
+    stored = scene.accounts(windows.pose[at], windows.velocity[at])
+    own: Array = stored[0].sum(axis=1) + stored[1].sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
+    return own[marks] if yields else own
+
+
+def energy_gain(t: Array, energy: Array) -> tuple[float, float]:
+    """The largest gain of energy from one mark to the next [J], and when it had happened [s].
+
+    Marks are the release, the peaks and the end, and not neighbouring steps, because a touch inside a step misplaces
+    energy while the contact lasts. What matters is whether the impact as a whole has lost or gained.
+    """
+    gains = np.diff(energy)
+    worst = int(gains.argmax()) if len(gains) else 0
+    return (float(gains[worst]), float(t[worst + 1])) if len(gains) else (0.0, float(t[0]))
 
 
 class Run:
@@ -84,8 +105,9 @@ class Run:
         count = int(standing[-1]) + 1 if standing.size else 1
         self.slid = float(np.abs(self.slip[:count] - self.slip[0]).max())
         work = ground_work(scene, steps)[:count]
-        own = self.energy[:count] - (np.cumsum(work) - 0.5 * work)
-        gain, when = energy_gain(times[times <= t[count - 1]], t[:count], own)
+        met = np.searchsorted(steps.windows.t, times[times <= t[count - 1]])
+        marks = np.unique(np.concatenate([[0], np.minimum(met, count - 1), [count - 1]]))
+        gain, when = energy_gain(steps.windows.t[marks], own_energy(scene, steps, work, marks))
         self.scale = max(float(self.energy[0]) + float(np.abs(work).sum()), uplift.energy)
         if not gain <= ENERGY_GAIN * self.scale:
             raise StepError(
@@ -113,7 +135,7 @@ class Run:
             plastic=self.plastic,
             end=end,
             stats=told(scene, steps)
-            | {"base_displacement": float(self.slip[-1] - self.slip[0])}
+            | {"base_displacement": float(np.interp(case.duration, steps.t, self.slip) - self.slip[0])}
             | {
                 f"deepest_{name}": float(max(0.0, *deepest[np.array(scene.group) == name]))
                 for name in dict.fromkeys(scene.group)
@@ -131,4 +153,9 @@ def broken(error: StepError, scene: Scene, h: float, accuracy: float | None) -> 
         advice = f"the largest sound step is {sound:.3g} s"
     else:
         advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
+    if accuracy is None and len(scene.names) > 1 and h * scene.highest_frequency > SLIDING:
+        advice = (
+            f"joints that slide are unstable at a fixed step beyond {SLIDING / scene.highest_frequency:.3g} s "
+            f"(omega h = {SLIDING:g}, omega the highest frequency of the closed contacts); {advice}"
+        )
     return SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; {advice}")

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from ..problem.motion import GroundMotion
-from ..problem.quantities import GRAVITY, Array, Integers
+from ..problem.quantities import GRAVITY, Array, Flags, Integers
 from .contact import BORNE, HELD_GROWTH, HELD_MASSES, OVERDAMPED, planar_weight
 from .kinematics import Forces, Points, Ties, energies, gaps
 from .rest import gap_rates, lowered, settled
@@ -50,6 +50,8 @@ class Scene:
         normal: unit vector out of that face, shape (m, 2).
         k, c: spring [N/m] and dashpot [N s/m] of each contact, shape (m,).
         friction: coefficient of friction of each contact, zero for none [-], shape (m,).
+        holds: which contacts stand for a base that holds, shape (m,), or one answer for all. Their coefficient of
+            friction is a number that holds it, and no law of sliding.
         group: name of the group that each contact belongs to. Its points are numbered in the model, and the ledger has
             an account for each group.
         tie_names: names of the t ties, which pull and never push.
@@ -87,6 +89,7 @@ class Scene:
     c: Array
     friction: Array
     group: tuple[str, ...]
+    holds: Flags | bool = False
     tie_names: tuple[str, ...] = ()
     tie_body: Integers = field(default_factory=nothing)
     tie_point: Array = field(default_factory=nothing)
@@ -113,6 +116,7 @@ class Scene:
     def __post_init__(self) -> None:
         for name, values in checked(vars(self)).items():
             object.__setattr__(self, name, values)
+        object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), self.k.shape)))
         bodies = len(self.names)
         for name in ("settled", "release"):
             values = getattr(self, name)
@@ -195,9 +199,10 @@ class Scene:
             k=self.k,
             c=self.c,
             friction=self.friction,
+            rubs=frozen((self.friction > 0) & np.logical_not(self.holds)),
             weight=self.weight,
             held=frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
-            growth=HELD_GROWTH if len(self.names) > 1 else 0.0,
+            growth=0.0 if np.any(self.holds) else HELD_GROWTH,
             radius=self.radius,
             reach=span,
             overlap=2 * self.extent if len(self.names) > 1 else np.inf,

@@ -23,8 +23,8 @@ from ..problem.quantities import (
 from ..problem.uplift import Uplift
 from ..result.masonry import MasonryResponse
 from ..result.response import Response, State
-from .attempts import fitted, fixed, required_start, stride_of
-from .caveats import warn_if_coarse, warn_if_open, warn_if_slid
+from .attempts import fitted, fixed, require_coulomb, required_start, stride_of
+from .caveats import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
 from .masonry_run import simulate_masonry
 from .mjcf import pair_rows
 from .model import SimulationError
@@ -57,6 +57,7 @@ def simulate(
     *,
     accuracy: float = 1e-3,
     newmark_beta: float = 0.25,
+    coulomb: bool | None = None,
     output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
@@ -71,6 +72,7 @@ def simulate(
     *,
     accuracy: float = 1e-3,
     newmark_beta: float = 0.25,
+    coulomb: bool | None = None,
     output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
@@ -84,6 +86,7 @@ def simulate(
     *,
     accuracy: float = 1e-3,
     newmark_beta: float = 0.25,
+    coulomb: bool | None = None,
     output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
@@ -97,6 +100,8 @@ def simulate(
         accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1. A run in
             which energy appears from nowhere is discarded and repeated with a tenth of it, twice at most.
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.contact`.
+        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
+            steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
             all; fitted steps are interpolated, None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.engine.accounts`.
@@ -114,17 +119,17 @@ def simulate(
     if isinstance(case, MasonryCase):
         if contacts is not None:
             raise TypeError(f"contacts = {shown(contacts)}: masonry has its joints; call simulate(case)")
-        return simulate_masonry(case, timestep, accuracy, newmark_beta, output_step, ledger, start)
+        return simulate_masonry(case, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, start)
     _require_asked(case, contacts, output_step, ledger)
     assert contacts is not None
     require_within("accuracy", accuracy, 1e-8, 0.1)
     start = None if start is None else _required_state(start, case)
     if timestep is not None:
-        (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, output_step, ledger, start)
+        (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, coulomb, output_step, ledger, start)
         if isinstance(answer, SimulationError):
             raise answer
         return answer
-    return _simulate_fitted(case, contacts, accuracy, newmark_beta, output_step or 1e-3, ledger, start)
+    return _simulate_fitted(case, contacts, accuracy, newmark_beta, coulomb, output_step or 1e-3, ledger, start)
 
 
 def simulate_batch(
@@ -133,6 +138,7 @@ def simulate_batch(
     timestep: float,
     *,
     newmark_beta: float = 0.25,
+    coulomb: bool | None = None,
     output_step: float | None = None,
     ledger: bool = False,
 ) -> list[Response | SimulationError]:
@@ -145,7 +151,7 @@ def simulate_batch(
         cases: the cases; they differ in release, duration and ground motion only.
         contacts: the interfaces.
         timestep: the step [s].
-        newmark_beta, output_step, ledger: as in `simulate`.
+        newmark_beta, coulomb, output_step, ledger: as in `simulate`.
 
     Raises:
         ValueError: if the walls or sides of the cases differ, or as `simulate` does.
@@ -161,7 +167,7 @@ def simulate_batch(
     for i, case in enumerate(cases):
         if any(getattr(case, name) != getattr(first, name) for name in ("block", "side_stop", "effects")):
             raise ValueError(f"cases[{i}] has another wall, sides or effects than cases[0]; a batch has one geometry")
-    return _simulate_fixed(cases, contacts, timestep, newmark_beta, output_step, ledger, None)
+    return _simulate_fixed(cases, contacts, timestep, newmark_beta, coulomb, output_step, ledger, None)
 
 
 def _simulate_fitted(
@@ -169,12 +175,14 @@ def _simulate_fitted(
     contacts: Contacts,
     accuracy: float,
     newmark_beta: float,
+    coulomb: bool | None,
     output_step: float,
     want_ledger: bool,
     start: State | None,
 ) -> Response:
     """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    require_coulomb(coulomb)
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     started = time.perf_counter()
     scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts)
@@ -182,7 +190,7 @@ def _simulate_fitted(
     def judge(steps: Steps) -> Run:
         return Run(case, uplift, scene, steps, released=start is None)
 
-    run, settings = fitted(scene, scene.started if start is None else start, accuracy, newmark_beta, judge)
+    run, settings = fitted(scene, scene.started if start is None else start, accuracy, coulomb, judge)
     warn_if_slid(run, contacts)
     response = run.response(output_step, 1, want_ledger, settings)
     warn_if_open(response, run, f"lower accuracy = {accuracy:g}")
@@ -195,6 +203,7 @@ def _simulate_fixed(
     contacts: Contacts,
     timestep: float,
     newmark_beta: float,
+    coulomb: bool | None,
     output_step: float | None,
     want_ledger: bool,
     start: State | None,
@@ -202,6 +211,7 @@ def _simulate_fixed(
     """Runs of one geometry at one fixed step, or how each broke down."""
     require_within("timestep", timestep, 1e-9, 1.0, "s")
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    require_coulomb(coulomb)
     longest = max(case.duration for case in cases)
     require_size("the steps of this run", longest / timestep, "take a longer timestep, or steps that fit the motion")
     scenes, uplift = [wall_scene(case, contacts) for case in cases], Uplift.of(cases[0], contacts)
@@ -217,10 +227,12 @@ def _simulate_fixed(
 
         try:
             begin = scene.started if start is None else start
-            run, settings = fixed(scene, begin, timestep, newmark_beta, rows, judge)
+            run, settings = fixed(scene, begin, timestep, newmark_beta, rows, coulomb, judge)
         except SimulationError as error:
             return error
         warn_if_slid(run, contacts)
+        if coulomb is not True:
+            warn_if_lifted(scene, run.steps)
         response = run.response(None, stride, want_ledger, settings)
         warn_if_open(response, run, "take a shorter timestep")
         response.stats["wall_time"] = time.perf_counter() - started

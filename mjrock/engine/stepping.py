@@ -16,19 +16,24 @@ from tqdm import tqdm
 
 from .ground import Ground
 from .kinematics import frame_of, stretch
-from .loop import Clock, State, fitted_loop, fixed_loop
+from .loop import Clock, Progress, fitted_loop, fixed_loop, release
 from .model import Engine
 from .pace import SMOOTH, Pace
 from .scene import Scene
+from .sliding import Sliding
 from .steps import Record, StepError, Steps
 from .sticking import Joints
 from .touches import Springs
 
 
-def fitted_steps(engine: Engine, scene: Scene, accuracy: float) -> Steps:
+def fitted_steps(engine: Engine, scene: Scene, accuracy: float, *, coulomb: bool = True) -> Steps:
     """Steps that fit the motion, until the duration of the scene or until a body lies on its face.
 
-    The engine has to be at the release, with the step and the rows of `Pace.short`.
+    Args:
+        engine: of the scene, with pose and velocity of the start, see `Engine.place`.
+        scene: the scene.
+        accuracy: the relative tolerance that is aimed at [-].
+        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
@@ -37,41 +42,57 @@ def fitted_steps(engine: Engine, scene: Scene, accuracy: float) -> Steps:
     ties = scene.ties._replace(reach=np.array(scene.ties.reach))  # they yield in this run alone
     for i in range(len(ties.k)):
         stretch(ties, i, frame_of(engine.memory.pose), engine.memory.velocity)
-    state = State.of(engine.memory, Springs.of(scene.points, ties))
+    sliding, released_on = Sliding.of(scene.points, coulomb=coulomb), engine.closed
+    state = Progress.of(engine.memory, Springs.of(scene.points, ties))
     energy = max(2 * scene.release_energy, pace.least_energy)
-    clock = Clock(0.0, pace.short, pace.short, energy, 0, True, False, 0, False)
+    clock = Clock(0.0, pace.short, 0.0, energy, 0, True, False, 0, False)
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal clock
-        clock, n = fitted_loop(
-            engine.memory, scene.points, ties, scene.masses, ground, pace, joints, state, clock, record, scene.duration
+        values, n = fitted_loop(
+            *(engine.memory, scene.points, ties, scene.masses, ground, pace, joints, sliding),
+            *(state, clock, record, scene.duration),
         )
+        clock = Clock(*values)
         return n, clock.t, clock.ended
 
     made = _recorded(engine, scene, advance)
     kind = (made.h * pace.frequency >= SMOOTH).astype(np.int64)
-    return Steps(*made, pace.beta, pace.ringing, kind, clock.touches)
+    return Steps(*made[:5], pace.beta, pace.ringing, kind, made.friction, released_on, clock.touches)
 
 
-def fixed_steps(engine: Engine, scene: Scene, timestep: float, newmark_beta: float) -> Steps:
+def fixed_steps(engine: Engine, scene: Scene, timestep: float, newmark_beta: float, *, coulomb: bool = False) -> Steps:
     """Steps of one length, until the duration of the scene or until a body lies on its face.
 
-    The engine has to be at the release, with the step and the rows of that length.
+    Args:
+        engine: of the scene, at the release, with the step and the rows of that length.
+        scene: the scene.
+        timestep: length of the steps [s].
+        newmark_beta: Newmark's beta of the rows [-].
+        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`; without it they have the
+            rows of the model text.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
     last, ground, done = max(1, round(scene.duration / timestep)), Ground.of(scene.motion, scene.vertical), 0
 
+    sliding = Sliding.of(scene.points, coulomb=coulomb)
+    memory, frame, released_on = engine.memory, frame_of(engine.memory.pose), engine.closed
+    if sliding.coulomb:
+        velocity = memory.velocity + 0.5 * timestep * memory.acceleration
+        release(memory, scene.points, ground, scene.masses, sliding, frame, velocity)
+
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal done
-        ended, n = fixed_loop(engine.memory, scene.masses, ground, record, done, timestep, last)
+        fixed = memory, scene.points, scene.masses, ground, sliding, frame, record, done, timestep, last
+        ended, n = fixed_loop(*fixed)
         done += n
         return n, done * timestep, ended
 
     made = _recorded(engine, scene, advance)
     beta, none = np.full((2, len(scene.k)), newmark_beta), np.zeros((2, len(scene.k)))
-    return Steps(*made, beta, none, np.zeros(len(made.t), dtype=np.int64))
+    return Steps(*made[:5], beta, none, np.zeros(len(made.t), dtype=np.int64), made.friction, released_on)
 
 
 def _recorded(engine: Engine, scene: Scene, advance: Callable[[Record], tuple[int, float, bool]]) -> Record:

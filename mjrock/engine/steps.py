@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..problem.quantities import Array, Integers
+from ..problem.quantities import Array, Flags, Integers
 from ..result.response import State
 from ..result.samples import interpolated
 
@@ -34,6 +34,8 @@ class Steps:
         beta: Newmark's beta of each contact [-], in the two kinds of steps, shape (2, m).
         ringing: the extra dashpots of each contact in units of h k [-], shape (2, m).
         kind: which of the two each step is, shape (steps,).
+        friction: friction of each contact that slides by Coulomb's law, NaN for one that has its row [N], (steps, m).
+        released_on: which contacts the engine sees closed at the release, where gaps are zero to rounding, shape (m,).
         touches: how many touches were met with a short step.
     """
 
@@ -45,6 +47,8 @@ class Steps:
     beta: Array
     ringing: Array
     kind: Integers
+    friction: Array
+    released_on: Flags
     touches: int = 0
 
     @cached_property
@@ -72,30 +76,60 @@ class Steps:
         shape = (len(t), -1, 3)
         return t, pose.reshape(shape), velocity.reshape(shape), (last[0].reshape(-1, 3), last[1].reshape(-1, 3))
 
-    @property
-    def seams(self) -> Array:
-        """Starts of the leapfrog's windows, half a step before the poses [s], shape (steps,)."""
-        return self.t - 0.5 * self.h
+    @cached_property
+    def windows(self) -> Windows:
+        """The windows of the steps."""
+        t, pose, velocity = self.t - 0.5 * self.h, self.pose - 0.5 * self.h[:, None] * self.before, self.before.copy()
+        t[0], pose[0], velocity[0] = self.t[0], self.pose[0], self.velocity[0]
+        end = np.concatenate([velocity[1:], self.after[-1:]])
+        width, mean = np.append(np.diff(t), self.h[-1]), 0.5 * (velocity + end)
+        square = np.append(0.0, self.h[1:] ** 2)  # of the distance from pose to seam, four times
+        late = np.diff(square)[:, None] * ((self.after - self.before) / self.h[:, None])[:-1] / 8
+        placed = pose - np.concatenate([np.zeros_like(pose[:1]), np.cumsum(late, axis=0)])
+        return Windows(t, width, pose, placed, velocity, mean)
 
-    @property
-    def widths(self) -> Array:
-        """Lengths of the windows, from seam to seam, the last as long as its step [s], shape (steps,)."""
-        return np.append(np.diff(self.seams), self.h[-1])
+
+class Windows(NamedTuple):
+    """The windows of the leapfrog, in which the force of a step acts, from half a step before a pose to half a step
+    after it.
+
+    The first starts at the release: before it no force has acted. Over a window a constant force does the work that is
+    its product with the mean velocity and the width, without error.
+
+    Args:
+        t: start of each window [s], shape (steps,).
+        width: its length, the last as long as its step [s], shape (steps,).
+        pose, velocity: at its start, the pose as the springs of the contacts see it, shape (steps, 3 n).
+        placed: the same as the weight sees it, moved by mean velocity times width in each window, shape (steps, 3 n).
+            Where the step changes from h to h', a pose that falls back to the seam with its velocity alone misses
+            a (h'^2 - h^2) / 8, with a the acceleration of the step.
+        mean: the mean velocity in it, shape (steps, 3 n).
+    """
+
+    t: Array
+    width: Array
+    pose: Array
+    placed: Array
+    velocity: Array
+    mean: Array
 
 
 class Record(NamedTuple):
-    """Room for steps: their times and lengths [s], poses, and the velocities before and after them; as in `Steps`."""
+    """Room for steps: times and lengths, poses, the velocities before and after them, and friction; as in `Steps`."""
 
     t: Array
     h: Array
     pose: Array
     before: Array
     after: Array
+    friction: Array
 
     @classmethod
-    def of(cls, steps: int, coordinates: int) -> Record:
+    def of(cls, steps: int, coordinates: int, contacts: int) -> Record:
         """Room for a number of steps."""
-        return cls(*np.empty((2, steps)), *np.empty((3, steps, coordinates)))
+        t, h = np.empty((2, steps))
+        pose, before, after = np.empty((3, steps, coordinates))
+        return cls(t, h, pose, before, after, np.empty((steps, contacts)))
 
     def first(self, n: int) -> Record:
         """A copy of the first n steps."""

@@ -125,6 +125,7 @@ def standing_wall(block: Block, contacts: Contacts, stop_top: float | None, effe
         c=c,
         friction=friction,
         group=tuple(groups),
+        holds=np.array([group == "base" and base.friction is None for group in groups]),
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
         title=_title(wall, stop_top),
         facts=facts,

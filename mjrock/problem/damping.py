@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, Self
 
+from ..files import write_text
 from .block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
 from .quantities import require_array, require_kind, require_stiffness, require_within
@@ -198,9 +199,7 @@ class DampingLaw:
                 lines.append(f"{key} = {_toml(value)}{note}")
             if errors:
                 lines += ["", f"[errors.{part}]", *(f"{key} = {_toml(value)}" for key, value in errors.items())]
-        path = Path(path)
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        return path
+        return write_text(path, "\n".join(lines) + "\n")
 
     @classmethod
     def load(cls, path: str | Path) -> Self:

@@ -47,7 +47,8 @@ class Ledger:
         It is zero for an exact integration. A positive residual is energy that nothing has put in.
         """
         gone = sum((*self.dashpots.values(), *self.ties.values()), self.friction) - self.ground
-        residual: Array = self.held - self.held[0] + gone
+        total: Array = self.held + gone
+        residual: Array = total - total[0]
         return residual
 
     def at(self, t: Array) -> Ledger:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import inspect
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
-import numpy as np
-
 from ..engine.simulation import simulate
+from ..files import write_arrays
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.restitution import Restitution
@@ -128,11 +126,5 @@ class Analysis:
 
 
 def save_history(response: Response, path: Path) -> None:
-    """Write t [s], theta [rad], omega [rad/s] and energy [J] to an .npz file, whole or not at all."""
-    partial = path.with_name(path.name + f".{os.getpid()}.partial")
-    try:
-        with open(partial, "wb") as file:
-            np.savez_compressed(file, t=response.t, theta=response.theta, omega=response.omega, energy=response.energy)
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    """Write t [s], theta [rad], omega [rad/s] and energy [J] to an .npz file."""
+    write_arrays(path, t=response.t, theta=response.theta, omega=response.omega, energy=response.energy)

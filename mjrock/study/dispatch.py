@@ -117,7 +117,7 @@ class Dispatch:
         job = worker.jobs.pop(index)
         self.again.extend(worker.jobs)
         if job.history is not None:
-            for path in job.history.parent.glob(f"{job.history.name}.*.partial"):
+            for path in job.history.parent.glob(f"{job.history.name}.*.partial*"):
                 path.unlink(missing_ok=True)
         job.deaths += not overdue
         if overdue:

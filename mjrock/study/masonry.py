@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..engine.simulation import simulate
+from ..files import write_arrays
 from ..problem.masonry_case import MasonryCase
 from ..problem.quantities import require_kind, shown
 from ..result.masonry import MasonryResponse
@@ -92,11 +90,5 @@ class MasonryAnalysis:
 
 
 def save_poses(answer: MasonryResponse, path: Path) -> None:
-    """Write t [s], pose [m, m, rad], velocity and energy to an .npz file, whole or not at all."""
-    partial = path.with_name(path.name + f".{os.getpid()}.partial")
-    try:
-        with open(partial, "wb") as file:
-            np.savez_compressed(file, t=answer.t, pose=answer.pose, velocity=answer.velocity, energy=answer.energy)
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    """Write t [s], pose [m, m, rad], velocity and energy to an .npz file."""
+    write_arrays(path, t=answer.t, pose=answer.pose, velocity=answer.velocity, energy=answer.energy)

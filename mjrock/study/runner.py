@@ -82,7 +82,7 @@ class Runner:
     def _partial_histories(self) -> dict[str, list[Path]]:
         """What killed campaigns have left of time histories, by the key of the task."""
         found: dict[str, list[Path]] = {}
-        for path in self.folder.glob("*.npz.*.partial") if self.folder is not None else ():
+        for path in self.folder.glob("*.npz.*.partial*") if self.folder is not None else ():
             found.setdefault(path.name.partition(".")[0], []).append(path)
         return found
 

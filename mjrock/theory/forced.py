@@ -8,7 +8,7 @@ ends where a tie goes taut, yields or goes slack. The wall rests until the momen
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -166,8 +166,11 @@ def met(room: Room, law: Law, rules: Rules, t: float, side: float, omega: float)
 
 
 @compiled
-def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> Clock:
-    """Follow the wall until the room is nearly full, or until it lies on its face or the time is over."""
+def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, ...]:
+    """Follow the wall until the room is nearly full, or until it lies on its face or the time is over.
+
+    Returns the values of the clock, see `compiled`.
+    """
     t, theta, omega, side, at_rest, fell, ended = clock
     ties = law.ties
     while room.counts[0] + 4 < len(room.knots) and max(room.counts[1], room.counts[2]) < len(room.peaks) and not ended:
@@ -209,7 +212,7 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> Clock:
             at_rest = room.impacts[room.counts[1] - 1, 4] <= rules.rest
             side = math.copysign(1.0, omega)
         ended = fell or t >= rules.duration
-    return Clock(t, theta, omega, side, at_rest, fell, ended)
+    return t, theta, omega, side, at_rest, fell, ended
 
 
 def rock_forced(case: Case, e: float, least: float, rtol: float) -> Rocking:
@@ -229,7 +232,7 @@ def rock_forced(case: Case, e: float, least: float, rtol: float) -> Rocking:
     room, found = Room.empty(), []
     while not clock.ended:
         room.counts[:] = 0
-        clock = forced_loop(law, rules, clock, room)
+        clock = Clock(*forced_loop(law, rules, clock, room))
         found.append(room.filled())
     knots, impacts, peaks = found[0] if len(found) == 1 else map(np.concatenate, zip(*found, strict=True))
     t, theta, omega = np.ascontiguousarray(knots.T)

@@ -1,0 +1,197 @@
+"""Sliding: contacts that slide obey Coulomb's law, which the rows of the engine alone do not.
+
+A friction row of MuJoCo asks its slip to stop within the step. While the contact slides on, the cone answers with a
+normal force on top of the contact law, mu m_n |v_t| / h, with m_n the inertia of the normal row and v_t the slip. With
+m_n = h c / 2 + beta h^2 k it presses the bodies apart by mu (c / 2 + beta h k) |v_t|, which no short step removes.
+
+So a contact that slides has no friction row. The force of friction, mu times the normal force and against the slip, is
+applied to the two bodies. The normal force follows from the contact law at the accelerations of the step, which the
+engine finds with the force in place. One such look at the step is most often enough, because the normal force hardly
+depends on friction within a step. A contact whose slip friction stops within the step gets its row back, which stops
+and then holds it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import jitable
+from ..problem.quantities import Array, Flags
+from .contact import inertia_of
+from .ground import Ground, push
+from .kinematics import Points
+from .levers import Levers, levers_of, opening, rub, slipping
+from .memory import IMPRATIO, TIMESTEP, Memory
+from .touches import ROUNDING
+
+SMOOTH, ROUGH = 1, 3
+"""MuJoCo's dimension of a contact without and with rows of friction."""
+SLIDES = 2.0
+"""Force that would stop the slip, over what friction can give, from which a contact is taken to slide [-]."""
+LOOKS = 6
+"""Most looks at a step."""
+PATIENT = 2
+"""Looks in which a row is given back only once the friction is known."""
+STAGE_VELOCITY = 2
+"""mjSTAGE_VEL: positions and velocities are as in the last look, and only forces have changed."""
+FOUND = 0.02
+"""Change of a friction force from look to look, over the largest of the step, that asks for no other look [-]."""
+
+
+class Sliding(NamedTuple):
+    """The contacts that slide in a step.
+
+    Args:
+        coulomb: whether contacts that slide obey Coulomb's law; otherwise all have their rows.
+        neglected: share of the normal force that a friction row may add to it [-].
+        slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
+        force: friction of each that does, positive along (nz, -nx) on the body that carries the point [N], shape (m,).
+    """
+
+    coulomb: bool
+    neglected: float
+    slides: Flags
+    slid: Flags
+    force: Array
+
+    @classmethod
+    def of(cls, points: Points, *, coulomb: bool, neglected: float = 1e-3) -> Sliding:
+        """None slides yet."""
+        m = len(points.k)
+        none = np.zeros((2, m), dtype=np.bool_)
+        return cls(coulomb and bool(points.rubs.any()), neglected, none[0], none[1], np.zeros(m))
+
+
+@jitable
+def normal_force(memory: Memory, points: Points, i: int, levers: Levers) -> float:
+    """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
+    d, W = memory.solimp[i, 0], points.weight[i]
+    sprung = memory.solref[i, 0] * levers.gap + memory.solref[i, 1] * opening(points, i, levers, memory.velocity)
+    return max(sprung / ((1 - d) * W) - inertia_of(d, W) * opening(points, i, levers, memory.acceleration), 0.0)
+
+
+@jitable
+def find_sliding(memory: Memory, points: Points, sliding: Sliding, frame: Array) -> bool:
+    """Whether a contact slides; its friction is guessed from the acceleration of the last step, its row let go.
+
+    A contact slides where its slip is more than its row could stop, and the row would press it apart.
+    """
+    any_slides = False
+    for i in range(len(points.k)):
+        sliding.slides[i] = False
+        if not points.rubs[i]:
+            continue
+        mu, levers = points.friction[i], levers_of(points, i, frame)
+        if levers.gap > -ROUNDING:
+            continue
+        slip = slipping(points, i, levers, memory.velocity)
+        stopping = inertia_of(memory.solimp[i, 0], points.weight[i]) * abs(slip) / memory.options[TIMESTEP]
+        pressing = normal_force(memory, points, i, levers)
+        beyond = memory.options[IMPRATIO] * stopping > SLIDES * mu * pressing
+        if beyond and mu * stopping > sliding.neglected * pressing:
+            sliding.slides[i] = any_slides = True
+            sliding.force[i] = -math.copysign(mu * pressing, slip)
+            memory.dimension[i] = SMOOTH
+    return any_slides
+
+
+@jitable
+def apply_friction(
+    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, t: float
+) -> None:
+    """Write the force of the moving ground and the friction of what slides into the applied forces."""
+    memory.applied[:] = 0.0
+    push(ground, masses, t, memory.options[TIMESTEP], memory.applied)
+    for i in range(len(points.k)):
+        if sliding.slides[i]:
+            rub(points, i, levers_of(points, i, frame), sliding.force[i], memory.applied)
+
+
+@jitable
+def look(memory: Memory, points: Points, sliding: Sliding, frame: Array, n: int) -> tuple[bool, bool]:
+    """Bring the friction of what slides up to date with the accelerations that the engine has found in look n.
+
+    A contact gets its row back where friction stops its slip within the step, or where no force is found: beyond some
+    coefficient friction raises the normal force by more than that gives, and the contact jams. Returns whether another
+    look is needed, and whether a row was given back.
+    """
+    change, largest = 0.0, 0.0
+    for i in range(len(points.k)):
+        if sliding.slides[i]:
+            levers = levers_of(points, i, frame)
+            slip = slipping(points, i, levers, memory.velocity)
+            force = -math.copysign(points.friction[i] * normal_force(memory, points, i, levers), slip)
+            change = max(change, abs(force - sliding.force[i]))
+            largest = max(largest, abs(force), abs(sliding.force[i]))
+            sliding.force[i] = force
+    again, stopped = change > FOUND * largest, False
+    for i in range(len(points.k)):
+        if sliding.slides[i] and (n >= PATIENT or not again):
+            levers = levers_of(points, i, frame)
+            slip = slipping(points, i, levers, memory.velocity)
+            later = slip + memory.options[TIMESTEP] * slipping(points, i, levers, memory.acceleration)
+            if slip * later <= 0 or (again and n == LOOKS - 1):
+                memory.dimension[i] = ROUGH
+                sliding.slides[i] = False
+                stopped = True
+    return again or stopped, stopped
+
+
+@jitable
+def slide(
+    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, t: float
+) -> bool:
+    """Whether contacts slide; the applied forces then hold their friction, and the engine all but the accelerations."""
+    if not (sliding.coulomb and find_sliding(memory, points, sliding, frame)):
+        return False
+    rows_changed = True
+    for n in range(LOOKS):
+        apply_friction(memory, points, ground, masses, sliding, frame, t)
+        if rows_changed:
+            memory.forward(memory.model, memory.data)
+        else:
+            memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
+        for j in range(len(memory.guess)):
+            memory.guess[j] = memory.acceleration[j]
+        again, rows_changed = look(memory, points, sliding, frame, n)
+        if not again:
+            break
+    if rows_changed:
+        memory.forward(memory.model, memory.data)
+    apply_friction(memory, points, ground, masses, sliding, frame, t)
+    return True
+
+
+@jitable
+def sliding_changed(sliding: Sliding) -> bool:
+    """Whether a contact has begun or ceased to slide in the step, which is then the last one."""
+    changed = False
+    for i in range(len(sliding.slides)):
+        changed = changed or sliding.slides[i] != sliding.slid[i]
+        sliding.slid[i] = sliding.slides[i]
+    return changed
+
+
+@jitable
+def give_rows_back(memory: Memory, points: Points, sliding: Sliding) -> None:
+    """Give every contact that slid its row back, and clear the applied forces."""
+    memory.applied[:] = 0.0
+    for i in range(len(points.k)):
+        if sliding.slides[i]:
+            memory.dimension[i] = ROUGH
+
+
+@jitable
+def find_acceleration(
+    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, t: float
+) -> None:
+    """Let the engine find the accelerations of a step, and make none."""
+    if slide(memory, points, ground, masses, sliding, frame, t):
+        memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
+        give_rows_back(memory, points, sliding)
+    else:
+        push(ground, masses, t, memory.options[TIMESTEP], memory.applied)
+        memory.forward(memory.model, memory.data)
