@@ -52,12 +52,14 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/convergence.py --out docs/figures
 	$(BIN)/python scripts/layouts.py --out docs/figures
 	$(BIN)/python scripts/friction.py --out docs/figures
+	$(BIN)/python scripts/sliding.py --out docs/figures
 	$(BIN)/python scripts/law_range.py --out docs/figures
 	$(BIN)/python scripts/hard_cases.py --out docs/figures
 	$(BIN)/python scripts/trouble.py --out docs/figures
 	$(BIN)/python scripts/work_precision.py --out docs/figures
 	$(BIN)/python scripts/peers.py --out docs/figures
 	$(BIN)/python scripts/masonry_precision.py --out docs/figures
+	$(BIN)/python scripts/stack_losses.py --out docs/figures
 	$(BIN)/python scripts/thresholds.py --out docs/figures
 	$(BIN)/python scripts/overturning_spectrum.py --out docs/figures
 	$(BIN)/python scripts/ida.py --out docs/figures

@@ -64,13 +64,13 @@ def main(argv: Sequence[str] | None = None) -> None:
             table.append([title, f"{k_n:.0e}", *compared(ends, peaks)])
     plotting.save(figure, out / "agreement.png")
     columns = ("side_stop", "wall", "motion", "polarity", "level", "k_n", "solver", "outcome", "peak_over_alpha")
-    cli.write(out / "agreement.csv", cli.csv_text(columns, [[row[c] for c in columns] for row in found]))
+    cli.write_text(out / "agreement.csv", cli.csv_text(columns, [[row[c] for c in columns] for row in found]))
     header = [
         "wall", "k_n [N/m3]", "cases", "theory rests/rocks/overturns", "MuJoCo", "ends equal", "falls in theory alone",
         "in MuJoCo alone", "sign test p", "peak ratio 5/50/95 %", "Wilcoxon p",
     ]  # fmt: skip
     text = cli.table(header, table)
-    cli.write(out / "agreement.txt", text + "\n")
+    cli.write_text(out / "agreement.txt", text + "\n")
     print(text)
 
 

@@ -61,8 +61,8 @@ def main(argv: Sequence[str] | None = None) -> None:
             text = sensitivities(found, store, args.workers, out / f"{slug}_sensitivity.png")
             report += [text, ""]
     with Store(store) as file:
-        cli.write(out / "calibration.csv", file.csv(timings=False))
-    cli.write(out / "calibration.txt", "\n".join(report))
+        cli.write_text(out / "calibration.csv", file.csv(timings=False))
+    cli.write_text(out / "calibration.txt", "\n".join(report))
     print("\n".join(report))
 
 

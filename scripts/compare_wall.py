@@ -66,8 +66,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         responses.append(mr.solve_compliant(case, contacts))
 
     step = candidate.stats["timestep"]
-    cli.write(out / "scene.xml", mr.wall_mjcf(case, contacts, step))
-    cli.write(out / "comparison.csv", comparison.csv())
+    cli.write_text(out / "scene.xml", mr.wall_mjcf(case, contacts, step))
+    cli.write_text(out / "comparison.csv", comparison.csv())
     title = f"2h = {2 * wall.h:g} m, 2b = {2 * wall.b:g} m, {'one' if case.side_stop else 'two'}-sided"
     plotting.save(plotting.comparison(responses, title), out / "comparison.png")
 

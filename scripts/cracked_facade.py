@@ -209,8 +209,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     header += ["peak/alpha: theory", "one block", "cracked"]
     summed = ["façade", "cracked over", "median", "range", "unsafe"]
     text = cli.table(header, rows) + "\n\n" + cli.table(summed, summary(found))
-    cli.write(out / "cracked_facade.csv", cli.csv_text(header, rows))
-    cli.write(out / "cracked_facade.txt", text + "\n")
+    cli.write_text(out / "cracked_facade.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "cracked_facade.txt", text + "\n")
     print(text)
 
 

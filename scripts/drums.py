@@ -120,8 +120,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     stood = np.where(falls, 0.0, slid).max(axis=(1, 2))
     rows.append(["most slid and stood [m]", "-", *(f"{most:.3f}" for most in stood)])
     text = cli.table(header, rows)
-    cli.write(out / "drums.csv", cli.csv_text(header, rows))
-    cli.write(out / "drums.txt", text + "\n")
+    cli.write_text(out / "drums.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "drums.txt", text + "\n")
     print(text)
 
 

@@ -228,8 +228,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(drawn(list(found), times, left_out), out / "effect_costs.png")
     header = ["façade", "time", "steps", "peak/alpha", "overturns at [g]", "without/with", "over the motions"]
     text = cli.table(header, rows)
-    cli.write(out / "effect_costs.csv", cli.csv_text(header, rows))
-    cli.write(out / "effect_costs.txt", text + "\n")
+    cli.write_text(out / "effect_costs.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "effect_costs.txt", text + "\n")
     print(text)
 
 

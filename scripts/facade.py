@@ -100,7 +100,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 plotting.save(drawn((engine, theory), motion), out / "facade.png")
     header = ["motion", "k_n [N/m3]", "peak, theory", "MuJoCo", "apart", "plastic, theory [mm]", "MuJoCo", "RMS"]
     text = cli.table(header, rows)
-    cli.write(out / "facade.txt", text + "\n")
+    cli.write_text(out / "facade.txt", text + "\n")
     print(text)
 
 

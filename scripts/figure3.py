@@ -61,7 +61,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         "RMS/alpha to theory",
         "RMS/alpha to contact law",
     ]
-    cli.write(out / "figure3.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "figure3.csv", cli.csv_text(header, rows))
     print(cli.table(header, rows))
 
 

@@ -66,13 +66,13 @@ def main(argv: Sequence[str] | None = None) -> None:
             )
     header = ["solver", "independent", "median PGA [g]", "90 % interval [g]", "dispersion [-]", "90 % interval [-]"]
     text = cli.table(header, rows)
-    cli.write(out / "fragility.txt", text + "\n")
+    cli.write_text(out / "fragility.txt", text + "\n")
     cells = [
         (f"{level:.4f}", *(f"{share:.4f}" for share in own))
         for level, own in zip(levels, fell.mean(axis=1).T, strict=True)
     ]
     header = ["PGA [g]", *(f"share overturned, {plotting.STYLES[s]['label']} [-]" for s in SOLVERS)]
-    cli.write(out / "fragility.csv", cli.csv_text(header, cells))
+    cli.write_text(out / "fragility.csv", cli.csv_text(header, cells))
     print(text)
 
 

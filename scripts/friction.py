@@ -41,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     wall.standing_wall.cache_clear()
     header = ["mu [-]", "row inertia [m]", "step [ms]", "2s e_1", "2s e_2", "1s e_1", "1s e_2"]
     text = cli.table(header, rows)
-    cli.write(out / "friction.txt", text + "\n")
+    cli.write_text(out / "friction.txt", text + "\n")
     print(text)
 
 

@@ -188,7 +188,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             rows.append([case.name, case.promise, "kept" if kept else "BROKEN", result])
     lines = ["| case | promised | | result |", "|---|---|---|---|", *("| " + " | ".join(row) + " |" for row in rows)]
     text = "\n".join(lines)
-    cli.write(out / "hard_cases.md", text + "\n")
+    cli.write_text(out / "hard_cases.md", text + "\n")
     print(text)
 
 

@@ -41,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     found = mr.inspect_contacts(model, candidates=not (args.pairs or args.quick), contacts=args.contacts)
     out = cli.folder(args.out)
     text = report(found)
-    cli.write(out / "inspect_contacts.txt", text + "\n")
+    cli.write_text(out / "inspect_contacts.txt", text + "\n")
     print(text)
 
 

@@ -37,7 +37,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     laws = (mr.PUBLISHED.name, mr.CALIBRATED.name)
     header = ["h/b", "k_n [N/m3]", "e_2s theory", *laws, "|e_1s| theory", *laws]
     text = cli.table(header, rows)
-    cli.write(out / "law_range.txt", text + "\n")
+    cli.write_text(out / "law_range.txt", text + "\n")
     print(text)
 
 

@@ -109,7 +109,8 @@ A line carries k_i = k_n times its tributary area and c_i = (2 xi / omega) k_i,
 omega = {contacts.base.frequency:.5g} rad/s.
 
 `scene.xml`: step {self.timestep:g} s, Euler. In stock MuJoCo reset to the keyframe `release` and step. The hinge
-`theta` is the rotation [rad], positive away from the side stop; `x` and `z` displace the centroid [m].
+`theta` is the rotation [rad], positive away from the side stop; `x` and `z` displace the centroid [m]. Friction holds
+the base and the side is smooth: nothing slides, and the text is the whole simulation.
 
 `reference.csv`: rotation and energy above the wall at rest, by rocking theory
 ({law_of_motion}, omega -> e omega at theta = 0) and by the contact law (f = max(0, -k r - c r'),
@@ -206,12 +207,20 @@ pushes with f = max(0, -k_i r - c_i r'), r the gap. Friction is Coulomb's.
 
 `scene.xml`: step {self.timestep:g} s, Euler. In stock MuJoCo reset to the keyframe `release` and step. Each block has
 three joints of MuJoCo: `<block>_theta` is the rotation [rad], positive where its top turns to the right; `<block>_x`
-and `<block>_z` displace its centroid [m].
+and `<block>_z` displace its centroid [m]. A joint that slides is pressed apart in stock MuJoCo: at 0.1 m/s by up to
+{self.lift(0.1):.0%} of the weight that a line of it bears. Steps of mjrock that fit the motion slide by Coulomb's law.
 
 `reference.csv`: rotation of each block and energy above the masonry at rest. The reference is MuJoCo itself, with steps
 that fit the motion at an accuracy of {FINE:g}. It says what the step of the scene costs in accuracy, and does not check
 the law of the contacts: rocking theory and the SciPy solver of the package are for one wall.
 """
+
+    def lift(self, slip: float) -> float:
+        """What a slip [m/s] adds to the normal force of a line in the text, the most over what it bears at rest [-]."""
+        points = mr.masonry_scene(self.case).points
+        bears = points.bears > 0
+        added = points.friction * (points.c / 2 + 0.25 * self.timestep * points.k) * slip
+        return float((added[bears] / (points.k * points.bears)[bears]).max())
 
     def files(self) -> dict[str, str]:
         """File names and contents."""
@@ -275,7 +284,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     for model in tqdm(ALL[:1] if args.quick else (*ALL, *MASONRY), desc="models", disable=None):
         out = cli.folder(args.out / model.name)
         for name, text in model.files().items():
-            cli.write(out / name, text)
+            cli.write_text(out / name, text)
 
 
 if __name__ == "__main__":

@@ -26,9 +26,11 @@ import cli
 import mjrock as mr
 from mjrock import plotting
 from mjrock.engine.ground import Ground
+from mjrock.engine.kinematics import frame_of
 from mjrock.engine.loop import fixed_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
+from mjrock.engine.sliding import Sliding
 from mjrock.problem.quantities import Array
 
 WIDTH, HEIGHT = 0.6, 4.2
@@ -134,8 +136,12 @@ def finely(case: mr.MasonryCase, timestep: float) -> Motion:
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(scene.started)
+        sliding, frame = Sliding.of(scene.points, coulomb=False), frame_of(engine.memory.pose)
         while not ended:
-            ended, n = fixed_loop(engine.memory, scene.masses, ground, engine.room, done, timestep, last)
+            ended, n = fixed_loop(
+                *(engine.memory, scene.points, scene.masses, ground, sliding, frame),
+                *(engine.room, done, timestep, last),
+            )
             theta = engine.room.pose[:n, 2::3]
             peaks = np.maximum(peaks, np.abs(theta).max(axis=0))
             samples.append(theta[-done % every :: every].copy())
@@ -266,12 +272,12 @@ def main(argv: Sequence[str] | None = None) -> None:
             points += found
     header = ["blocks", "method", "setting [- or s]", "steps [-]", "run [s]", "stepping [s]", "peak [-]", "motion [-]"]
     rows = [(p.blocks, p.method, p.setting, p.steps, p.seconds, p.stepping, p.peak, p.path) for p in points]
-    cli.write(out / "masonry_precision.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "masonry_precision.csv", cli.csv_text(header, rows))
     drawn = [(f"{p.blocks} blocks", p.method, p.seconds, p.steps, max(p.peak, scatters[p.blocks][0])) for p in points]
     figure = plotting.work_precision(drawn, "largest error of a peak rotation [-]")
     plotting.save(figure, out / "masonry_precision.png")
     text = report(points, scatters, study) + "\n\n" + arch_at_rest(study.arch, study.repeats)
-    cli.write(out / "masonry_precision.txt", text + "\n")
+    cli.write_text(out / "masonry_precision.txt", text + "\n")
     print(text)
 
 

@@ -155,8 +155,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(drawn(measured, answers, 2 if args.quick else 15), out / "panel.png")
     header = ["friction", "MuJoCo", "limit analysis", "slides", "b/h", "stair", "MuJoCo/limit", "ms a step"]
     text = cli.table(header, rows)
-    cli.write(out / "panel.csv", cli.csv_text(header[:-1], [row[:-1] for row in rows]))
-    cli.write(out / "panel.txt", text + "\n")
+    cli.write_text(out / "panel.csv", cli.csv_text(header[:-1], [row[:-1] for row in rows]))
+    cli.write_text(out / "panel.txt", text + "\n")
     print(text)
 
 

@@ -193,7 +193,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     text += f"\nfirst run of a process, loops stored on disk: {statistics.median(stored):.2f} s"
     if not args.quick:
         text += f"\nfirst run of an installation, which compiles the loops: {compiling:.1f} s"
-    cli.write(out / "speed.txt", text + "\n")
+    cli.write_text(out / "speed.txt", text + "\n")
     print(text)
 
 

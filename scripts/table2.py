@@ -59,7 +59,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         "e_1s measured", "e_1s MuJoCo", "rebounds MuJoCo", "peak/alpha theory", "peak/alpha MuJoCo",
         "uplift/alpha", "RMS/alpha",
     ]  # fmt: skip
-    cli.write(out / "table2.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "table2.csv", cli.csv_text(header, rows))
     plotting.save(plotting.grid(panels, top=0.12), out / "table2.png")
     print(cli.table(header, rows))
     print("\n" + "\n".join(notes))

@@ -154,7 +154,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     text += "\n\n" + cli.table(["rocking theory", "rows at the kill", "rows at the end"], kills)
     for old in out.glob("throughput.sqlite*"):
         old.unlink()
-    cli.write(out / "throughput.txt", text + "\n")
+    cli.write_text(out / "throughput.txt", text + "\n")
     print(text)
 
 

@@ -239,8 +239,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     report = "\n\n".join(f"{title}\n{table(rows)}" for rows, title, table in tables.values())
     names = list(dict.fromkeys(key for rows, _, _ in tables.values() for row in rows for key in row))
     values = [[name, *(row.get(key, "") for key in names)] for name, (rows, _, _) in tables.items() for row in rows]
-    cli.write(out / "validate_contacts.csv", cli.csv_text(["table", *names], values))
-    cli.write(out / "validate_contacts.txt", report + "\n")
+    cli.write_text(out / "validate_contacts.csv", cli.csv_text(["table", *names], values))
+    cli.write_text(out / "validate_contacts.txt", report + "\n")
     print(report)
 
 

@@ -64,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         steps = "" if args.quick else step_study(compared, out / "validation.sqlite", args.workers)
     plotting.save(plotting.panels(drawings), out / "validation.png")
     report = "\n\n".join(part for part in (table, specimens, steps) if part)
-    cli.write(out / "validation.txt", report + "\n")
+    cli.write_text(out / "validation.txt", report + "\n")
     print(report)
 
 
@@ -100,7 +100,7 @@ def validation(
                 lines += errors(f"{points} lines, {'one' if sides == 1 else 'two'}-sided", law, ones, wanted, found)
             title = f"{points} lines a face, {'one' if sides == 1 else 'two'}-sided"
             drawings.append((title, _obtained(samples)))
-    cli.write(out / "validation.csv", cli.csv_text(list(rows[0]), [list(r.values()) for r in rows]))
+    cli.write_text(out / "validation.csv", cli.csv_text(list(rows[0]), [list(r.values()) for r in rows]))
     header = ["layout", "law", "walls", "rebound", "median error of |e|", "95 %", "largest", "without rebound"]
     return cli.table(header, lines), drawings
 
@@ -167,7 +167,7 @@ def table_2(compared: Mapping[int, Sequence[DampingLaw]], out: Path) -> str:
         "specimen", "lines", "law", "xi_b", "xi_s", "uplift/alpha", "peak/alpha theory", "peak/alpha MuJoCo",
         "error of peak", "|e_1s| measured", "|e_1s| MuJoCo", "error of |e_1s|",
     ]  # fmt: skip
-    cli.write(out / "table2_laws.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "table2_laws.csv", cli.csv_text(header, rows))
     return cli.table(header, rows)
 
 

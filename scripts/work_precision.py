@@ -433,7 +433,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         ]
         for p in points
     ]
-    cli.write(out / "work_precision.csv", cli.csv_text(header, rows))
+    cli.write_text(out / "work_precision.csv", cli.csv_text(header, rows))
     plotting.save(
         plotting.work_precision([(p.case, p.method, p.seconds, p.steps, p.e_error) for p in points if p.e_error < 1]),
         out / "work_precision.png",
@@ -464,7 +464,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     lines_out.append(walls_study(2 if args.quick else 30))
     if not args.quick:
         lines_out.append(profile())
-    cli.write(out / "work_precision.txt", "\n".join(lines_out) + "\n")
+    cli.write_text(out / "work_precision.txt", "\n".join(lines_out) + "\n")
     print("\n".join(lines_out))
 
 
