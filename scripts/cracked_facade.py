@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.stats import binomtest
 from tqdm import tqdm
 
 import cli
@@ -150,7 +151,9 @@ def summary(found: Sequence[Found]) -> list[list[str]]:
             ratios = (least[:, 2] / least[:, column]).tolist()
             unsafe = sum(ratio < 0.98 for ratio in ratios)
             spread = f"{min(ratios):.2f} to {max(ratios):.2f}"
-            rows.append([sides, over, f"{statistics.median(ratios):.2f}", spread, f"{unsafe} of {len(ratios)}"])
+            weaker, stronger = sum(ratio < 1 for ratio in ratios), sum(ratio > 1 for ratio in ratios)
+            sign = f"{binomtest(weaker, weaker + stronger).pvalue:.2f}" if weaker + stronger else "-"
+            rows.append([sides, over, f"{statistics.median(ratios):.2f}", spread, f"{unsafe} of {len(ratios)}", sign])
     return rows
 
 
@@ -207,7 +210,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(drawn(found, [motion for _, _, motion in studies]), out / "cracked_facade.png")
     header = ["façade", "motion", "theory [g]", "one block [g]", "cracked [g]", "cracked/one", "cracked/theory"]
     header += ["peak/alpha: theory", "one block", "cracked"]
-    summed = ["façade", "cracked over", "median", "range", "unsafe"]
+    summed = ["façade", "cracked over", "median", "range", "unsafe", "sign test p"]
     text = cli.table(header, rows) + "\n\n" + cli.table(summed, summary(found))
     cli.write_text(out / "cracked_facade.csv", cli.csv_text(header, rows))
     cli.write_text(out / "cracked_facade.txt", text + "\n")
