@@ -11,13 +11,11 @@ from typing import TYPE_CHECKING
 from ._version import __version__
 from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
 from .engine.inspection import InspectedContact, inspect_contacts
-from .engine.masonry import masonry_mjcf, masonry_scene
-from .engine.model import SimulationError, wall_mjcf
+from .engine.model import SimulationError
 from .engine.pair import PairContact
 from .engine.pairing import contact_for
-from .engine.scene import Scene
-from .engine.simulation import automatic_timestep, simulate, simulate_batch
-from .engine.wall import wall_scene
+from .engine.simulation import automatic_timestep, simulate
+from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
 from .problem.block import Block
 from .problem.case import Case
 from .problem.contacts import Contacts
@@ -36,16 +34,18 @@ from .problem.section import Opening
 from .problem.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
 from .reference.compliant import solve_compliant
 from .result.compare import Comparison, compare
-from .result.history import Impact
 from .result.ledger import Ledger
-from .result.masonry import MasonryResponse
-from .result.response import Outcome, Response
-from .study.analysis import Analysis
+from .result.response import MasonryResponse, Outcome, Response
+from .result.rocking import Impact
+from .scene.masonry import masonry_scene
+from .scene.of_case import scene_of
+from .scene.scene import Scene
+from .scene.wall import wall_scene
+from .study.analysis import Analysis, MasonryAnalysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
-from .study.masonry import MasonryAnalysis
 from .study.matched import as_theory, matched_contacts
 from .study.matched_masonry import matched_masonry
 from .study.pushover import pushover
@@ -111,13 +111,14 @@ __all__ = [
     "matched_contacts",
     "matched_masonry",
     "measured_stiffness",
+    "mjcf_of",
     "overturning_intensity",
     "pushover",
     "reference_frequency",
     "results",
     "rigid_impact",
+    "scene_of",
     "simulate",
-    "simulate_batch",
     "solve_analytical",
     "solve_compliant",
     "wall_mjcf",

@@ -2,7 +2,8 @@
 
 `compiled` marks a loop for compilation at its first call. The result is stored beside the module, or in the user's
 cache folder where the package lies on a read-only disk. Where neither can be written, each process compiles anew.
-`jitable` marks a small function that compiled loops call; called from Python it runs as Python. With
+`jitable` marks a small function that compiled loops call, and `inlined` one whose call would take longer than its
+arithmetic; called from Python they run as Python. With
 NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
 """
 
@@ -39,7 +40,7 @@ def _sources() -> str:
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         text = path.read_bytes()
-        if b"@compiled" in text or b"@jitable" in text:
+        if any(mark in text for mark in (b"@compiled", b"@jitable", b"@inlined")):
             digest.update(text)
     return digest.hexdigest()
 
@@ -51,7 +52,7 @@ if numba is None:
         """The function as it is: there is no numba."""
         return function
 
-    jitable = compiled
+    inlined = jitable = compiled
 
 else:
     SOURCES = _sources()
@@ -93,6 +94,7 @@ else:
     event.register("numba:compile", _FirstCompilation())
 
     jitable = numba.extending.register_jitable
+    inlined = numba.extending.register_jitable(forceinline=True)
 
     def compiled(function: Function) -> Function:
         """Compile a function at its first call, and store the result on disk where that is possible.

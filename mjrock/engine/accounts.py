@@ -1,7 +1,8 @@
 """The accounts of a run: where its energy is at every step, and what dashpots, friction and the ground did to it.
 
-Everything follows from the recorded poses and half-step velocities. The books are kept at the seams of the leapfrog's
-windows, where a velocity is known and where a touch that is centred in time falls. Over a window a constant force acts.
+Everything follows from the recorded poses and half-step velocities. Energies are evaluated half a step before each pose,
+where the leapfrog's velocity is exact and where a touch that is centred in time falls. From one of these times to the
+next, which is the window of a step, a constant force acts.
 What it does to the kinetic energy is force times mean velocity times length, without error. With Newmark's beta = 1/4 a
 spring stores exactly what it should; with another beta the residual contains the (1/4 - beta) h^2 k v^2 / 2 by which
 the step shifts the energy of the contact.
@@ -15,21 +16,25 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..problem.quantities import Array, Flags, Integers
+from ..geometry.frames import take_frames
+from ..geometry.kinematics import along, gap
+from ..problem.quantities import Array, Integers
 from ..result.ledger import Ledger
-from .contact import row
-from .ground import Ground, Shaking, mean_acceleration
-from .kinematics import Points, along, gap, spring_energy, take_frame
-from .scene import Scene
-from .steps import Steps, Windows
+from ..scene.course import Course
+from ..scene.ground import Shaking, mean_acceleration
+from ..scene.potential import spring_energy
+from ..scene.scene import Scene
+from .points import Points, points_of
+from .rows import Step, impratio_of, row_of
+from .steps import Kinds, Record, Steps, Windows
 
 
-def ground_work(scene: Scene, steps: Steps) -> Array:
+def ground_work(scene: Scene, course: Course, steps: Steps) -> Array:
     """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
-    work, ground, windows = np.zeros(len(steps.t)), Ground.of(scene.motion, scene.vertical), steps.windows
-    for first, shaking in enumerate(ground):
+    work, windows = np.zeros(len(steps.t)), steps.windows
+    for axis, shaking in enumerate(course.ground):
         if len(shaking.accel):
-            momentum = windows.mean[:, first::3] @ scene.mass
+            momentum = windows.mean[:, axis::3] @ scene.mass
             _ground_work(shaking, steps.t, steps.h, windows.width, momentum, work)
     return work
 
@@ -59,32 +64,14 @@ class ContactWork(NamedTuple):
 def contact_work(scene: Scene, steps: Steps) -> ContactWork:
     """What the contacts take from a motion."""
     groups = tuple(dict.fromkeys(scene.group))
-    dashpots, friction = np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t))
-    impulses = np.zeros(2)
-    _contact_work(
-        scene.points,
-        np.array([groups.index(name) for name in scene.group]),
-        steps.h,
-        steps.pose,
-        steps.before,
-        steps.after,
-        steps.windows,
-        steps.beta,
-        steps.ringing,
-        steps.kind,
-        steps.friction,
-        steps.released_on,
-        np.empty((3, len(scene.mass), 4)),
-        np.empty((len(scene.k), 2)),
-        np.empty((3, len(scene.masses))),
-        dashpots,
-        friction,
-        impulses,
-    )
-    return ContactWork(groups, dashpots, friction, float(impulses[0] / impulses[1]) if impulses[1] else 0.0)
+    work = Work(np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t)), np.zeros(2))
+    number = np.array([groups.index(name) for name in scene.group])
+    _contact_work(points_of(scene), number, steps.record, steps.windows, steps.kinds, Room.of(scene), work)
+    lift, pressed = work.impulses.tolist()
+    return ContactWork(groups, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
 
 
-def ledger(scene: Scene, steps: Steps) -> Ledger:
+def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     """The ledger of a run."""
     windows = steps.windows
     stored, taken = scene.accounts(windows.pose, windows.velocity)
@@ -98,7 +85,7 @@ def ledger(scene: Scene, steps: Steps) -> Ledger:
         elastic=stored[:, 2],
         dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate(groups)},
         friction=_since_release(friction),
-        ground=_since_release(ground_work(scene, steps)),
+        ground=_since_release(ground_work(scene, course, steps)),
         ties=dict(zip(scene.tie_names, (taken - taken[0]).T, strict=True)),
     )
 
@@ -110,7 +97,7 @@ def given_back(scene: Scene, steps: Steps) -> Array:
     way is then there again. It would else add up under a thrust that a resting wall bears for long.
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
-    pose[::2], pose[1::2] = steps.pose, (steps.pose + steps.h[:, None] * steps.after)[:-1]
+    pose[::2], pose[1::2] = steps.pose, (steps.pose + steps.h[:, None] * steps.record.after)[:-1]
     stored = scene.accounts(pose, np.zeros_like(pose))[0].sum(axis=1)
     gained: Array = stored[2::2] - stored[1::2]
     return gained
@@ -119,6 +106,13 @@ def given_back(scene: Scene, steps: Steps) -> Array:
 def _since_release(work: Array) -> Array:
     """Sums up to the start of each window."""
     return np.append(0.0, np.cumsum(work[:-1]))
+
+
+class Drag(NamedTuple):
+    """Force of a dashpot, and what Newmark's beta adds to the spring beside it [N]."""
+
+    dashpot: float
+    sprung: float
 
 
 @jitable
@@ -144,104 +138,114 @@ def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: flo
     return pressing, math.copysign(mu * pressing, stopping)
 
 
+class Work(NamedTuple):
+    """What the contacts take, to be filled.
+
+    Args:
+        dashpots, friction: work in the window of each step [J], shapes (steps, groups) and (steps,).
+        impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
+    """
+
+    dashpots: Array
+    friction: Array
+    impulses: Array
+
+
+class Room(NamedTuple):
+    """Room for one step.
+
+    Args:
+        frames, seam, next_seam: frames of the pose, and of the two ends of its window.
+        middle, acceleration, mean: velocity around the pose, acceleration, and mean velocity in the window, (n nv,).
+        dashpot, inertia: of the row of each contact, shape (m,).
+    """
+
+    frames: Array
+    seam: Array
+    next_seam: Array
+    middle: Array
+    acceleration: Array
+    mean: Array
+    dashpot: Array
+    inertia: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> Room:
+        """Room for a step of a scene."""
+        freedom, coordinates, contacts = scene.places.freedom, len(scene.masses), len(scene.k)
+        frames = (freedom.frames(len(scene.mass)) for _ in range(3))
+        return cls(*frames, *np.empty((3, coordinates)), *np.empty((2, contacts)))
+
+
 @jitable
-def take_rows(points: Points, h: float, beta: Array, ringing: Array, rows: Array) -> float:
-    """Write dashpot [N s/m] and inertia [kg] of every contact in a step, shape (m, 2), and return impratio [-]."""
+def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, room: Room) -> None:
+    """Write frames and rates of step n of the record."""
+    take_frames(record.pose[n], room.frames, axes)
+    take_frames(windows.pose[n], room.seam, axes)
+    take_frames(windows.pose[min(n + 1, len(record.h) - 1)], room.next_seam, axes)
+    for j in range(len(room.mean)):
+        room.middle[j] = 0.5 * (record.before[n, j] + record.after[n, j])
+        room.acceleration[j] = (record.after[n, j] - record.before[n, j]) / record.h[n]
+        room.mean[j] = windows.mean[n, j]
+
+
+@jitable
+def take_rows(points: Points, step: Step, room: Room) -> float:
+    """Write dashpot and inertia of the row of every contact in a step, and return impratio [-]."""
     impratio = math.inf
-    for i in range(len(points.k)):
-        rows[i, 0], rows[i, 1] = row(
-            points.k[i], points.c[i], h, points.weight[i], beta[i], ringing[i], points.overdamped[i]
-        )
-        if points.held[i] > 0:
-            impratio = min(impratio, max(points.growth * h, 1.0) * points.held[i] / rows[i, 1])
+    for i in range(len(room.inertia)):
+        room.dashpot[i], room.inertia[i] = row_of(points.law, points.inertia, i, step)
+        impratio = min(impratio, impratio_of(points.inertia, i, room.inertia[i], step.h))
     return impratio
 
 
 @jitable
-def drag_of(
-    points: Points, i: int, dashpot: float, inertia: float, beta: float, h: float, rate: float, curve: float
-) -> tuple[float, float]:
+def drag_of(law_k: float, dashpot: float, inertia: float, step: Step, i: int, rate: float, curve: float) -> Drag:
     """Force of the dashpot of contact i, centred or at the end of the step, and what Newmark's beta adds to its spring.
 
     Args:
-        points: the contacts.
-        i: which contact.
+        law_k: its spring [N/m].
         dashpot, inertia: its row [N s/m, kg].
-        beta, h: Newmark's beta [-] and the step [s].
+        step, i: the step, and which contact.
         rate, curve: mean velocity of the contact in the step, and its acceleration [m/s, m/s2].
     """
-    sprung = beta * h**2 * points.k[i] * curve
+    sprung = step.beta[i] * step.h**2 * law_k * curve
     # the row acts on the velocity that the leapfrog keeps, half a step before the pose
-    return dashpot * (rate - 0.5 * h * curve) + inertia * curve - sprung, sprung
+    return Drag(dashpot * (rate - 0.5 * step.h * curve) + inertia * curve - sprung, sprung)
 
 
 @compiled
 def _contact_work(
-    points: Points,
-    number: Integers,
-    h: Array,
-    pose: Array,
-    before: Array,
-    after: Array,
-    windows: Windows,
-    beta: Array,
-    ringing: Array,
-    kind: Integers,
-    sliding: Array,
-    released_on: Flags,
-    frames: Array,
-    rows: Array,
-    rates: Array,
-    dashpots: Array,
-    friction: Array,
-    impulses: Array,
+    points: Points, number: Integers, record: Record, windows: Windows, kinds: Kinds, room: Room, work: Work
 ) -> None:
-    """Add up the work that dashpots and friction take in the window of each step.
-
-    Args:
-        points: the contacts.
-        number: the group of each contact, shape (m,).
-        h: lengths of the steps [s], shape (steps,).
-        pose, before, after: poses, and velocities around them, shape (steps, 3 n).
-        windows: their windows.
-        beta, ringing, kind: as in `Steps`.
-        sliding: friction of the contacts that slide by Coulomb's law, `Steps.friction`, shape (steps, m).
-        released_on: the contacts that are closed in the first step, shape (m,).
-        frames, rows, rates: room for three frames, the rows and three rates, shapes (3, n, 4), (m, 2) and (3, 3 n).
-        dashpots, friction: the work [J], shapes (steps, groups) and (steps,).
-        impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
-    """
-    frame, seam, next_seam = frames[0], frames[1], frames[2]
-    middle, acceleration, mean = rates[0], rates[1], rates[2]
-    for n in range(len(h)):
-        take_frame(pose[n], frame)
-        take_frame(windows.pose[n], seam)
-        take_frame(windows.pose[min(n + 1, len(h) - 1)], next_seam)
-        for j in range(len(middle)):
-            middle[j] = 0.5 * (before[n, j] + after[n, j])
-            acceleration[j] = (after[n, j] - before[n, j]) / h[n]
-            mean[j] = windows.mean[n, j]
-        impratio = take_rows(points, h[n], beta[kind[n]], ringing[kind[n]], rows)
-        for i in range(len(points.k)):
-            g, rate, curve, _ = gap(points, i, frame, middle, acceleration)
-            given = spring_energy(points, i, seam) - spring_energy(points, i, next_seam)
-            inertia = rows[i, 1]
-            drag, sprung = drag_of(points, i, rows[i, 0], inertia, beta[kind[n], i], h[n], rate, curve)
-            law = -(points.k[i] * g + drag + sprung)
-            if not released_on[i] if n == 0 else g >= 0:
-                dashpots[n, number[i]] += given
+    """Add up the work of dashpots and friction in the window of each step; `number` is the group of each contact."""
+    places, law = points.places, points.law
+    for n in range(len(record.h)):
+        take_step(record, windows, places.axes, n, room)
+        kind = kinds.kind[n]
+        step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
+        impratio = take_rows(points, step, room)
+        for i in range(len(law.k)):
+            closed = gap(places, i, room.frames, room.middle, room.acceleration)
+            given = spring_energy(places, law.k, i, room.seam) - spring_energy(places, law.k, i, room.next_seam)
+            inertia = room.inertia[i]
+            drag = drag_of(law.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
+            pressed = -(law.k[i] * closed.value + drag.dashpot + drag.sprung)
+            if not kinds.released_on[i] if n == 0 else closed.value >= 0:
+                work.dashpots[n, number[i]] += given
                 continue
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
-            opened = gap(points, i, frame, mean, mean)[1] * windows.width[n]
-            dashpots[n, number[i]] += drag * opened if law > 0 else given
-            if points.friction[i] > 0:
-                dragging, lift = sliding[n, i], 0.0
+            opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
+            work.dashpots[n, number[i]] += drag.dashpot * opened if pressed > 0 else given
+            if law.friction[i] > 0:
+                dragging, lift = record.friction[n, i], 0.0
                 if math.isnan(dragging):
-                    stopping = -impratio * inertia * along(points, i, frame, after[n])[2] / h[n]
-                    pressing, dragging = cone_force(law, stopping, impratio * inertia, inertia, points.friction[i])
-                    lift = pressing - max(law, 0.0)  # what a sliding cone presses on top of the law
-                    if points.rubs[i] and abs(stopping) > points.friction[i] * max(law, 0.0):
-                        impulses[0] += lift * h[n]
-                        impulses[1] += max(law, 0.0) * h[n]
-                slipped = along(points, i, frame, mean)[2] * windows.width[n]
-                friction[n] -= dragging * slipped + lift * opened
+                    slip = along(places, i, room.frames, record.after[n]).bodies
+                    stopping = -impratio * inertia * slip / step.h
+                    pressing, dragging = cone_force(pressed, stopping, impratio * inertia, inertia, law.friction[i])
+                    lift = pressing - max(pressed, 0.0)  # what a sliding cone presses on top of the law
+                    if points.rubs[i] and abs(stopping) > law.friction[i] * max(pressed, 0.0):
+                        work.impulses[0] += lift * step.h
+                        work.impulses[1] += max(pressed, 0.0) * step.h
+                slipped = along(places, i, room.frames, room.mean).bodies * windows.width[n]
+                work.friction[n] -= dragging * slipped + lift * opened

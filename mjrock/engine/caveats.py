@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import warnings
 
-from ..problem.contacts import Contacts
 from ..result.response import Response
+from ..scene.scene import Scene
 from .accounts import contact_work
 from .pace import SMOOTH
+from .points import points_of
+from .reading import AskedWall
 from .run import Run, sound_timestep
-from .scene import Scene
 from .steps import Steps
 
 SCATTER = 0.1
@@ -30,25 +31,25 @@ SLID = 0.01
 def warn_if_coarse(scene: Scene, h: float) -> None:
     """Warn of a fixed step h [s] with which |e| depends on the phase of the touch."""
     resolved = h * scene.highest_frequency
-    scatter = SCATTER * resolved if (scene.points.bears == 0).any() else 0.0
+    scatter = SCATTER * resolved if (scene.bears == 0).any() else 0.0
     if scatter > WORTH_SAYING and resolved <= SMOOTH:
         warnings.warn(
             f"with a fixed step of {h:.3g} s |e| scatters by {scatter:.0%} (standard deviation) with the phase of the "
             f"touch; below {WORTH_SAYING / SCATTER / scene.highest_frequency:.3g} s it is less than "
             f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter",
-            stacklevel=4,
+            stacklevel=3,
         )
     if resolved > SMOOTH:
         warnings.warn(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
             f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
-            stacklevel=4,
+            stacklevel=3,
         )
 
 
 def warn_if_lifted(scene: Scene, steps: Steps) -> None:
     """Warn of contacts that slide on the rows of a fixed step, which press them apart."""
-    if not scene.points.rubs.any():
+    if not points_of(scene).rubs.any():
         return
     lift = contact_work(scene, steps).lift
     if lift > LIFTED:
@@ -56,29 +57,29 @@ def warn_if_lifted(scene: Scene, steps: Steps) -> None:
             f"contacts that slide are pressed apart by {lift:.0%} of their normal force on top of it: the rows of a "
             "fixed step, which are those of the model text, do not slide as Coulomb has it. Pass coulomb=True, or take "
             "steps that fit the motion",
-            stacklevel=4,
+            stacklevel=3,
         )
 
 
-def warn_if_slid(run: Run, contacts: Contacts) -> None:
+def warn_if_slid(run: Run, asked: AskedWall) -> None:
     """Warn of a base that has slid although it should hold."""
-    half_base = run.case.block.half_base
-    if contacts.base.friction is None and run.slid > SLID * half_base:
+    half_base, slid = asked.case.block.half_base, run.reading.slid
+    if asked.contacts.base.friction is None and slid > SLID * half_base:
         warnings.warn(
-            f"the base slid by up to {run.slid:.3g} m, {run.slid / half_base:.1%} of b, although it should hold: no "
+            f"the base slid by up to {slid:.3g} m, {slid / half_base:.1%} of b, although it should hold: no "
             "edge was loaded enough to hold it. Give the base the friction that it has",
-            stacklevel=4,
+            stacklevel=3,
         )
 
 
-def warn_if_open(response: Response, run: Run, advice: str) -> None:
+def warn_if_open(response: Response, run: Run, asked: AskedWall, advice: str) -> None:
     """Warn of a ledger with energy that nothing has put in, with advice."""
     if response.ledger is None:
         return
-    standing = run.case.returns_from(response.theta)
+    standing = asked.case.returns_from(response.theta)
     unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
     if unpaid > OPEN:
         warnings.warn(
             f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}",
-            stacklevel=4,
+            stacklevel=3,
         )

@@ -135,47 +135,6 @@ def pair_values(k: float, dashpot: float, inertia: float, inverse_weight: float)
 
 
 @jitable
-def set_rows(
-    k: Array,
-    c: Array,
-    inverse_weight: Array,
-    held: Array,
-    growth: float,
-    timestep: float,
-    newmark_beta: Array,
-    ringing: Array,
-    overdamped: Array,
-    solref: Array,
-    solimp: Array,
-    solreffriction: Array,
-) -> float:
-    """Write the rows of all contacts for a step, and return the `impratio` of the model [-].
-
-    A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate
-    of 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its
-    inertia leaves: a load F creeps at F h / held, or F / (growth held) in a step longer than 1 / growth. MuJoCo has one
-    impratio for all contacts. It is the largest with which no friction row has more inertia than it should.
-
-    Args:
-        k, c, inverse_weight: spring [N/m], dashpot [N s/m] and W [1/kg] of each contact, shape (m,).
-        held: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
-        growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
-        timestep: step h [s].
-        newmark_beta, ringing, overdamped: as in `row`, shape (m,).
-        solref, solimp, solreffriction: what is written, shapes (m, 2), (m, 2 or more) and (m, 2).
-    """
-    impratio = np.inf
-    for i in range(len(k)):
-        dashpot, inertia = row(k[i], c[i], timestep, inverse_weight[i], newmark_beta[i], ringing[i], overdamped[i])
-        solref[i, 0], solref[i, 1], d = pair_values(k[i], dashpot, inertia, inverse_weight[i])
-        solimp[i, 0] = solimp[i, 1] = d
-        if held[i] > 0:
-            solreffriction[i, 0], solreffriction[i, 1] = -1e-30, -d / timestep
-            impratio = min(impratio, max(growth * timestep, 1.0) * held[i] / inertia)
-    return impratio if impratio < np.inf else 1.0
-
-
-@jitable
 def longest_step(k: float, inverse_weight: float) -> float:
     """The longest step at which MuJoCo represents a spring of stiffness k [s]: h^2 k takes 0.4 of the inertia it
     can."""

@@ -2,8 +2,8 @@
 
 A step that fits the motion is made in four moves: predict (which contacts will touch), change the step, let the engine
 step, judge (how long the next may be). The rules are in modules of their own: `pace` (how long), `touches` (when),
-`sticking` (where), `ground` (the force of the moving base). The loops call `mj_step` by its address and change
-timestep, rows, friction and velocities in the memory of the engine.
+`sticking` (where), `sliding` (friction), and `mjrock.scene.ground` (the force of the moving base). The loops call
+`mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
 """
 
 from __future__ import annotations
@@ -14,59 +14,59 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
+from ..geometry.frames import frames_of, take_frames
+from ..geometry.kinematics import stretch
 from ..problem.quantities import ON_ITS_FACE, Array, Flags
-from .contact import set_rows
-from .ground import Ground, push
-from .kinematics import Points, Ties, frame_of, stretch, take_frame
 from .memory import IMPRATIO, TIMESTEP, Memory
-from .pace import Pace, judged, resolves, while_loaded, while_taut
+from .pace import Pace, judged, step_of, while_loaded, while_taut
+from .points import Points, Reach
+from .problem import Problem, push
+from .rows import set_rows
 from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .steps import Record
-from .sticking import Joints, deepest, put_back, sticks
-from .touches import ABRUPT, FADED, Springs, closure_changed, follow, step_to_touch
+from .sticking import Joints, Moved, put_sticking_edges_back
+from .touches import ABRUPT, FADED, Openings, Springs, Touches, closure_changed, follow, step_to_touch
 
 
 class Progress(NamedTuple):
     """What one step hands to the next.
 
     Args:
-        acceleration: in the last step, shape (3 n,).
-        rate: its rate, from the last two steps, shape (3 n,).
-        velocity_now, acceleration_now: room for the values at the time of the pose, shape (3 n,).
-        frame, next_frame: frames of the pose before and after the step, shape (n, 4).
-        motion: gap of each contact, slack of each tie, and their rates, see `touches.follow`, shape (m + t, 4).
+        acceleration: in the last step, shape (n nv,).
+        rate: its rate, from the last two steps, shape (n nv,).
+        velocity_now, acceleration_now: room for the values at the time of the pose, shape (n nv,).
+        frames, next_frames: frames of the pose before and after the step.
+        openings: gap of each contact, slack of each tie, and their rates.
         closed: which contacts are closed and which ties are taut, shape (m + t,).
-        touch: room for the touches of a step, shape (m + t, 2).
+        touches: room for the touches of a step.
         springs: of the contacts and the ties.
+        joints: where sticking edges stuck.
+        sliding: which contacts slide.
     """
 
     acceleration: Array
     rate: Array
     velocity_now: Array
     acceleration_now: Array
-    frame: Array
-    next_frame: Array
-    motion: Array
+    frames: Array
+    next_frames: Array
+    openings: Openings
     closed: Flags
-    touch: Array
+    touches: Touches
     springs: Springs
+    joints: Joints
+    sliding: Sliding
 
     @classmethod
-    def of(cls, memory: Memory, springs: Springs) -> Progress:
+    def of(cls, memory: Memory, problem: Problem, joints: Joints, sliding: Sliding) -> Progress:
         """The state before the first step."""
-        n, touching = len(memory.pose), len(springs.k)
-        return cls(
-            acceleration=np.zeros(n),
-            rate=np.zeros(n),
-            velocity_now=np.zeros(n),
-            acceleration_now=np.zeros(n),
-            frame=frame_of(memory.pose),
-            next_frame=frame_of(memory.pose),
-            motion=np.zeros((touching, 4)),
-            closed=np.zeros(touching, dtype=np.bool_),
-            touch=np.zeros((touching, 2)),
-            springs=springs,
-        )
+        springs, freedom = Springs.of(problem.points.law, problem.ties), problem.points.places.freedom
+        frames = frames_of(memory.pose, freedom)
+        closed = np.zeros(len(springs.k), dtype=np.bool_)
+        acceleration, rate, velocity_now, acceleration_now = np.zeros((4, len(memory.velocity)))
+        rates = acceleration, rate, velocity_now, acceleration_now
+        touching = Openings.of(springs), closed, Touches.of(springs), springs
+        return cls(*rates, frames, frames.copy(), *touching, joints, sliding)
 
 
 class Clock(NamedTuple):
@@ -94,6 +94,11 @@ class Clock(NamedTuple):
     touches: int
     ended: bool
 
+    @classmethod
+    def started(cls, pace: Pace, energy: float) -> Clock:
+        """At the release, with the energy of the release [J]."""
+        return cls(0.0, pace.short, 0.0, max(2 * energy, pace.least_energy), 0, True, False, 0, False)
+
 
 @jitable
 def copied(values: Array, to: Array) -> None:
@@ -113,7 +118,7 @@ def kinetic(masses: Array, v: Array) -> float:
 
 @jitable
 def fallen(q: Array) -> bool:
-    """Whether a body lies on its face. A NaN counts."""
+    """Whether a body of the plane lies on its face. A NaN counts."""
     for j in range(2, len(q), 3):  # noqa: SIM110, numba knows no any()
         if not abs(q[j]) <= ON_ITS_FACE:
             return True
@@ -121,20 +126,35 @@ def fallen(q: Array) -> bool:
 
 
 @jitable
-def apart(points: Points, motion: Array) -> bool:
+def out_of_reach(reach: Reach, openings: Openings) -> bool:
     """Whether a contact has opened, or is overlapped, by more than a run follows."""
-    for i in range(len(points.k)):  # noqa: SIM110, numba knows no any()
-        if not -points.overlap <= motion[i, 0] <= points.reach:
+    for i in range(len(reach.bears)):  # noqa: SIM110, numba knows no any()
+        if not -reach.overlapped <= openings.value[i] <= reach.opened:
             return True
     return False
 
 
 @jitable
-def present(memory: Memory, state: Progress, last: float) -> None:
+def at_the_pose(memory: Memory, state: Progress, last: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
     for j in range(len(state.rate)):
         state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * last
         state.velocity_now[j] = memory.velocity[j] + 0.5 * last * state.acceleration_now[j]
+
+
+@jitable
+def acceleration_from_engine(memory: Memory, problem: Problem, state: Progress, t: float) -> None:
+    """Acceleration at the time of the pose, found by the engine, where a contact has just opened or closed."""
+    find_acceleration(memory, problem, state.sliding, state.frames, t)
+    copied(memory.acceleration, state.acceleration_now)
+    follow_now(problem, state)
+
+
+@jitable
+def follow_now(problem: Problem, state: Progress) -> None:
+    """Bring gaps and slack up to date."""
+    places, ties = problem.points.places, problem.ties
+    follow(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
 
 
 @jitable
@@ -148,28 +168,12 @@ def shift_velocity(memory: Memory, state: Progress, now: float, last: float) -> 
 @jitable
 def set_step(memory: Memory, points: Points, pace: Pace, now: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
-    kind = resolves(pace, now)
     memory.options[TIMESTEP] = now
-    memory.options[IMPRATIO] = set_rows(
-        points.k,
-        points.c,
-        points.weight,
-        points.held,
-        points.growth,
-        now,
-        pace.beta[kind],
-        pace.ringing[kind],
-        points.overdamped,
-        memory.solref,
-        memory.solimp,
-        memory.solreffriction,
-    )
+    memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, now), memory.rows)
 
 
 @jitable
-def release(
-    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, velocity: Array
-) -> None:
+def release(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, velocity: Array) -> None:
     """Set the velocity half the first step before the release, where the leapfrog keeps it.
 
     The ground is quiet before the release. The dashpots act on the velocity that is being set: this is a contraction,
@@ -177,8 +181,8 @@ def release(
     """
     h = memory.options[TIMESTEP]
     for _ in range(10):
-        find_acceleration(memory, points, ground, masses, sliding, frame, -h)
-        for j in range(len(masses)):
+        find_acceleration(memory, problem, sliding, frames, -h)
+        for j in range(len(velocity)):
             memory.velocity[j] = velocity[j] - 0.5 * h * memory.acceleration[j]
 
 
@@ -197,122 +201,91 @@ def change_of_acceleration(
 
 
 @jitable
-def hold(memory: Memory, points: Points, pace: Pace, joints: Joints, state: Progress, record: Record, n: int) -> None:
-    """Take the frame of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
-    h = record.h[n]
-    kind = resolves(pace, h)
-    take_frame(memory.pose, state.next_frame)
-    for j in range(len(joints.body)):
-        i = deepest(points, joints, j, state.next_frame)
-        if i >= 0 and not sticks(
-            points,
-            i,
-            state.frame,
-            record.before[n],
-            record.after[n],
-            h,
-            pace.beta[kind, i],
-            pace.ringing[kind, i],
-            memory.options[IMPRATIO],
-        ):
-            i = -1
-        put_back(points, joints, j, i, state.frame, record.pose[n], memory.pose, state.next_frame)
-    for body in range(len(state.frame)):
-        copied(state.next_frame[body], state.frame[body])
-
-
-@jitable
-def make_step(
-    memory: Memory,
-    points: Points,
-    ground: Ground,
-    masses: Array,
-    sliding: Sliding,
-    frame: Array,
-    record: Record,
-    n: int,
-    t: float,
-    h: float,
-) -> None:
-    """Let the engine make a step, and record it as step n."""
-    record.t[n], record.h[n] = t, h
+def make_step(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, record: Record, n: int) -> None:
+    """Let the engine make step n of the record, whose time and length are set."""
+    t = record.t[n]
     copied(memory.pose, record.pose[n])
     copied(memory.velocity, record.before[n])
-    if slide(memory, points, ground, masses, sliding, frame, t):
+    if slide(memory, problem, sliding, frames, t):
         memory.finish(memory.model, memory.data)
-        for i in range(len(points.k)):
+        for i in range(len(sliding.slides)):
             record.friction[n, i] = sliding.force[i] if sliding.slides[i] else math.nan
-        give_rows_back(memory, points, sliding)
+        give_rows_back(memory, sliding)
     else:
-        push(ground, masses, t, h, memory.applied)
+        push(memory, problem, t)
         memory.step(memory.model, memory.data)
         record.friction[n, :] = math.nan
     copied(memory.velocity, record.after[n])
 
 
+@jitable
+def settle_pose(memory: Memory, problem: Problem, pace: Pace, state: Progress, record: Record, n: int) -> None:
+    """Put sticking edges back after step n of the record, take the frames of the new pose, and let ties yield."""
+    moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
+    put_sticking_edges_back(problem.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
+    for body in range(len(state.frames)):
+        copied(state.next_frames[body], state.frames[body])
+    for i in range(len(problem.ties.k)):
+        stretch(problem.ties, i, state.frames, memory.velocity, problem.points.places.axes)
+
+
+@jitable
+def allowed_step(problem: Problem, pace: Pace, openings: Openings, h: float) -> float:
+    """The step that the pace allows, shortened for loaded contacts and taut ties."""
+    loaded = while_loaded(problem.points.reach, openings, h, pace.short)
+    return while_taut(pace, problem.ties, openings, loaded)
+
+
 @compiled
 def fitted_loop(
-    memory: Memory,
-    points: Points,
-    ties: Ties,
-    masses: Array,
-    ground: Ground,
-    pace: Pace,
-    joints: Joints,
-    sliding: Sliding,
-    state: Progress,
-    clock: Clock,
-    record: Record,
-    duration: float,
+    memory: Memory, problem: Problem, pace: Pace, state: Progress, clock: Clock, record: Record
 ) -> tuple[tuple[Any, ...], int]:
     """Steps that fit the motion until the record is full or the run is over.
 
     Returns the values of the clock, see `compiled`, and how many steps they were.
     """
     t, h, last, energy, calm, fresh, abrupt, touches, ended = clock
-    n = 0
+    points, openings, sliding, n = problem.points, state.openings, state.sliding, 0
     if last == 0:
         set_step(memory, points, pace, h)
-        find_acceleration(memory, points, ground, masses, sliding, state.frame, -h)
+        find_acceleration(memory, problem, sliding, state.frames, -h)
         copied(memory.acceleration, state.acceleration)
     while n < len(record.t) and not ended:
-        present(memory, state, last)
-        motion, v, a = state.motion, state.velocity_now, state.acceleration_now
-        follow(points, ties, state.frame, v, a, motion)
-        if closure_changed(motion, state.closed) and last > pace.short and not fresh:
-            find_acceleration(memory, points, ground, masses, sliding, state.frame, t)
-            copied(memory.acceleration, state.acceleration_now)
-            follow(points, ties, state.frame, v, a, motion)
+        at_the_pose(memory, state, last)
+        follow_now(problem, state)
+        if closure_changed(openings, state.closed) and last > pace.short and not fresh:
+            acceleration_from_engine(memory, problem, state, t)
             h, calm, fresh = pace.short, 0, True
 
         # predict
-        now = while_taut(pace, ties, motion, while_loaded(points, motion, h, pace.short))
+        now = allowed_step(problem, pace, openings, h)
         least = FADED * pace.accuracy * energy
-        to_touch = 0.0 if abrupt else step_to_touch(state.springs, motion, now, h, least, pace.short, state.touch)
+        to_touch = 0.0
+        if not abrupt:
+            to_touch = step_to_touch(state.springs, openings, now, h, least, pace.short, state.touches)
         if to_touch > 0:
             now = to_touch
 
         # step
         if last == 0:
             set_step(memory, points, pace, now)
-            release(memory, points, ground, masses, sliding, state.frame, v)
+            release(memory, problem, sliding, state.frames, state.velocity_now)
             copied(memory.acceleration, state.acceleration)
         elif now != last:
             shift_velocity(memory, state, now, last)
             set_step(memory, points, pace, now)
-        make_step(memory, points, ground, masses, sliding, state.frame, record, n, t, now)
-        ended = t >= duration or fallen(record.pose[n]) or apart(points, motion)
+        record.t[n], record.h[n] = t, now
+        make_step(memory, problem, sliding, state.frames, record, n)
+        ended = t >= problem.duration or fallen(record.pose[n]) or out_of_reach(points.reach, openings)
         turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, masses, state, last, now, fresh or turned) / energy
+        change = change_of_acceleration(memory, problem.masses, state, last, now, fresh or turned) / energy
         abrupt = change > ABRUPT**2
-        hold(memory, points, pace, joints, state, record, n)
-        for i in range(len(ties.k)):
-            stretch(ties, i, state.frame, memory.velocity)
+        settle_pose(memory, problem, pace, state, record, n)
 
         # judge
         t, last = t + now, now
         if to_touch > 0:
-            energy = max(kinetic(masses, memory.velocity), pace.least_energy)
+            energy = max(kinetic(problem.masses, memory.velocity), pace.least_energy)
             touches += 1
             h, calm, fresh = pace.short, 0, True
         else:
@@ -324,25 +297,18 @@ def fitted_loop(
 
 @compiled
 def fixed_loop(
-    memory: Memory,
-    points: Points,
-    masses: Array,
-    ground: Ground,
-    sliding: Sliding,
-    frame: Array,
-    record: Record,
-    first: int,
-    h: float,
-    last: int,
+    memory: Memory, problem: Problem, sliding: Sliding, frames: Array, record: Record, first: int, h: float
 ) -> tuple[bool, int]:
-    """Steps of one length from number `first` until the record is full, number `last`, or a body lies on its face.
+    """Steps of length h from number `first` until the record is full, the duration is over, or a body has fallen.
 
     Returns whether the run is over, and how many steps they were.
     """
+    last = max(1, round(problem.duration / h))
     for n in range(len(record.t)):
         if sliding.coulomb:
-            take_frame(memory.pose, frame)
-        make_step(memory, points, ground, masses, sliding, frame, record, n, h * (first + n), h)
+            take_frames(memory.pose, frames, problem.points.places.axes)
+        record.t[n], record.h[n] = h * (first + n), h
+        make_step(memory, problem, sliding, frames, record, n)
         if first + n >= last or fallen(record.pose[n]):
             return True, n + 1
     return False, len(record.t)

@@ -18,6 +18,7 @@ import mujoco
 import numpy as np
 
 from ..problem.quantities import Array, Integers
+from .rows import Rows
 
 TIMESTEP, IMPRATIO = 0, 1
 """Places of the two options in `Memory.options`."""
@@ -37,7 +38,7 @@ class Memory(NamedTuple):
         options: timestep [s] and impratio [-].
         pose, velocity, acceleration, applied: of all joints, shape (3 n,).
         guess: the acceleration that the engine starts its search from, shape (3 n,).
-        solref, solimp, solreffriction: of all pairs, shapes (m, 2), (m, 5) and (m, 2).
+        rows: of all pairs.
         dimension: of all pairs, 1 without friction and 3 with it, shape (m,).
     """
 
@@ -53,9 +54,7 @@ class Memory(NamedTuple):
     acceleration: Array
     guess: Array
     applied: Array
-    solref: Array
-    solimp: Array
-    solreffriction: Array
+    rows: Rows
     dimension: Integers
 
     @classmethod
@@ -79,9 +78,7 @@ class Memory(NamedTuple):
             data.qacc,
             data.qacc_warmstart,
             data.qfrc_applied,
-            model.pair_solref,
-            model.pair_solimp,
-            model.pair_solreffriction,
+            Rows(model.pair_solref, model.pair_solimp, model.pair_solreffriction),
             model.pair_dim,
         )
 

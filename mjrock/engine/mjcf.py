@@ -19,9 +19,10 @@ import numpy as np
 
 from .._version import __version__
 from ..problem.quantities import GRAVITY, Array
-from .contact import set_rows
-from .scene import Scene
-from .tables import GROUND
+from ..scene.arrays import GROUND
+from ..scene.scene import Scene
+from .points import points_of
+from .rows import Rows, Step, set_rows
 
 HEAD = """\
 <mujoco model="rocking wall">
@@ -64,8 +65,7 @@ def scene_mjcf(
     scene: Scene,
     timestep: float,
     newmark_beta: float = 0.25,
-    velocity: Array | None = None,
-    plastic: Array | None = None,
+    keyframe: Keyframe | None = None,
 ) -> str:
     """The model of a scene as MJCF text. The same arguments give the same bytes.
 
@@ -77,23 +77,20 @@ def scene_mjcf(
         scene: the scene.
         timestep: MuJoCo's step, on which the contact rows depend [s].
         newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.contact.row`.
-        velocity: velocities of the keyframe, half a step before the release, shape (n, 3). None stands for those of the
-            release itself.
-        plastic: state of the ties at the release, as MuJoCo keeps it, shape (2 t,). None stands for ties that have not
-            yielded.
+        keyframe: of the release. None stands for the scene at rest.
     """
     corners = np.concatenate([rest + outline for rest, outline in zip(scene.rest, scene.outlines, strict=True)])
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
-    rows = pair_rows(scene, timestep, newmark_beta)
-    pose, released = scene.started
+    fixed = pair_rows(scene, timestep, newmark_beta)
+    keyframe = Keyframe(scene.at_rest, np.zeros_like(scene.at_rest), np.empty(0)) if keyframe is None else keyframe
     head = HEAD.format(
         title=scene.title.replace("--", "- -"),
         version=__version__,
         h=repr(float(timestep)),
         timestep=_value(timestep),
         gravity=_value((0.0, 0.0, -GRAVITY)),
-        impratio=_value(rows.impratio),
+        impratio=_value(fixed.impratio),
         rows=' jacobian="sparse"' if len(scene.names) >= SPARSE_FROM else "",
         start="" if len(scene.names) > 1 else 'warmstart="disable" ',
         center=_value((middle[0], 0.0, middle[1])),
@@ -101,9 +98,9 @@ def scene_mjcf(
         meshes="".join(f"\n    {mesh}" for mesh in _meshes(scene)),
     )
     camera = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
-    key = {"qpos": pose.ravel(), "qvel": (released if velocity is None else velocity).ravel()}
-    if plastic is not None and len(plastic):
-        key["plastic"] = plastic
+    key = {"qpos": keyframe.pose.ravel(), "qvel": keyframe.velocity.ravel()}
+    if len(keyframe.plastic):
+        key["plastic"] = keyframe.plastic
     body = [
         "<worldbody>",
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
@@ -111,7 +108,7 @@ def scene_mjcf(
         *_world(scene),
         *(f"  {site}" for site in _sites(scene, GROUND)),
         "</worldbody>",
-        *_section("contact", _pairs(scene, rows)),
+        *_section("contact", _pairs(scene, fixed.rows)),
         *_section("tendon", _ties(scene)),
         *_section("actuator", _forces(scene)),
         *_section("custom", _records(scene, newmark_beta)),
@@ -120,22 +117,32 @@ def scene_mjcf(
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 
 
-class Rows(NamedTuple):
-    """The rows of all pairs at one step, as `set_rows` writes them, and the impratio of the model [-]."""
+class Keyframe(NamedTuple):
+    """What the keyframe `release` holds.
 
-    solref: Array
-    solimp: Array
-    solreffriction: Array
+    Args:
+        pose: of the bodies at the release, shape (n, 3).
+        velocity: half a step before the release, shape (n, 3).
+        plastic: state of the ties, as MuJoCo keeps it, shape (2 t,); empty where none can yield.
+    """
+
+    pose: Array
+    velocity: Array
+    plastic: Array
+
+
+class FixedRows(NamedTuple):
+    """The rows of all pairs at one step, and the impratio of the model [-]."""
+
+    rows: Rows
     impratio: float
 
 
-def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> Rows:
+def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> FixedRows:
     """The rows of a scene at a fixed step."""
-    p, m = scene.points, len(scene.k)
-    solref, solimp, hold = np.zeros((m, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (m, 1)), np.zeros((m, 2))
-    asked = timestep, np.full(m, newmark_beta), np.zeros(m), p.overdamped
-    impratio = set_rows(p.k, p.c, p.weight, p.held, p.growth, *asked, solref, solimp, hold)
-    return Rows(solref, solimp, hold, impratio)
+    points, m = points_of(scene), len(scene.k)
+    rows, step = Rows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
+    return FixedRows(rows, set_rows(points.law, points.inertia, step, rows))
 
 
 def _world(scene: Scene) -> Iterator[str]:

@@ -12,15 +12,13 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.quantities import Array, Flags, require_kind, require_within
+from ..problem.quantities import Flags
+from ..scene.course import Course
+from ..scene.scene import Scene
 from .contact import planar_weight
 from .memory import Memory
-from .mjcf import Rows, pair_rows, scene_mjcf
-from .scene import Scene
+from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
 from .steps import Record
-from .wall import wall_scene
 
 CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""
@@ -78,21 +76,21 @@ class Engine:
         require_room(model, data)
         return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv, model.npair))
 
-    def follow(self, timestep: float, rows: Rows) -> None:
+    def follow(self, timestep: float, fixed: FixedRows) -> None:
         """Set the step and the rows of all contacts."""
-        self.model.opt.timestep, self.model.opt.impratio = timestep, rows.impratio
-        self.memory.solref[:], self.memory.solimp[:] = rows.solref, rows.solimp
-        self.memory.solreffriction[:] = rows.solreffriction
+        self.model.opt.timestep, self.model.opt.impratio = timestep, fixed.impratio
+        for values, wanted in zip(self.memory.rows, fixed.rows, strict=True):
+            values[:] = wanted
 
-    def place(self, started: tuple[Array, Array]) -> None:
-        """Set pose and velocity, shape (n, 3) each.
+    def place(self, course: Course) -> None:
+        """Set pose and velocity of the start.
 
         Ties that the pose stretches too far have yielded: MuJoCo lets a tie yield at the end of a step, and the first
         step would have its whole elastic force.
         """
         model, data = self.model, self.data
         mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = (np.ravel(values) for values in started)
+        data.qpos[:], data.qvel[:] = course.pose.ravel(), course.velocity.ravel()
         if model.nplastic:
             mujoco.mj_fwdPosition(model, data)
             yields = np.flatnonzero(model.tendon_plasticadr >= 0)
@@ -109,15 +107,15 @@ class Engine:
         closed: Flags = (pairs[:, None] == met[None]).all(axis=2).any(axis=1)
         return closed
 
-    def release(self, started: tuple[Array, Array]) -> None:
-        """Set pose and velocity, shape (n, 3), the velocity half a step back, where the leapfrog keeps it.
+    def release(self, course: Course) -> None:
+        """Set pose and velocity of the start, the velocity half a step back, where the leapfrog keeps it.
 
         Before the release the ground is quiet. Contacts that slide have their rows.
         """
-        self.place(started)
+        self.place(course)
         for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
             mujoco.mj_forward(self.model, self.data)
-            self.data.qvel[:] = np.ravel(started[1]) - 0.5 * self.model.opt.timestep * self.data.qacc
+            self.data.qvel[:] = course.velocity.ravel() - 0.5 * self.model.opt.timestep * self.data.qacc
 
 
 def require_room(model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -163,39 +161,10 @@ def engine_of(scene: Scene) -> Iterator[Engine]:
         _idle.popitem(last=False)
 
 
-def released_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25) -> str:
+def released_mjcf(scene: Scene, course: Course, timestep: float, newmark_beta: float = 0.25) -> str:
     """The text of a scene whose keyframe has the velocity half a step before the release, as the engine finds it."""
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
-        engine.release(scene.started)
-        data = engine.data
-        return scene_mjcf(scene, timestep, newmark_beta, data.qvel.reshape(-1, 3), data.plastic)
-
-
-def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: float = 0.25) -> str:
-    """The model of `case` on `contacts` as MJCF text; the same arguments give the same bytes.
-
-    Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, contacts, timestep)`. Names:
-    bodies and geoms `wall`, `base`, `side`; contact points `base_0`, `base_1`, ... from the inner to the outer edge and
-    `side_0`, ... from the bottom to the top; joints `x`, `z`, `theta`; keyframe `release`; camera `front`. Without a
-    side stop there is no side geom and no side pair.
-
-    What slides in this text is pressed apart: a contact with the slip v adds mu (c / 2 + newmark_beta h k) |v| to its
-    normal force, as `simulate` at a fixed step does and warns of. Steps of the package that fit the motion, or
-    `simulate(..., coulomb=True)`, slide by Coulomb's law, and no text can say so.
-
-    Args:
-        case: the wall and its release.
-        contacts: the interfaces.
-        timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
-        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.contact`. Rows that MuJoCo
-            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.contact.row`.
-
-    Raises:
-        ValueError: if the contacts do not fit the case, or for a value outside its range.
-    """
-    require_kind("case", case, Case)
-    require_kind("contacts", contacts, Contacts)
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
-    return released_mjcf(wall_scene(case, contacts), timestep, newmark_beta)
+        engine.release(course)
+        keyframe = Keyframe(course.pose, engine.data.qvel.reshape(-1, 3), engine.data.plastic)
+        return scene_mjcf(scene, timestep, newmark_beta, keyframe)

@@ -21,10 +21,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
+from ..geometry.kinematics import Ties
 from ..problem.quantities import Array
+from ..scene.course import Course
+from ..scene.scene import Scene
 from .contact import longest_step
-from .kinematics import Points, Ties
-from .scene import Scene
+from .points import Reach, inverse_weights, points_of
+from .rows import Step
+from .touches import Openings
 
 SHORT = 24.0
 """(omega h)^2 of a short step over the accuracy, omega the highest contact frequency. Newmark's period error is
@@ -87,16 +91,15 @@ class Pace(NamedTuple):
     ringing: Array
 
     @classmethod
-    def of(cls, scene: Scene, accuracy: float) -> Pace:
-        """The limits for a scene."""
-        short = short_step(scene, accuracy)
-        longest = math.sqrt(LONG * accuracy) / scene.rocking_frequency
-        longest = min(longest, *(longest_step(k, W) for k, W in zip(scene.k, scene.weight, strict=True)))
-        longest = min(longest, STABLE / max(scene.tie_frequency, 1e-300))
-        longest = min([longest, *(motion.dt for motion in (scene.motion, scene.vertical) if motion is not None)])
-        longest = max(short, longest)
-        own = scene.c / (longest * scene.k) if len(scene.names) > 1 else 0.0
-        ringing = np.where(scene.points.bears > 0, np.maximum(RINGING_BORNE - own, 0.0), RINGING_OPEN)
+    def of(cls, scene: Scene, course: Course, accuracy: float) -> Pace:
+        """The limits for a scene and what happens to it."""
+        short, weight = short_step(scene, accuracy), points_of(scene).inertia.weight
+        rocking = math.sqrt(LONG * accuracy) / scene.rocking_frequency
+        represented = min(longest_step(k, W) for k, W in zip(scene.k, weight, strict=True))
+        stable = STABLE / max(scene.tie_frequency, 1e-300)
+        longest = max(short, min(rocking, represented, stable, *course.sampling))
+        damped = scene.c / (longest * scene.k) if scene.damped_joints else 0.0
+        ringing = np.where(scene.bears > 0, np.maximum(RINGING_BORNE - damped, 0.0), RINGING_OPEN)
         return cls(
             short,
             longest,
@@ -116,7 +119,7 @@ def short_step(scene: Scene, accuracy: float) -> float:
     `mjrock.engine.contact.row`. It stops what it meets, and how it does so no longer matters.
     """
     spring = min(MOST, math.sqrt(SHORT * accuracy)) / scene.highest_frequency
-    strongest = float(np.max(scene.c * scene.weight))
+    strongest = float(np.max(scene.c * inverse_weights(scene)))
     dashpot = math.sqrt(DASHPOT * accuracy) / (6 * strongest) if strongest else math.inf
     return min(spring, max(dashpot, spring / 8))
 
@@ -129,21 +132,28 @@ def resolves(pace: Pace, h: float) -> int:
 
 
 @jitable
-def while_loaded(points: Points, motion: Array, h: float, short: float) -> float:
+def step_of(pace: Pace, h: float) -> Step:
+    """The step of length h."""
+    kind = resolves(pace, h)
+    return Step(h, pace.beta[kind], pace.ringing[kind])
+
+
+@jitable
+def while_loaded(reach: Reach, openings: Openings, h: float, short: float) -> float:
     """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
 
     h^2/2 |g2| <= STAYS |g| for every loaded point, with g its gap and g2 what the velocities alone make of its second
-    rate, both from the `motion` of the contacts.
+    rate.
     """
-    for i in range(len(points.k)):
-        g, swept = motion[i, 0], motion[i, 3]
-        if -g > LOADED * points.bears[i] > 0 and 0.5 * h * h * abs(swept) > -STAYS * g:
+    for i in range(len(reach.bears)):
+        g, swept = openings.value[i], openings.swept[i]
+        if -g > LOADED * reach.bears[i] > 0 and 0.5 * h * h * abs(swept) > -STAYS * g:
             h = math.sqrt(-2 * STAYS * g / abs(swept))
     return max(h, short)
 
 
 @jitable
-def while_taut(pace: Pace, ties: Ties, motion: Array, h: float) -> float:
+def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
     """The step h [s], shortened to what a taut tie is integrated well in, but not below the short step.
 
     It also ends where a tie that can yield is longest. A tie yields up to its greatest length, which a long step would
@@ -152,12 +162,13 @@ def while_taut(pace: Pace, ties: Ties, motion: Array, h: float) -> float:
     Args:
         pace: the limits.
         ties: the ties.
-        motion: gap of the m contacts and slack of the t ties, with their rates, shape (m + t, 4).
+        openings: of the contacts and the ties.
         h: the step [s].
     """
-    first = len(motion) - len(ties.k)
+    first = len(openings.value) - len(ties.k)
     for i in range(len(ties.k)):
-        g, g1, g2 = motion[first + i, 0], motion[first + i, 1], motion[first + i, 2] + motion[first + i, 3]
+        j = first + i
+        g, g1, g2 = openings.value[j], openings.rate[j], openings.linear[j] + openings.swept[j]
         if g < 0:
             h = min(h, pace.taut)
         if ties.stretch[i] < math.inf and g < 0 and g1 < 0 and g1 + h * g2 > 0:

@@ -3,35 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from os import cpu_count
-from typing import overload
+from dataclasses import replace
+from typing import Any
 
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import (
-    ON_ITS_FACE,
-    require_flag,
-    require_kind,
-    require_size,
-    require_within,
-    shown,
-)
-from ..problem.uplift import Uplift
-from ..result.masonry import MasonryResponse
+from ..problem.quantities import require_flag, require_kind, require_size, require_within
 from ..result.response import Response, State
-from .attempts import fitted, fixed, require_coulomb, required_start, stride_of
+from ..scene.course import Course
+from ..scene.of_case import course_of, scene_of
+from ..scene.scene import Scene
 from .caveats import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
-from .masonry_run import simulate_masonry
 from .mjcf import pair_rows
-from .model import SimulationError
-from .run import Run, sound_timestep
-from .scene import Scene
-from .steps import Steps
-from .wall import wall_scene
+from .model import engine_of
+from .pace import short_step
+from .reading import Asked, AskedMasonry, AskedWall
+from .run import Run, explained, sound_timestep
+from .start import required_start
+from .stepping import fitted_steps, fixed_steps
+from .steps import StepError
 
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
@@ -49,36 +41,6 @@ def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> f
     return sound_timestep(contacts.highest_frequency(wall, side_stop=side_stop))
 
 
-@overload
-def simulate(
-    case: Case,
-    contacts: Contacts,
-    timestep: float | None = None,
-    *,
-    accuracy: float = 1e-3,
-    newmark_beta: float = 0.25,
-    coulomb: bool | None = None,
-    output_step: float | None = None,
-    ledger: bool = False,
-    start: State | None = None,
-) -> Response: ...
-
-
-@overload
-def simulate(
-    case: MasonryCase,
-    contacts: None = None,
-    timestep: float | None = None,
-    *,
-    accuracy: float = 1e-3,
-    newmark_beta: float = 0.25,
-    coulomb: bool | None = None,
-    output_step: float | None = None,
-    ledger: bool = False,
-    start: State | None = None,
-) -> MasonryResponse: ...
-
-
 def simulate(
     case: Case | MasonryCase,
     contacts: Contacts | None = None,
@@ -90,7 +52,7 @@ def simulate(
     output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
-) -> Response | MasonryResponse:
+) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, on compliant contacts in MuJoCo.
 
     Args:
@@ -116,153 +78,82 @@ def simulate(
     Warns:
         UserWarning: if a fixed step is too long to resolve the contacts.
     """
-    if isinstance(case, MasonryCase):
-        if contacts is not None:
-            raise TypeError(f"contacts = {shown(contacts)}: masonry has its joints; call simulate(case)")
-        return simulate_masonry(case, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, start)
-    _require_asked(case, contacts, output_step, ledger)
-    assert contacts is not None
+    begun = time.perf_counter()
+    scene = scene_of(case, contacts)
     require_within("accuracy", accuracy, 1e-8, 0.1)
-    start = None if start is None else _required_state(start, case)
-    if timestep is not None:
-        (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, coulomb, output_step, ledger, start)
-        if isinstance(answer, SimulationError):
-            raise answer
-        return answer
-    return _simulate_fitted(case, contacts, accuracy, newmark_beta, coulomb, output_step or 1e-3, ledger, start)
-
-
-def simulate_batch(
-    cases: Sequence[Case],
-    contacts: Contacts,
-    timestep: float,
-    *,
-    newmark_beta: float = 0.25,
-    coulomb: bool | None = None,
-    output_step: float | None = None,
-    ledger: bool = False,
-) -> list[Response | SimulationError]:
-    """Many cases of one wall on the same contacts at one fixed step, stepped by threads.
-
-    Each answer is what `simulate(case, contacts, timestep, ...)` returns or raises, to the last bit; a run that breaks
-    down leaves the others alone.
-
-    Args:
-        cases: the cases; they differ in release, duration and ground motion only.
-        contacts: the interfaces.
-        timestep: the step [s].
-        newmark_beta, coulomb, output_step, ledger: as in `simulate`.
-
-    Raises:
-        ValueError: if the walls or sides of the cases differ, or as `simulate` does.
-    """
-    if not isinstance(cases, Sequence):
-        raise TypeError(f"cases = {shown(cases)} is not a list of cases")
-    for i, case in enumerate(cases):
-        require_kind(f"cases[{i}]", case, Case)
-        _require_asked(case, contacts, output_step, ledger)
-    if not cases:
-        return []
-    first = cases[0]
-    for i, case in enumerate(cases):
-        if any(getattr(case, name) != getattr(first, name) for name in ("block", "side_stop", "effects")):
-            raise ValueError(f"cases[{i}] has another wall, sides or effects than cases[0]; a batch has one geometry")
-    return _simulate_fixed(cases, contacts, timestep, newmark_beta, coulomb, output_step, ledger, None)
-
-
-def _simulate_fitted(
-    case: Case,
-    contacts: Contacts,
-    accuracy: float,
-    newmark_beta: float,
-    coulomb: bool | None,
-    output_step: float,
-    want_ledger: bool,
-    start: State | None,
-) -> Response:
-    """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
-    require_coulomb(coulomb)
-    require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
-    started = time.perf_counter()
-    scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts)
-
-    def judge(steps: Steps) -> Run:
-        return Run(case, uplift, scene, steps, released=start is None)
-
-    run, settings = fitted(scene, scene.started if start is None else start, accuracy, coulomb, judge)
-    warn_if_slid(run, contacts)
-    response = run.response(output_step, 1, want_ledger, settings)
-    warn_if_open(response, run, f"lower accuracy = {accuracy:g}")
-    response.stats["wall_time"] = time.perf_counter() - started
+    require_flag("ledger", ledger)
+    if coulomb is not None:
+        require_flag("coulomb", coulomb)
+    if output_step is not None:
+        require_within("output_step", output_step, 1e-9, case.duration, "s")
+    course = course_of(case, scene)
+    if start is not None:
+        pose, velocity = required_start(start, case, len(scene.names))
+        course = replace(course, pose=pose, velocity=velocity, released=False)
+    asked: Asked = AskedMasonry(case) if isinstance(case, MasonryCase) else AskedWall(case, contacts)  # type: ignore[arg-type]
+    if timestep is None:
+        spacing = output_step or 1e-3
+        require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
+        run, settings = fitted(asked, scene, course, accuracy, coulomb=coulomb is not False)
+        response = run.response(spacing, 1, ledger, settings)
+        advice = f"lower accuracy = {accuracy:g}"
+    else:
+        require_within("timestep", timestep, 1e-9, 1.0, "s")
+        require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
+        warn_if_coarse(scene, timestep)
+        run, settings = fixed(asked, scene, course, timestep, newmark_beta, coulomb=coulomb is True)
+        stride = max(1, round(output_step / timestep)) if output_step else 1
+        response = run.response(None, stride, ledger, settings)
+        advice = "take a shorter timestep"
+        if coulomb is not True:
+            warn_if_lifted(scene, run.steps)
+    if isinstance(asked, AskedWall):
+        warn_if_slid(run, asked)
+        warn_if_open(response, run, asked, advice)
+    response.stats["wall_time"] = time.perf_counter() - begun
     return response
 
 
-def _simulate_fixed(
-    cases: Sequence[Case],
-    contacts: Contacts,
-    timestep: float,
-    newmark_beta: float,
-    coulomb: bool | None,
-    output_step: float | None,
-    want_ledger: bool,
-    start: State | None,
-) -> list[Response | SimulationError]:
-    """Runs of one geometry at one fixed step, or how each broke down."""
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
-    require_coulomb(coulomb)
-    longest = max(case.duration for case in cases)
-    require_size("the steps of this run", longest / timestep, "take a longer timestep, or steps that fit the motion")
-    scenes, uplift = [wall_scene(case, contacts) for case in cases], Uplift.of(cases[0], contacts)
-    warn_if_coarse(scenes[0], timestep)
-    rows = pair_rows(scenes[0], timestep, newmark_beta)
-    stride = stride_of(output_step, timestep)
+def fitted(asked: Asked, scene: Scene, course: Course, accuracy: float, *, coulomb: bool) -> tuple[Run, dict[str, Any]]:
+    """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
-    def one(case: Case, scene: Scene) -> Response | SimulationError:
-        started = time.perf_counter()
-
-        def judge(steps: Steps) -> Run:
-            return Run(case, uplift, scene, steps, released=start is None)
-
+    Raises:
+        SimulationError: if it breaks down with a hundredth of the accuracy too.
+    """
+    used = accuracy
+    while True:
+        h = short_step(scene, used)
         try:
-            begin = scene.started if start is None else start
-            run, settings = fixed(scene, begin, timestep, newmark_beta, rows, coulomb, judge)
-        except SimulationError as error:
-            return error
-        warn_if_slid(run, contacts)
-        if coulomb is not True:
-            warn_if_lifted(scene, run.steps)
-        response = run.response(None, stride, want_ledger, settings)
-        warn_if_open(response, run, "take a shorter timestep")
-        response.stats["wall_time"] = time.perf_counter() - started
-        return response
-
-    threads = min(len(cases), cpu_count() or 1)
-    if threads == 1:
-        return [one(case, scene) for case, scene in zip(cases, scenes, strict=True)]
-    with ThreadPoolExecutor(threads) as pool:
-        return list(pool.map(one, cases, scenes))
+            with engine_of(scene) as engine:
+                engine.place(course)
+                begun = time.perf_counter()
+                steps = fitted_steps(engine, scene, course, used, coulomb=coulomb)
+            took = time.perf_counter() - begun
+            run = Run.judged(asked, scene, course, steps)
+            return run, {"timestep": h, "accuracy": used, "newmark_beta": None, "stepping_time": took}
+        except StepError as error:
+            if used < 0.02 * accuracy:
+                raise explained(error, scene, h, used) from None
+            used /= 10
 
 
-def _require_asked(case: object, contacts: object, output_step: object, ledger: object) -> None:
-    """Raise TypeError or ValueError for arguments of a run that cannot be."""
-    if isinstance(case, Contacts) and isinstance(contacts, Case):
-        raise TypeError("case and contacts are swapped: simulate(case, contacts)")
-    require_kind("case", case, Case)
-    require_kind("contacts", contacts, Contacts)
-    require_flag("ledger", ledger)
-    assert isinstance(case, Case)
-    if output_step is not None:
-        require_within("output_step", output_step, 1e-9, case.duration, "s")
+def fixed(
+    asked: Asked, scene: Scene, course: Course, timestep: float, newmark_beta: float, *, coulomb: bool
+) -> tuple[Run, dict[str, Any]]:
+    """A run at one step, and what it took.
 
-
-def _required_state(start: object, case: Case) -> State:
-    """A start as pose and velocity of one wall, which does not lie beyond its face."""
-    pose, velocity = required_start(start, 1, case.effects)
-    require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
-    for name, value in zip(("x", "z", "rotation"), velocity[0].tolist(), strict=True):
-        require_within(f"start, rate of {name}", value, -1e3, 1e3, "m/s or rad/s")
-    for name, value in zip("xz", pose[0].tolist(), strict=False):
-        require_within(f"start, {name}", value, -1e3, 1e3, "m")
-    return pose, velocity
+    Raises:
+        SimulationError: if it breaks down.
+    """
+    try:
+        with engine_of(scene) as engine:
+            engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
+            engine.release(course)
+            begun = time.perf_counter()
+            steps = fixed_steps(engine, scene, course, timestep, newmark_beta, coulomb=coulomb)
+        took = time.perf_counter() - begun
+        run = Run.judged(asked, scene, course, steps)
+    except StepError as error:
+        raise explained(error, scene, timestep, None) from None
+    return run, {"timestep": timestep, "accuracy": None, "newmark_beta": newmark_beta, "stepping_time": took}

@@ -18,13 +18,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined, jitable
+from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
+from ..geometry.vectors import dot, scaled, tangent
 from ..problem.quantities import Array, Flags
 from .contact import inertia_of
-from .ground import Ground, push
-from .kinematics import Points
-from .levers import Levers, levers_of, opening, rub, slipping
 from .memory import IMPRATIO, TIMESTEP, Memory
+from .points import Points
+from .problem import Problem, push
 from .touches import ROUNDING
 
 SMOOTH, ROUGH = 1, 3
@@ -60,36 +61,45 @@ class Sliding(NamedTuple):
     @classmethod
     def of(cls, points: Points, *, coulomb: bool, neglected: float = 1e-3) -> Sliding:
         """None slides yet."""
-        m = len(points.k)
+        m = len(points.rubs)
         none = np.zeros((2, m), dtype=np.bool_)
         return cls(coulomb and bool(points.rubs.any()), neglected, none[0], none[1], np.zeros(m))
 
 
+@inlined
+def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> float:
+    """Slip of contact i where friction acts for velocities v [m/s], or the same of accelerations."""
+    return dot(tangent(meets.normal), over_face(places, i, meets, frames, v))
+
+
 @jitable
-def normal_force(memory: Memory, points: Points, i: int, levers: Levers) -> float:
+def normal_force(memory: Memory, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
-    d, W = memory.solimp[i, 0], points.weight[i]
-    sprung = memory.solref[i, 0] * levers.gap + memory.solref[i, 1] * opening(points, i, levers, memory.velocity)
-    return max(sprung / ((1 - d) * W) - inertia_of(d, W) * opening(points, i, levers, memory.acceleration), 0.0)
+    places, d, W = points.places, memory.rows.solimp[i, 0], points.inertia.weight[i]
+    rate = dot(meets.normal, over_face(places, i, meets, frames, memory.velocity))
+    closing = dot(meets.normal, over_face(places, i, meets, frames, memory.acceleration))
+    sprung = memory.rows.solref[i, 0] * meets.gap + memory.rows.solref[i, 1] * rate
+    return max(sprung / ((1 - d) * W) - inertia_of(d, W) * closing, 0.0)
 
 
 @jitable
-def find_sliding(memory: Memory, points: Points, sliding: Sliding, frame: Array) -> bool:
+def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array) -> bool:
     """Whether a contact slides; its friction is guessed from the acceleration of the last step, its row let go.
 
     A contact slides where its slip is more than its row could stop, and the row would press it apart.
     """
-    any_slides = False
-    for i in range(len(points.k)):
+    any_slides, places = False, points.places
+    for i in range(len(sliding.slides)):
         sliding.slides[i] = False
         if not points.rubs[i]:
             continue
-        mu, levers = points.friction[i], levers_of(points, i, frame)
-        if levers.gap > -ROUNDING:
+        meets = where_friction_acts(places, meeting(places, i, frames))
+        if meets.gap > -ROUNDING:
             continue
-        slip = slipping(points, i, levers, memory.velocity)
-        stopping = inertia_of(memory.solimp[i, 0], points.weight[i]) * abs(slip) / memory.options[TIMESTEP]
-        pressing = normal_force(memory, points, i, levers)
+        mu, slip = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
+        own = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
+        stopping = own * abs(slip) / memory.options[TIMESTEP]
+        pressing = normal_force(memory, points, i, meets, frames)
         beyond = memory.options[IMPRATIO] * stopping > SLIDES * mu * pressing
         if beyond and mu * stopping > sliding.neglected * pressing:
             sliding.slides[i] = any_slides = True
@@ -99,40 +109,41 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frame: Array)
 
 
 @jitable
-def apply_friction(
-    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, t: float
-) -> None:
+def apply_friction(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: float) -> None:
     """Write the force of the moving ground and the friction of what slides into the applied forces."""
+    places = problem.points.places
     memory.applied[:] = 0.0
-    push(ground, masses, t, memory.options[TIMESTEP], memory.applied)
-    for i in range(len(points.k)):
+    push(memory, problem, t)
+    for i in range(len(sliding.slides)):
         if sliding.slides[i]:
-            rub(points, i, levers_of(points, i, frame), sliding.force[i], memory.applied)
+            meets = where_friction_acts(places, meeting(places, i, frames))
+            push_apart(places, i, meets, frames, scaled(sliding.force[i], tangent(meets.normal)), memory.applied)
 
 
 @jitable
-def look(memory: Memory, points: Points, sliding: Sliding, frame: Array, n: int) -> tuple[bool, bool]:
+def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int) -> tuple[bool, bool]:
     """Bring the friction of what slides up to date with the accelerations that the engine has found in look n.
 
     A contact gets its row back where friction stops its slip within the step, or where no force is found: beyond some
     coefficient friction raises the normal force by more than that gives, and the contact jams. Returns whether another
     look is needed, and whether a row was given back.
     """
-    change, largest = 0.0, 0.0
-    for i in range(len(points.k)):
+    change, largest, places = 0.0, 0.0, points.places
+    for i in range(len(sliding.slides)):
         if sliding.slides[i]:
-            levers = levers_of(points, i, frame)
-            slip = slipping(points, i, levers, memory.velocity)
-            force = -math.copysign(points.friction[i] * normal_force(memory, points, i, levers), slip)
+            meets = where_friction_acts(places, meeting(places, i, frames))
+            slip = slipping(places, i, meets, frames, memory.velocity)
+            pressing = normal_force(memory, points, i, meets, frames)
+            force = -math.copysign(points.law.friction[i] * pressing, slip)
             change = max(change, abs(force - sliding.force[i]))
             largest = max(largest, abs(force), abs(sliding.force[i]))
             sliding.force[i] = force
     again, stopped = change > FOUND * largest, False
-    for i in range(len(points.k)):
+    for i in range(len(sliding.slides)):
         if sliding.slides[i] and (n >= PATIENT or not again):
-            levers = levers_of(points, i, frame)
-            slip = slipping(points, i, levers, memory.velocity)
-            later = slip + memory.options[TIMESTEP] * slipping(points, i, levers, memory.acceleration)
+            meets = where_friction_acts(places, meeting(places, i, frames))
+            slip = slipping(places, i, meets, frames, memory.velocity)
+            later = slip + memory.options[TIMESTEP] * slipping(places, i, meets, frames, memory.acceleration)
             if slip * later <= 0 or (again and n == LOOKS - 1):
                 memory.dimension[i] = ROUGH
                 sliding.slides[i] = False
@@ -141,27 +152,25 @@ def look(memory: Memory, points: Points, sliding: Sliding, frame: Array, n: int)
 
 
 @jitable
-def slide(
-    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, t: float
-) -> bool:
+def slide(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: float) -> bool:
     """Whether contacts slide; the applied forces then hold their friction, and the engine all but the accelerations."""
-    if not (sliding.coulomb and find_sliding(memory, points, sliding, frame)):
+    if not (sliding.coulomb and find_sliding(memory, problem.points, sliding, frames)):
         return False
     rows_changed = True
     for n in range(LOOKS):
-        apply_friction(memory, points, ground, masses, sliding, frame, t)
+        apply_friction(memory, problem, sliding, frames, t)
         if rows_changed:
             memory.forward(memory.model, memory.data)
         else:
             memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
         for j in range(len(memory.guess)):
             memory.guess[j] = memory.acceleration[j]
-        again, rows_changed = look(memory, points, sliding, frame, n)
+        again, rows_changed = look(memory, problem.points, sliding, frames, n)
         if not again:
             break
     if rows_changed:
         memory.forward(memory.model, memory.data)
-    apply_friction(memory, points, ground, masses, sliding, frame, t)
+    apply_friction(memory, problem, sliding, frames, t)
     return True
 
 
@@ -176,22 +185,20 @@ def sliding_changed(sliding: Sliding) -> bool:
 
 
 @jitable
-def give_rows_back(memory: Memory, points: Points, sliding: Sliding) -> None:
+def give_rows_back(memory: Memory, sliding: Sliding) -> None:
     """Give every contact that slid its row back, and clear the applied forces."""
     memory.applied[:] = 0.0
-    for i in range(len(points.k)):
+    for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             memory.dimension[i] = ROUGH
 
 
 @jitable
-def find_acceleration(
-    memory: Memory, points: Points, ground: Ground, masses: Array, sliding: Sliding, frame: Array, t: float
-) -> None:
+def find_acceleration(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: float) -> None:
     """Let the engine find the accelerations of a step, and make none."""
-    if slide(memory, points, ground, masses, sliding, frame, t):
+    if slide(memory, problem, sliding, frames, t):
         memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
-        give_rows_back(memory, points, sliding)
+        give_rows_back(memory, sliding)
     else:
-        push(ground, masses, t, memory.options[TIMESTEP], memory.applied)
+        push(memory, problem, t)
         memory.forward(memory.model, memory.data)

@@ -14,59 +14,58 @@ import mujoco
 import numpy as np
 from tqdm import tqdm
 
-from .ground import Ground
-from .kinematics import frame_of, stretch
+from ..geometry.frames import frames_of
+from ..geometry.kinematics import stretch
+from ..scene.course import Course
+from ..scene.scene import Scene
 from .loop import Clock, Progress, fitted_loop, fixed_loop, release
 from .model import Engine
 from .pace import SMOOTH, Pace
-from .scene import Scene
+from .problem import Problem
 from .sliding import Sliding
-from .steps import Record, StepError, Steps
+from .steps import Kinds, Record, StepError, Steps
 from .sticking import Joints
-from .touches import Springs
 
 
-def fitted_steps(engine: Engine, scene: Scene, accuracy: float, *, coulomb: bool = True) -> Steps:
-    """Steps that fit the motion, until the duration of the scene or until a body lies on its face.
+def fitted_steps(engine: Engine, scene: Scene, course: Course, accuracy: float, *, coulomb: bool = True) -> Steps:
+    """Steps that fit the motion, until the duration of the course or until a body lies on its face.
 
     Args:
         engine: of the scene, with pose and velocity of the start, see `Engine.place`.
-        scene: the scene.
+        scene, course: what stands, and what happens to it.
         accuracy: the relative tolerance that is aimed at [-].
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    pace, ground, joints = Pace.of(scene, accuracy), Ground.of(scene.motion, scene.vertical), Joints.of_scene(scene)
-    ties = scene.ties._replace(reach=np.array(scene.ties.reach))  # they yield in this run alone
-    for i in range(len(ties.k)):
-        stretch(ties, i, frame_of(engine.memory.pose), engine.memory.velocity)
-    sliding, released_on = Sliding.of(scene.points, coulomb=coulomb), engine.closed
-    state = Progress.of(engine.memory, Springs.of(scene.points, ties))
-    energy = max(2 * scene.release_energy, pace.least_energy)
-    clock = Clock(0.0, pace.short, 0.0, energy, 0, True, False, 0, False)
+    memory, problem, pace = engine.memory, Problem.of(scene, course), Pace.of(scene, course, accuracy)
+    places, released_on = problem.points.places, engine.closed
+    for i in range(len(problem.ties.k)):
+        stretch(problem.ties, i, frames_of(memory.pose, places.freedom), memory.velocity, places.axes)
+    sliding = Sliding.of(problem.points, coulomb=coulomb)
+    state = Progress.of(memory, problem, Joints.of_scene(scene), sliding)
+    clock = Clock.started(pace, course.energy(scene))
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal clock
-        values, n = fitted_loop(
-            *(engine.memory, scene.points, ties, scene.masses, ground, pace, joints, sliding),
-            *(state, clock, record, scene.duration),
-        )
+        values, n = fitted_loop(memory, problem, pace, state, clock, record)
         clock = Clock(*values)
         return n, clock.t, clock.ended
 
-    made = _recorded(engine, scene, advance)
-    kind = (made.h * pace.frequency >= SMOOTH).astype(np.int64)
-    return Steps(*made[:5], pace.beta, pace.ringing, kind, made.friction, released_on, clock.touches)
+    record = _recorded(engine, course.duration, advance)
+    kind = (record.h * pace.frequency >= SMOOTH).astype(np.int64)
+    return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches)
 
 
-def fixed_steps(engine: Engine, scene: Scene, timestep: float, newmark_beta: float, *, coulomb: bool = False) -> Steps:
-    """Steps of one length, until the duration of the scene or until a body lies on its face.
+def fixed_steps(
+    engine: Engine, scene: Scene, course: Course, timestep: float, newmark_beta: float, *, coulomb: bool = False
+) -> Steps:
+    """Steps of one length, until the duration of the course or until a body lies on its face.
 
     Args:
         engine: of the scene, at the release, with the step and the rows of that length.
-        scene: the scene.
+        scene, course: what stands, and what happens to it.
         timestep: length of the steps [s].
         newmark_beta: Newmark's beta of the rows [-].
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`; without it they have the
@@ -75,35 +74,32 @@ def fixed_steps(engine: Engine, scene: Scene, timestep: float, newmark_beta: flo
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    last, ground, done = max(1, round(scene.duration / timestep)), Ground.of(scene.motion, scene.vertical), 0
-
-    sliding = Sliding.of(scene.points, coulomb=coulomb)
-    memory, frame, released_on = engine.memory, frame_of(engine.memory.pose), engine.closed
+    memory, problem, done = engine.memory, Problem.of(scene, course), 0
+    sliding, released_on = Sliding.of(problem.points, coulomb=coulomb), engine.closed
+    frames = frames_of(memory.pose, problem.points.places.freedom)
     if sliding.coulomb:
-        velocity = memory.velocity + 0.5 * timestep * memory.acceleration
-        release(memory, scene.points, ground, scene.masses, sliding, frame, velocity)
+        release(memory, problem, sliding, frames, memory.velocity + 0.5 * timestep * memory.acceleration)
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal done
-        fixed = memory, scene.points, scene.masses, ground, sliding, frame, record, done, timestep, last
-        ended, n = fixed_loop(*fixed)
+        ended, n = fixed_loop(memory, problem, sliding, frames, record, done, timestep)
         done += n
         return n, done * timestep, ended
 
-    made = _recorded(engine, scene, advance)
-    beta, none = np.full((2, len(scene.k)), newmark_beta), np.zeros((2, len(scene.k)))
-    return Steps(*made[:5], beta, none, np.zeros(len(made.t), dtype=np.int64), made.friction, released_on)
+    record, contacts = _recorded(engine, course.duration, advance), len(scene.k)
+    kind = np.zeros(len(record.t), dtype=np.int64)
+    return Steps(record, Kinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on))
 
 
-def _recorded(engine: Engine, scene: Scene, advance: Callable[[Record], tuple[int, float, bool]]) -> Record:
+def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple[int, float, bool]]) -> Record:
     """The steps of a run, made a chunk at a time. `advance` fills a record: how many steps, the time, whether it
     ends."""
     chunks, t, ended = [], 0.0, False
-    with tqdm(total=scene.duration, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
+    with tqdm(total=duration, desc="MuJoCo", unit="s", delay=3, disable=None, leave=False) as bar:
         while not ended:
             n, t, ended = advance(engine.room)
             chunks.append(engine.room.first(n))
-            bar.update(min(t, scene.duration) - bar.n)
+            bar.update(min(t, duration) - bar.n)
             warned = [mujoco.mjtWarning(i).name for i in np.flatnonzero(engine.data.warning.number)]
             if warned or not (np.isfinite(engine.memory.pose).all() and np.isfinite(engine.memory.velocity).all()):
                 raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)

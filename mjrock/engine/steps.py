@@ -22,21 +22,15 @@ class StepError(RuntimeError):
         self.t = t
 
 
-@dataclass(frozen=True)
-class Steps:
-    """What the engine did: the poses at each step, and the velocities half a step before and after it.
+class Record(NamedTuple):
+    """Steps one after the other, or room for them.
 
     Args:
         t: times [s], shape (steps,).
         h: step lengths [s], shape (steps,).
-        pose: x, z, theta of each body [m, m, rad], shape (steps, 3 n).
-        before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (steps, 3 n).
-        beta: Newmark's beta of each contact [-], in the two kinds of steps, shape (2, m).
-        ringing: the extra dashpots of each contact in units of h k [-], shape (2, m).
-        kind: which of the two each step is, shape (steps,).
+        pose: of each body [m, m, rad], shape (steps, n nq).
+        before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (steps, n nv).
         friction: friction of each contact that slides by Coulomb's law, NaN for one that has its row [N], (steps, m).
-        released_on: which contacts the engine sees closed at the release, where gaps are zero to rounding, shape (m,).
-        touches: how many touches were met with a short step.
     """
 
     t: Array
@@ -44,17 +38,74 @@ class Steps:
     pose: Array
     before: Array
     after: Array
+    friction: Array
+
+    @classmethod
+    def of(cls, steps: int, coordinates: int, contacts: int) -> Record:
+        """Room for a number of steps."""
+        t, h = np.empty((2, steps))
+        pose, before, after = np.empty((3, steps, coordinates))
+        return cls(t, h, pose, before, after, np.empty((steps, contacts)))
+
+    def first(self, n: int) -> Record:
+        """A copy of the first n steps."""
+        return Record(*(values[:n].copy() for values in self))
+
+    @staticmethod
+    def joined(parts: list[Record]) -> Record:
+        """Records one after the other."""
+        return parts[0] if len(parts) == 1 else Record(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+class Kinds(NamedTuple):
+    """The rows of the steps, which are of two kinds: those that resolve the contacts, and those that do not.
+
+    Args:
+        beta: Newmark's beta of each contact [-] in the two kinds, shape (2, m).
+        ringing: the extra dashpots of each contact in units of h k [-], shape (2, m).
+        kind: which of the two each step is, shape (steps,).
+        released_on: which contacts the engine sees closed at the release, where gaps are zero to rounding, shape (m,).
+    """
+
     beta: Array
     ringing: Array
     kind: Integers
-    friction: Array
     released_on: Flags
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What the engine did.
+
+    Args:
+        record: the steps.
+        kinds: their rows.
+        touches: how many touches were met with a short step.
+    """
+
+    record: Record
+    kinds: Kinds
     touches: int = 0
+
+    @property
+    def t(self) -> Array:
+        """Times of the poses [s], shape (steps,)."""
+        return self.record.t
+
+    @property
+    def h(self) -> Array:
+        """Lengths of the steps [s], shape (steps,)."""
+        return self.record.h
+
+    @property
+    def pose(self) -> Array:
+        """Poses [m, m, rad], shape (steps, n nq)."""
+        return self.record.pose
 
     @cached_property
     def velocity(self) -> Array:
         """Velocities at the times of the poses, shape (steps, 3 n)."""
-        velocity: Array = 0.5 * (self.before + self.after)
+        velocity: Array = 0.5 * (self.record.before + self.record.after)
         return velocity
 
     def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, State]:
@@ -79,12 +130,13 @@ class Steps:
     @cached_property
     def windows(self) -> Windows:
         """The windows of the steps."""
-        t, pose, velocity = self.t - 0.5 * self.h, self.pose - 0.5 * self.h[:, None] * self.before, self.before.copy()
+        before, after = self.record.before, self.record.after
+        t, pose, velocity = self.t - 0.5 * self.h, self.pose - 0.5 * self.h[:, None] * before, before.copy()
         t[0], pose[0], velocity[0] = self.t[0], self.pose[0], self.velocity[0]
-        end = np.concatenate([velocity[1:], self.after[-1:]])
+        end = np.concatenate([velocity[1:], after[-1:]])
         width, mean = np.append(np.diff(t), self.h[-1]), 0.5 * (velocity + end)
         square = np.append(0.0, self.h[1:] ** 2)  # of the distance from pose to seam, four times
-        late = np.diff(square)[:, None] * ((self.after - self.before) / self.h[:, None])[:-1] / 8
+        late = np.diff(square)[:, None] * ((after - before) / self.h[:, None])[:-1] / 8
         placed = pose - np.concatenate([np.zeros_like(pose[:1]), np.cumsum(late, axis=0)])
         return Windows(t, width, pose, placed, velocity, mean)
 
@@ -112,30 +164,3 @@ class Windows(NamedTuple):
     placed: Array
     velocity: Array
     mean: Array
-
-
-class Record(NamedTuple):
-    """Room for steps: times and lengths, poses, the velocities before and after them, and friction; as in `Steps`."""
-
-    t: Array
-    h: Array
-    pose: Array
-    before: Array
-    after: Array
-    friction: Array
-
-    @classmethod
-    def of(cls, steps: int, coordinates: int, contacts: int) -> Record:
-        """Room for a number of steps."""
-        t, h = np.empty((2, steps))
-        pose, before, after = np.empty((3, steps, coordinates))
-        return cls(t, h, pose, before, after, np.empty((steps, contacts)))
-
-    def first(self, n: int) -> Record:
-        """A copy of the first n steps."""
-        return Record(*(values[:n].copy() for values in self))
-
-    @staticmethod
-    def joined(parts: list[Record]) -> Record:
-        """Records one after the other."""
-        return parts[0] if len(parts) == 1 else Record(*map(np.concatenate, zip(*parts, strict=True)))

@@ -1,13 +1,12 @@
-"""Sticking: a sticking edge stays where it stuck, although steps are long and friction is a dashpot.
+"""Sticking: after each step, the body on a sticking joint is shifted back by what the deepest point has drifted.
 
 Two things move an edge that friction holds. A friction row of MuJoCo stops the slip that a point has in the geometry at
 the start of a step. In a step h a wall that turns at omega about its toe moves the toe by a term that the row does not
 see, h^2 omega^2 / 2 times the horizontal distance of the toe from the centroid. And the row, which is a dashpot,
 creeps. In a fall this adds up to some micrometres, and in an impact it may be as much. On a stiff base this presses the
 wall against its side stop, and later rebounds meet the stop out of true. So each joint remembers where its deepest
-sticking point stuck. After a step, the body that stands on the joint is shifted back by what this point has drifted.
-It is not shifted where this would press a contact that bears nothing at rest, such as a side stop, because that would
-put energy into its spring.
+sticking point stuck. The body that stands on the joint is not shifted where this would press a contact that bears
+nothing at rest, such as a side stop, because that would put energy into its spring.
 
 Friction acts halfway between the faces that overlap at the point, not at the point itself. Where that place does not
 slip, the point still moves along its face as the body turns, by half the penetration times the rotation. The place that
@@ -21,10 +20,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
+from ..geometry.frames import take_frames
+from ..geometry.kinematics import Places, along, depth, gap, meeting
+from ..geometry.vectors import scaled, tangent
 from ..problem.quantities import Array, Integers
-from .contact import row
-from .kinematics import Points, along, depth, direction, gap
-from .scene import Scene
+from ..scene.scene import Scene
+from .pace import Pace, step_of
+from .points import Points, Reach
+from .rows import Step, row_of
+from .steps import Record
 
 
 class Joints(NamedTuple):
@@ -45,7 +49,7 @@ class Joints(NamedTuple):
     @classmethod
     def of_scene(cls, scene: Scene) -> Joints:
         """The joints of a scene in which every body stands on one other body or on the ground; else none."""
-        rough = (scene.friction > 0) & (scene.points.bears > 0)
+        rough = (scene.friction > 0) & (scene.bears > 0)
         below = {
             int(body): set(scene.face_body[rough & (scene.point_body == body)]) for body in scene.point_body[rough]
         }
@@ -67,91 +71,97 @@ def _height(body: int, below: dict[int, set[int]]) -> int:
     return count
 
 
+class Moved(NamedTuple):
+    """Poses and frames before and after a step, of which those after it may still be changed."""
+
+    from_pose: Array
+    from_frames: Array
+    pose: Array
+    frames: Array
+
+
 @jitable
-def sticks(
-    points: Points,
-    i: int,
-    frame: Array,
-    before: Array,
-    after: Array,
-    h: float,
-    beta: float,
-    ringing: float,
-    impratio: float,
-) -> bool:
+def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, step: Step, impratio: float) -> bool:
     """Whether point i was pressed and did not slide in the step from `before` to `after`, the velocities around it.
 
     The friction row stops the slip with the force that this takes, as long as the force is within the cone.
     """
-    g, rate, _, _ = gap(points, i, frame, before, before)
-    if g >= 0:
+    places, law = points.places, points.law
+    start = gap(places, i, frames, before, before)
+    if start.value >= 0:
         return False
-    dashpot, inertia = row(points.k[i], points.c[i], h, points.weight[i], beta, ringing, points.overdamped[i])
-    acceleration = (gap(points, i, frame, after, after)[1] - rate) / h
-    pressing = -(points.k[i] * g + dashpot * rate + inertia * acceleration)
-    dragging = impratio * inertia * along(points, i, frame, after)[2] / h
-    return pressing > 0 and abs(dragging) <= points.friction[i] * pressing
+    dashpot, inertia = row_of(law, points.inertia, i, step)
+    acceleration = (gap(places, i, frames, after, after).rate - start.rate) / step.h
+    pressing = -(law.k[i] * start.value + dashpot * start.rate + inertia * acceleration)
+    dragging = impratio * inertia * along(places, i, frames, after).bodies / step.h
+    return pressing > 0 and abs(dragging) <= law.friction[i] * pressing
 
 
 @jitable
-def deepest(points: Points, joints: Joints, j: int, frame: Array) -> int:
+def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
     """The deepest point of a joint, -1 where none is closed."""
-    found, most = -1, 0.0
-    for i in range(len(points.k)):
-        if joints.of[i] == j and depth(points, i, frame) > most:
-            found, most = i, depth(points, i, frame)
-    return found
+    point, most = -1, 0.0
+    for i in range(len(places.body)):
+        if joints.of[i] == j and depth(places, i, frames) > most:
+            point, most = i, depth(places, i, frames)
+    return point
 
 
 @jitable
-def presses(points: Points, body: int, frame: Array) -> bool:
+def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
     """Whether a contact of a body is closed that bears nothing while the scene is at rest."""
-    for i in range(len(points.k)):
-        own = points.body[i] == body or points.face_body[i] == body
-        if own and points.bears[i] == 0 and depth(points, i, frame) > 0:
+    for i in range(len(places.body)):
+        of_body = places.body[i] == body or places.face_body[i] == body
+        if of_body and reach.bears[i] == 0 and depth(places, i, frames) > 0:
             return True
     return False
 
 
 @jitable
-def rolled(points: Points, i: int, before: Array, frame: Array, from_: Array, q: Array) -> float:
-    """How far point i moves along its face in a step without slip, as the bodies turn [m].
-
-    Args:
-        points: the contacts.
-        i: the point.
-        before, frame: frames before and after the step.
-        from_, q: poses before and after it.
-    """
-    turned, face = q[3 * points.body[i] + 2] - from_[3 * points.body[i] + 2], points.face_body[i]
+def rolled(places: Places, i: int, moved: Moved) -> float:
+    """How far point i moves along its face in a step without slip, as the bodies turn [m]."""
+    body, face = places.body[i], places.face_body[i]
+    turned = moved.pose[3 * body + 2] - moved.from_pose[3 * body + 2]
     if face >= 0:
-        turned -= q[3 * face + 2] - from_[3 * face + 2]
-    return -0.25 * turned * (depth(points, i, before) + depth(points, i, frame))
+        turned -= moved.pose[3 * face + 2] - moved.from_pose[3 * face + 2]
+    return -0.25 * turned * (depth(places, i, moved.from_frames) + depth(places, i, moved.frames))
 
 
 @jitable
-def put_back(
-    points: Points, joints: Joints, j: int, i: int, before: Array, from_: Array, q: Array, frame: Array
-) -> None:
+def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> None:
     """Shift the body on joint j so that point i, the deepest of the joint and sticking, is where it stuck.
 
     Args:
         points: the contacts.
         joints: the joints, whose state is brought up to date.
         j, i: the joint and the point, -1 where the deepest point does not stick.
-        before, from_: frame and pose before the step.
-        q, frame: the pose after the step and its frame, which are changed.
+        moved: the step, whose pose and frames after it are changed.
     """
+    places, q, frames = points.places, moved.pose, moved.frames
     if i < 0 or joints.stuck[j] != i:
         joints.stuck[j] = i
         if i >= 0:
-            joints.anchor[j] = along(points, i, frame, q)[0]
+            joints.anchor[j] = along(places, i, frames, q).place
         return
-    joints.anchor[j] += rolled(points, i, before, frame, from_, q)
-    drift, body = along(points, i, frame, q)[0] - joints.anchor[j], joints.body[j]
-    nx, nz = direction(points, i, frame)
-    frame[body, 0], frame[body, 1] = q[3 * body] - drift * nz, q[3 * body + 1] + drift * nx
-    if presses(points, body, frame):
-        frame[body, 0], frame[body, 1] = q[3 * body], q[3 * body + 1]
+    joints.anchor[j] += rolled(places, i, moved)
+    drift, body = along(places, i, frames, q).place - joints.anchor[j], joints.body[j]
+    back = scaled(-drift, tangent(meeting(places, i, frames).normal))
+    frames[body, 0], frames[body, 1] = q[3 * body] + back[0], q[3 * body + 1] + back[1]
+    if presses(places, points.reach, body, frames):
+        frames[body, 0], frames[body, 1] = q[3 * body], q[3 * body + 1]
     else:
-        q[3 * body], q[3 * body + 1] = frame[body, 0], frame[body, 1]
+        q[3 * body], q[3 * body + 1] = frames[body, 0], frames[body, 1]
+
+
+@jitable
+def put_sticking_edges_back(
+    points: Points, pace: Pace, joints: Joints, record: Record, n: int, moved: Moved, impratio: float
+) -> None:
+    """Take the frames of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
+    step = step_of(pace, record.h[n])
+    take_frames(moved.pose, moved.frames, points.places.axes)
+    for j in range(len(joints.body)):
+        i = deepest(points.places, joints, j, moved.frames)
+        if i >= 0 and not sticks(points, i, moved.from_frames, record.before[n], record.after[n], step, impratio):
+            i = -1
+        put_back(points, joints, j, i, moved)

@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
+from ..geometry.kinematics import Places, Ties, opening
 from ..problem.quantities import Array, Flags
-from .kinematics import Points, Ties, gap, slack
+from .rows import Law
 
 FADED = 0.01
 """A touch is met with a short step where ignoring it would misplace more than this share of accuracy x energy [-]."""
@@ -32,39 +33,60 @@ class Springs(NamedTuple):
     c: Array
 
     @classmethod
-    def of(cls, points: Points, ties: Ties) -> Springs:
+    def of(cls, law: Law, ties: Ties) -> Springs:
         """Those of a scene."""
-        return cls(np.append(points.k, ties.k), np.append(points.c, np.zeros_like(ties.k)))
+        return cls(np.append(law.k, ties.k), np.append(law.c, np.zeros_like(ties.k)))
+
+
+class Openings(NamedTuple):
+    """Gaps of the contacts and after them slack of the ties, and how they change, shape (m + t,) each; as in `Gap`."""
+
+    value: Array
+    rate: Array
+    linear: Array
+    swept: Array
+
+    @classmethod
+    def of(cls, springs: Springs) -> Openings:
+        """Room for the openings of some springs."""
+        return cls(*np.zeros((4, len(springs.k))))
+
+
+class Touches(NamedTuple):
+    """Touches of a step: time until each [s], infinite where there is none, and closing speed [m/s], (m + t,) each."""
+
+    time: Array
+    speed: Array
+
+    @classmethod
+    def of(cls, springs: Springs) -> Touches:
+        """Room for the touches of some springs."""
+        return cls(*np.zeros((2, len(springs.k))))
 
 
 @jitable
-def follow(points: Points, ties: Ties, frame: Array, v: Array, a: Array, motion: Array) -> None:
-    """Write the gap of every contact and the slack of every tie with their rates, shape (m + t, 4).
-
-    See `kinematics.gap`. A tie that goes taut is a touch like any other.
-    """
-    m = len(points.k)
-    for i in range(m):
-        motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3] = gap(points, i, frame, v, a)
-    for i in range(len(ties.k)):
-        j = m + i
-        motion[j, 0], motion[j, 1], motion[j, 2], motion[j, 3] = slack(ties, i, frame, v, a)
+def follow(places: Places, ties: Ties, frames: Array, v: Array, a: Array, openings: Openings) -> None:
+    """Write how the gap of every contact and the slack of every tie change. A tie that goes taut is a touch too."""
+    for i in range(len(openings.value)):
+        now = opening(places, ties, i, frames, v, a)
+        openings.value[i], openings.rate[i] = now.value, now.rate
+        openings.linear[i], openings.swept[i] = now.linear, now.swept
 
 
 @jitable
-def closure_changed(motion: Array, closed: Flags) -> bool:
+def closure_changed(openings: Openings, closed: Flags) -> bool:
     """Whether a contact or a tie has opened or closed since `closed` was brought up to date, which is done here."""
     changed = False
-    for i in range(len(motion)):
-        now = motion[i, 0] < 0
-        if now != closed[i] and abs(motion[i, 0]) > ROUNDING:
+    for i in range(len(closed)):
+        now = openings.value[i] < 0
+        if now != closed[i] and abs(openings.value[i]) > ROUNDING:
             closed[i] = now
             changed = True
     return changed
 
 
 @jitable
-def predict(springs: Springs, motion: Array, now: float, h: float, least: float, touch: Array) -> float:
+def predict(springs: Springs, openings: Openings, now: float, h: float, least: float, touches: Touches) -> float:
     """Find the touches of a step that matter, and return the time until the first one [s], or infinity.
 
     A touch that is ignored is noticed up to a step h too late. It then misplaces k (v h)^2 / 4 in the spring and
@@ -72,39 +94,39 @@ def predict(springs: Springs, motion: Array, now: float, h: float, least: float,
 
     Args:
         springs: of the contacts and the ties.
-        motion: their motion now.
+        openings: how they open and close now.
         now: the step within which touches count [s].
         h: the step up to which a touch that is ignored would be noticed too late [s].
         least: energy that may be misplaced [J].
-        touch: where the time until the touch [s] and the closing speed [m/s] of each contact are written, shape
-            (m + t, 2). The time is infinite where a contact is closed, does not touch, or touches too faintly.
+        touches: what is written. The time is infinite where a contact is closed, does not touch, or touches too
+            faintly.
     """
     first = math.inf
     for i in range(len(springs.k)):
-        touch[i, 0] = math.inf
-        g, g1, g2 = motion[i, 0], motion[i, 1], motion[i, 2] + motion[i, 3]
+        touches.time[i] = math.inf
+        g, g1, g2 = openings.value[i], openings.rate[i], openings.linear[i] + openings.swept[i]
         if g < 0 or g + now * (g1 + 0.5 * now * g2) > 0:
             continue
         closing = math.sqrt(max(0.0, g1 * g1 - 2 * g * g2))
         if (0.25 * springs.k[i] * h + springs.c[i]) * h * closing**2 > least:
-            touch[i, 0], touch[i, 1] = 2 * g / (closing - g1), closing
-            first = min(first, touch[i, 0])
+            touches.time[i], touches.speed[i] = 2 * g / (closing - g1), closing
+            first = min(first, touches.time[i])
     return first
 
 
 @jitable
-def hardest(touch: Array, latest: float) -> float:
+def hardest(touches: Touches, latest: float) -> float:
     """Of the touches up to a time, the time of the one with the highest closing speed [s]."""
     when, fastest = 0.0, -1.0
-    for i in range(len(touch)):
-        if touch[i, 0] <= latest and touch[i, 1] > fastest:
-            when, fastest = touch[i, 0], touch[i, 1]
+    for i in range(len(touches.time)):
+        if touches.time[i] <= latest and touches.speed[i] > fastest:
+            when, fastest = touches.time[i], touches.speed[i]
     return when
 
 
 @jitable
 def step_to_touch(
-    springs: Springs, motion: Array, now: float, h: float, least: float, short: float, touch: Array
+    springs: Springs, openings: Openings, now: float, h: float, least: float, short: float, touches: Touches
 ) -> float:
     """Length of a step that ends half a short step after the touch that falls within it, or zero if none does [s].
 
@@ -112,14 +134,14 @@ def step_to_touch(
 
     Args:
         springs: of the contacts and the ties.
-        motion: their motion now.
+        openings: how they open and close now.
         now: the step that is about to be made [s].
         h: the length of step that the pace allows [s].
         least: energy that may be misplaced [J].
         short: the short step [s].
-        touch: room for the touches, shape (m + t, 2).
+        touches: room for the touches.
     """
-    first = predict(springs, motion, now, h, least, touch)
+    first = predict(springs, openings, now, h, least, touches)
     if first == math.inf:
         return 0.0
-    return hardest(touch, first + 0.5 * short) + 0.5 * short
+    return hardest(touches, first + 0.5 * short) + 0.5 * short

@@ -16,7 +16,6 @@ from tqdm import tqdm
 from ..files import replacing
 from ..problem.case import Case
 from ..problem.quantities import Array, require_kind, require_within
-from ..result.masonry import MasonryResponse
 from ..result.response import Response
 from .bodies import Bodies
 from .histories import acceleration, rotation
@@ -35,7 +34,7 @@ JUST = 1 - 1e-9
 
 
 def animate(
-    response: Response | MasonryResponse,
+    response: Response,
     path: str | Path,
     *,
     speed: float = 1.0,

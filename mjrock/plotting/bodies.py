@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from ..problem.case import Case
 from ..problem.quantities import Array, require_array, require_kind, require_within
-from ..result.masonry import MasonryResponse
 from ..result.response import Response
 
 
@@ -56,9 +55,9 @@ class Bodies:
         object.__setattr__(self, "poses", require_array("poses", self.poses, (len(times), count, 3)))
 
     @classmethod
-    def of(cls, response: Response | MasonryResponse, magnify: float = 1.0) -> Bodies:
+    def of(cls, response: Response, magnify: float = 1.0) -> Bodies:
         """The bodies of a response: the wall, or the blocks of masonry that are not fixed."""
-        require_kind("response", response, Response, MasonryResponse)
+        require_kind("response", response, Response)
         case: Any = response.case
         if isinstance(case, Case):
             wall = case.wall

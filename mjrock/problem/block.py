@@ -239,12 +239,18 @@ class Block:
         """
         return pose_of(theta, self.centroid_offset, self.centroid_height, self.half_base)
 
-    def turning(self, theta: float, direction: float) -> Array:
+    def turning(self, theta: Real, direction: Real) -> Array:
         """Rate of `pose` per unit of angular velocity, the wall turning about the toe in `direction`, +1 or -1;
-        (3,)."""
+        (..., 3)."""
         toe, z = direction * self.half_base - self.centroid_offset, self.centroid_height
-        sine, cosine = math.sin(theta), math.cos(theta)
-        return np.array([z * cosine + toe * sine, toe * cosine - z * sine, 1.0])
+        sine, cosine = np.sin(theta), np.cos(theta)
+        return np.stack([z * cosine + toe * sine, toe * cosine - z * sine, np.ones_like(sine)], axis=-1)
+
+    def motion(self, theta: Array, omega: Array) -> tuple[Array, Array]:
+        """Pose and velocity of the rigid wall that rocks, shape (n, 1, 3) each; see `pose` and `turning`."""
+        outwards = np.where(theta == 0, omega, theta) >= 0
+        velocity = omega[:, None] * self.turning(theta, np.where(outwards, 1.0, -1.0))
+        return self.pose(theta)[:, None], velocity[:, None]
 
     @property
     def outline(self) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .effects import KINDS, Effect, Load, Tie
+from .effects import KINDS, Effect, Load
 from .masonry import Masonry
 from .motion import GroundMotion
 from .quantities import Array, require_array, require_kind, require_whole, require_within, shown
@@ -78,13 +78,6 @@ class MasonryCase:
             if isinstance(one, Load):
                 middle = float(block.centroid[0])
                 require_within(f"{name}, offset", one.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
-
-    def place(self, effect: Effect) -> tuple[float, float]:
-        """Where an effect acts, from the origin of the world [m]."""
-        block = self.masonry.blocks[effect.block]
-        if isinstance(effect, Tie):
-            return block.left_at(effect.height), effect.height
-        return float(block.centroid[0]) + getattr(effect, "offset", 0.0), effect.height
 
     def __eq__(self, other: object) -> bool:
         return (

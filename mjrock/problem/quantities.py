@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from numbers import Real as RealNumber
 from typing import Any, TypeVar
 
@@ -113,3 +114,13 @@ def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     if not np.isfinite(made).all():
         raise ValueError(f"{name} holds a value that is not finite")
     return made
+
+
+NAMED = 5
+"""Most things that a message names."""
+
+
+def named(names: Sequence[str]) -> str:
+    """Names in a message, not too many."""
+    rest = len(names) - NAMED
+    return ", ".join(names[:NAMED]) + (f" and {rest} more" if rest > 0 else "")

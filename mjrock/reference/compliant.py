@@ -21,6 +21,7 @@ from ..problem.quantities import ON_ITS_FACE, Array, require_kind, require_size,
 from ..problem.uplift import Uplift
 from ..result.history import rocking_history
 from ..result.response import Response, ending
+from ..result.rocking import Rocking
 from .equations import Wall
 
 CAUGHT = 1e-3
@@ -69,11 +70,10 @@ def solve_compliant(
         case=case,
         solver="compliant",
         t=sampled[::stride],
-        theta=theta[::stride],
-        omega=omega[::stride],
-        compliant=(energy[::stride], history[::stride, None, :3]),
-        impacts=impacts,
-        peaks=peaks,
+        pose=history[::stride, None, :3],
+        velocity=history[::stride, None, 3:],
+        energy=energy[::stride],
+        rocking=Rocking(impacts, peaks),
         outcome=outcome,
         message=message,
         stats={

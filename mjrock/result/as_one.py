@@ -6,13 +6,13 @@ import numpy as np
 
 from ..problem.pile import Pile
 from ..problem.quantities import Array
-from .masonry import MasonryResponse
+from .response import Response
 
 LEAST = 0.01
 """Smallest rotation that counts as a rebound, over the largest [-]."""
 
 
-def restitutions(answer: MasonryResponse, pile: Pile) -> Array:
+def restitutions(answer: Response, pile: Pile) -> Array:
     """|e| of each rebound of a stack: the root of the energy at a peak over that at the peak before, shape (rebounds,).
 
     It is the whole energy above the stack at rest, as in `Response.settled_restitution`.
@@ -22,7 +22,7 @@ def restitutions(answer: MasonryResponse, pile: Pile) -> Array:
     return found
 
 
-def peaks(answer: MasonryResponse, pile: Pile) -> list[int]:
+def peaks(answer: Response, pile: Pile) -> list[int]:
     """The samples at which the rotation of a stack, the mean over its mass, has a maximum to either side."""
     theta = answer.theta @ pile.masses / pile.masses.sum()
     beyond = np.sign(theta) * (np.abs(theta) > LEAST * np.abs(theta).max())

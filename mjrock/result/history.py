@@ -1,59 +1,14 @@
-"""Peaks and impacts of a sampled rocking motion, and the restitution between them."""
+"""Peaks and impacts of a sampled rocking motion."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from ..problem.case import Case
 from ..problem.quantities import Array
-
-
-class Impact(NamedTuple):
-    """One rebound: the motion just before and just after the wall passes the upright position.
-
-    Args:
-        t: time of the impact [s].
-        omega_before: angular velocity just before [rad/s].
-        omega_after: angular velocity just after [rad/s].
-        energy_before: energy of the rigid wall just before, above the wall at rest [J].
-        energy_after: energy just after [J].
-    """
-
-    t: float
-    omega_before: float
-    omega_after: float
-    energy_before: float
-    energy_after: float
-
-    @property
-    def restitution(self) -> float:
-        """|e| [-]."""
-        return math.sqrt(self.energy_after / self.energy_before) if self.energy_before > 0 else math.nan
-
-    @property
-    def energy_loss(self) -> float:
-        """Energy lost in the impact [J]."""
-        return self.energy_before - self.energy_after
-
-
-def peak_energies(case: Case, peaks: Array) -> tuple[Array, Array]:
-    """Energy of the rigid wall at its rotation peaks, on leaving each and on the way to it [J], shape (m,) each.
-
-    The release counts with its velocity. Peaks have their sign where the wall is lopsided.
-    """
-    leaving, reaching = (energy.copy() for energy in case.peak_energies(np.asarray(peaks, dtype=float)))
-    if len(leaving) and not case.released_outwards and abs(peaks[0]) == case.release_peak and case.omega0:
-        leaving[0] += case.release_energy - float(case.restoring.energy(case.release_peak))
-    return leaving, reaching
-
-
-def restitution_of(leaving: Array, reaching: Array) -> Array:
-    """|e| between successive peaks, from their energies [-]. It is NaN after a peak of no energy."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.sqrt(reaching[1:] / leaving[:-1])
+from .rocking import Impact, peak_energies
 
 
 def rocking_history(

@@ -1,4 +1,4 @@
-"""What a solver returns: the motion, its impacts and rotation peaks, and how it ended."""
+"""What a solver returns: the motion, what is read from it for a wall or for joints, and how it ended."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import enum
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,9 +13,10 @@ import numpy as np
 
 from ..files import write_text
 from ..problem.case import Case
-from ..problem.quantities import Array
-from .history import Impact, peak_energies, restitution_of
+from ..problem.quantities import Array, named
+from .joints import JointMotion
 from .ledger import Ledger
+from .rocking import Impact, Rocking, restitution_of
 from .table import csv_text
 
 State = tuple[Array, Array]
@@ -45,69 +45,62 @@ class Plastic(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response:
-    """The motion that a solver found.
+    """The motion that a solver found, of a wall or of masonry.
 
-    Two responses are equal if they have the same case, solver, samples, impacts and outcome.
+    A wall is one body. The bodies of masonry are its blocks that are not fixed, in order. What is read from the motion
+    of a wall is in `rocking`, and of masonry in `joints`. Two responses are equal if they have the same case, solver,
+    samples, outcome, and impacts or fallen blocks.
 
     Args:
         case: what was asked.
         solver: which solver answered.
         t: times [s], shape (n,).
-        theta: rotation [rad], shape (n,).
-        omega: angular velocity [rad/s], shape (n,).
-        impacts: the impacts in order.
-        peaks: rotation maxima |theta| [rad], the release first, shape (m,).
-        outcome: how the run ended.
+        pose: displacement x, z of each centroid from the undeformed contacts [m], and rotation theta [rad], shape (n,
+            bodies, 3). x points away from the side stop, z upwards, and theta is positive where a top turns towards +x.
+        velocity: its rate [m/s, m/s, rad/s], shape (n, bodies, 3).
+        energy: kinetic, potential and, where contacts are compliant, elastic energy above rest [J], shape (n,).
+        outcome: how the run ended. Masonry has overturned when a block has fallen.
         message: the same in words, for the user.
+        rocking: impacts and peaks of a wall; None for masonry.
+        joints: openings and slidings of joints, and fallen blocks; None for a wall.
         plastic: what ties have yielded, by tie.
-        compliant: energy [J], shape (n,), and pose, shape (n, bodies, 3), where contacts are compliant. None for the
-            rigid wall of rocking theory, whose energy and pose follow from its rotation.
         ledger: every part of the energy, or None where none was asked for.
         stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s]. MuJoCo adds the deepest
-            penetration of each group of contacts, such as `deepest_base`, and the `base_displacement` at the end [m].
+            penetrations, `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
+            `base_displacement` when the duration is over [m].
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
     """
 
-    case: Case
+    case: Any  # Case or MasonryCase
     solver: str
     t: Array
-    theta: Array
-    omega: Array
-    impacts: tuple[Impact, ...]
-    peaks: Array
+    pose: Array
+    velocity: Array
+    energy: Array
     outcome: Outcome
     message: str
-    compliant: tuple[Array, Array] | None = None
+    rocking: Rocking | None = None
+    joints: JointMotion | None = None
+    plastic: Mapping[str, Plastic] = field(default_factory=dict)
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
     end: State | None = None
-    plastic: Mapping[str, Plastic] = field(default_factory=dict)
 
     @property
-    def peak_over_alpha(self) -> float:
-        """Largest rotation over alpha [-]; infinite for a wall that has overturned.
+    def theta(self) -> Array:
+        """Rotation [rad], shape (n,) of a wall, and (n, bodies) of masonry."""
+        return self.pose[:, :, 2] if self.rocking is None else self.pose[:, 0, 2]
 
-        The largest rotation may be that of the last sample, where a run ends on its way out.
-        """
-        if self.outcome is Outcome.OVERTURNED:
-            return math.inf
-        return float(max(self.peaks.max(initial=0.0), np.abs(self.theta[-1]))) / self.case.wall.alpha
+    @property
+    def omega(self) -> Array:
+        """Angular velocity [rad/s], shape (n,) of a wall, and (n, bodies) of masonry."""
+        return self.velocity[:, :, 2] if self.rocking is None else self.velocity[:, 0, 2]
 
-    @cached_property
-    def energy(self) -> Array:
-        """Kinetic, potential and, where contacts are compliant, elastic energy above the wall at rest [J], shape
-        (n,)."""
-        if self.compliant is not None:
-            return self.compliant[0]
-        return self.case.energy(self.theta, self.omega)
-
-    @cached_property
-    def pose(self) -> Array:
-        """Displacement x, z of each centroid from rest [m] and its rotation theta [rad], shape (n, bodies, 3).
-
-        x points away from the side stop, z upwards. A wall is one body.
-        """
-        return self.case.wall.pose(self.theta)[:, None] if self.compliant is None else self.compliant[1]
+    @property
+    def peak(self) -> Array:
+        """Largest |rotation| of each body among the samples [rad], shape (bodies,)."""
+        peak: Array = np.abs(self.pose[:, :, 2]).max(axis=0)
+        return peak
 
     @property
     def energy_residual(self) -> Array | None:
@@ -115,17 +108,71 @@ class Response:
         return None if self.ledger is None else self.ledger.residual
 
     @property
-    def restitution(self) -> Array:
-        """|e| of each rebound, from successive peaks [-], shape (m - 1,).
+    def of_wall(self) -> tuple[Case, Rocking]:
+        """The case of a wall, and its impacts and peaks.
 
-        e_n = sqrt(V_(n+1) / V_n), with V the potential energy of the rigid wall at a rotation peak, or its whole energy
-        at the release. Every solver is measured with this one rule. It is exact for a rigid wall, and it does not count
-        the energy that a compliant base stores under a pivoting wall as a loss. On a shaken base the ground does work
-        between two peaks. There, with ties and for a lopsided wall, |e| is that of the impacts, shape (len(impacts),).
+        Raises:
+            AttributeError: for masonry.
         """
-        if self.case.shaken or self.case.pulls or self.case.lopsided:
-            return np.array([impact.restitution for impact in self.impacts])
-        return restitution_of(*peak_energies(self.case, self.peaks))
+        if self.rocking is None or not isinstance(self.case, Case):
+            raise AttributeError(
+                "a response of masonry has opening, sliding and fallen of its joints; impacts, peaks and restitution "
+                "are those of one wall"
+            )
+        return self.case, self.rocking
+
+    @property
+    def of_joints(self) -> JointMotion:
+        """What joints and blocks did.
+
+        Raises:
+            AttributeError: for a wall.
+        """
+        if self.joints is None:
+            raise AttributeError("a response of one wall has impacts and peaks; it has no joints")
+        return self.joints
+
+    @property
+    def impacts(self) -> tuple[Impact, ...]:
+        """The impacts of a wall in order."""
+        return self.of_wall[1].impacts
+
+    @property
+    def peaks(self) -> Array:
+        """Rotation maxima |theta| of a wall [rad], the release first, shape (m,)."""
+        return self.of_wall[1].peaks
+
+    @property
+    def opening(self) -> Array:
+        """Largest gap of each joint of masonry [m], shape (joints,)."""
+        return self.of_joints.opening
+
+    @property
+    def sliding(self) -> Array:
+        """Largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,)."""
+        return self.of_joints.sliding
+
+    @property
+    def fallen(self) -> Mapping[str, float]:
+        """When each block that fell did [s], by its name, the first first, see `JointMotion`."""
+        return self.of_joints.fallen
+
+    @property
+    def peak_over_alpha(self) -> float:
+        """Largest rotation of a wall over alpha [-]; infinite for a wall that has overturned.
+
+        The largest rotation may be that of the last sample, where a run ends on its way out.
+        """
+        case, rocking = self.of_wall
+        if self.outcome is Outcome.OVERTURNED:
+            return math.inf
+        return float(max(rocking.peaks.max(initial=0.0), np.abs(self.theta[-1]))) / case.wall.alpha
+
+    @property
+    def restitution(self) -> Array:
+        """|e| of each rebound of a wall, from successive peaks [-], see `Rocking.restitution`."""
+        case, rocking = self.of_wall
+        return rocking.restitution(case)
 
     @property
     def settled_restitution(self) -> Array:
@@ -138,33 +185,37 @@ class Response:
         Raises:
             ValueError: on a shaken base, where the ground does work between two peaks, and with ties.
         """
-        if self.case.shaken or self.case.pulls:
+        case, rocking = self.of_wall
+        if case.shaken or case.pulls:
             raise ValueError("on a shaken base the ground does work between two peaks, and ties may; see impacts")
-        bounds = [0.0, *(impact.t for impact in self.impacts), float(self.t[-1])]
+        bounds = [0.0, *(impact.t for impact in rocking.impacts), float(self.t[-1])]
         energies = []
-        for i in range(len(self.peaks)):
+        for i in range(len(rocking.peaks)):
             first, last = np.searchsorted(self.t, bounds[i : i + 2])
             turn = first + int(np.argmax(np.abs(self.theta[first : last + 1])))
-            energies.append(self.energy[0] if i == 0 and self.peaks[0] == self.case.release_peak else self.energy[turn])
+            released = i == 0 and rocking.peaks[0] == case.release_peak
+            energies.append(self.energy[0] if released else self.energy[turn])
         return restitution_of(np.array(energies), np.array(energies))
 
     def csv(self, path: str | Path | None = None) -> str:
         """The samples as CSV text, one row each, written to `path` where one is given.
 
-        The columns are t [s], theta [rad], omega [rad/s], energy [J], x, z and rotation of each body from rest
-        [m, m, rad], and the acceleration of the ground where there is one [m/s2]. Their names have no commas, so that
-        `np.genfromtxt(path, delimiter=",", names=True)` and pandas read them. Numbers keep all their digits.
+        The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
+        rest [m, m, rad], and the acceleration of the ground where there is one [m/s2]. Their names have no commas, so
+        that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read them. Numbers keep all their digits.
 
         Raises:
             OSError: if the file cannot be written.
         """
-        columns = {"t [s]": self.t, "theta [rad]": self.theta, "omega [rad/s]": self.omega, "energy [J]": self.energy}
-        bodies = self.pose.shape[1]
-        for i in range(bodies):
-            of = "" if bodies == 1 else f" of body {i}"
+        columns = {"t [s]": self.t}
+        if self.rocking is not None:
+            columns |= {"theta [rad]": self.theta, "omega [rad/s]": self.omega}
+        columns["energy [J]"] = self.energy
+        for i, body in enumerate(self.bodies):
+            of = "" if self.rocking is not None else f" of {body}"
             for j, (name, unit) in enumerate((("x", "m"), ("z", "m"), ("rotation", "rad"))):
                 columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
-        for motion, name in ((self.case.motion, "horizontal"), (getattr(self.case, "vertical", None), "vertical")):
+        for motion, name in ((self.case.motion, "horizontal"), (self.case.vertical, "vertical")):
             if motion is not None:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
@@ -172,11 +223,18 @@ class Response:
             write_text(path, text)
         return text
 
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the bodies, in their order."""
+        if isinstance(self.case, Case):
+            return ("wall",)
+        return tuple(self.case.masonry.names[i] for i in self.case.masonry.free)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Response):
             return NotImplemented
-        same = ("case", "solver", "impacts", "outcome")
-        samples = ("t", "theta", "omega", "peaks", "energy", "pose")
+        same = ("case", "solver", "outcome", "rocking", "joints")
+        samples = ("t", "pose", "velocity", "energy")
         return all(getattr(self, name) == getattr(other, name) for name in same) and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in samples
         )
@@ -184,11 +242,20 @@ class Response:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        largest = float(np.abs(self.theta).max()) / self.case.wall.alpha
+        if isinstance(self.case, Case):
+            what = (
+                f"{len(self.impacts)} impacts, largest rotation {float(self.peak[0]) / self.case.wall.alpha:.3g} alpha"
+            )
+        else:
+            what = f"{len(self.bodies)} blocks, largest opening {self.opening.max(initial=0):.3g} m, "
+            what += f"{len(self.fallen)} fallen"
         return (
-            f"<Response of {self.solver}: {len(self.t)} samples over {self.t[-1]:.4g} s, {len(self.impacts)} impacts, "
-            f"largest rotation {largest:.3g} alpha, {self.outcome.value}>"
+            f"<Response of {self.solver}: {len(self.t)} samples over {self.t[-1]:.4g} s, {what}, {self.outcome.value}>"
         )
+
+
+MasonryResponse = Response
+"""The response of masonry, which is like that of a wall."""
 
 
 def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:
@@ -216,3 +283,16 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
             return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
         case Outcome.TIME_ENDED:
             return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
+
+
+def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float) -> tuple[Outcome, str]:
+    """How a run ended, and the same in words."""
+    if fallen:
+        first = next(iter(fallen.values()))
+        return Outcome.OVERTURNED, (
+            f"{len(fallen)} blocks fell, the first at {first:.4g} s: {named(list(fallen))}. The motion was followed "
+            f"for {t_end:.4g} s; contacts other than those of the joints at rest are not in the model."
+        )
+    if quiet:
+        return Outcome.AT_REST, f"The masonry came to rest; last looked at {t_end:.4g} s."
+    return Outcome.TIME_ENDED, f"The masonry was still moving when the asked {t_end:.4g} s ended."

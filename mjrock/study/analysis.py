@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
 
 from ..engine.simulation import simulate
 from ..files import write_arrays
 from ..problem.case import Case
 from ..problem.contacts import Contacts
+from ..problem.masonry_case import MasonryCase
+from ..problem.quantities import require_kind, shown
 from ..problem.restitution import Restitution
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
@@ -23,19 +25,46 @@ SOLVERS: dict[str, Callable[..., Response]] = {
     "compliant": solve_compliant,
     "MuJoCo": simulate,
 }
+OF_MASONRY = ("MuJoCo",)
+"""The solvers that take masonry."""
 OPTIONS = {name: tuple(inspect.signature(solver).parameters)[2:] for name, solver in SOLVERS.items()}
 """The options of each solver."""
+WALL_COLUMNS = (
+    "solver",
+    "law",
+    "outcome",
+    "peak_over_alpha",
+    "impacts",
+    "restitution_1",
+    "restitution_2",
+    "restitution_3",
+    "end_s",
+    "message",
+)
+MASONRY_COLUMNS = (
+    "outcome",
+    "fallen",
+    "first_fall_s",
+    "largest_opening_m",
+    "largest_sliding_m",
+    "largest_rotation_rad",
+    "end_s",
+    "message",
+)
 
 
 @dataclass(frozen=True)
 class Analysis:
     """One case for one solver.
 
+    What the joints of masonry have has to be numbers: a function of the joint has no content by which a campaign could
+    tell one task from another, and such a task becomes a failed row.
+
     Args:
-        case: the case.
-        solver: "analytical", "compliant" or "MuJoCo".
+        case: the case, of a wall or of masonry.
+        solver: "analytical", "compliant" or "MuJoCo"; masonry takes "MuJoCo".
         e: coefficients of restitution, for the analytical solver.
-        contacts: interfaces, for the other two.
+        contacts: interfaces of a wall, for the other two.
         options: keyword arguments of the solver, such as `accuracy`, `timestep` or `rtol`.
         labels: columns that tell the user which case it is: text, numbers.
 
@@ -46,23 +75,7 @@ class Analysis:
         TypeError: for an argument of another type.
     """
 
-    COLUMNS: ClassVar[tuple[str, ...]] = (
-        "solver",
-        "law",
-        "outcome",
-        "peak_over_alpha",
-        "impacts",
-        "restitution_1",
-        "restitution_2",
-        "restitution_3",
-        "end_s",
-        "message",
-    )
-
-    PEAK: ClassVar[str] = "peak_over_alpha"
-    """The column that an incremental dynamic analysis gathers; it is infinite for a wall that has overturned."""
-
-    case: Case
+    case: Case | MasonryCase
     solver: str = "MuJoCo"
     e: Restitution | None = None
     contacts: Contacts | None = None
@@ -70,22 +83,23 @@ class Analysis:
     labels: Mapping[str, object] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
-        for name, kind in (("case", Case), ("e", Restitution), ("contacts", Contacts)):
-            value = getattr(self, name)
-            if not isinstance(value, kind) and (value is not None or name == "case"):
-                raise TypeError(f"{name} = {value!r} is no {kind.__name__}")
+        require_kind("case", self.case, Case, MasonryCase)
+        require_kind("e", self.e, Restitution, type(None))
+        require_kind("contacts", self.contacts, Contacts, type(None))
         for name in ("options", "labels"):
             value = getattr(self, name)
             if not isinstance(value, Mapping):
-                raise TypeError(f"{name} = {value!r} is no mapping of names to values")
+                raise TypeError(f"{name} = {shown(value)} is no mapping of names to values")
             object.__setattr__(self, name, dict(value))
         if self.solver not in SOLVERS:
             raise ValueError(f"solver = {self.solver!r} is none of {', '.join(SOLVERS)}")
-        needed = "e" if self.solver == "analytical" else "contacts"
-        if getattr(self, needed) is None:
-            raise ValueError(f"the solver {self.solver} needs {needed}")
-        if self.contacts is not None and self.solver != "analytical":
-            self.contacts.require_fit(self.case.block, side_stop=self.case.one_sided)
+        if isinstance(self.case, Case):
+            self._require_wall(self.case)
+        elif self.solver not in OF_MASONRY or self.e is not None or self.contacts is not None:
+            raise ValueError(
+                f"masonry has its joints and is solved by {', '.join(OF_MASONRY)}, not {self.solver}; "
+                "leave e and contacts out"
+            )
         valid = OPTIONS[self.solver]
         unknown = self.options.keys() - set(valid)
         if unknown:
@@ -93,10 +107,29 @@ class Analysis:
                 f"{self.solver} has no option {', '.join(sorted(map(str, unknown)))}; it has {', '.join(valid)}"
             )
 
+    def _require_wall(self, case: Case) -> None:
+        """Raise ValueError unless the wall has what its solver needs."""
+        needed = "e" if self.solver == "analytical" else "contacts"
+        if getattr(self, needed) is None:
+            raise ValueError(f"the solver {self.solver} needs {needed}")
+        if self.contacts is not None and self.solver != "analytical":
+            self.contacts.require_fit(case.block, side_stop=case.one_sided)
+
+    @property
+    def COLUMNS(self) -> tuple[str, ...]:
+        """The columns of a row."""
+        return WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS
+
+    @property
+    def PEAK(self) -> str:
+        """The column that an incremental dynamic analysis gathers; it is infinite for what has overturned."""
+        return "peak_over_alpha" if isinstance(self.case, Case) else "largest_rotation_rad"
+
     def __repr__(self) -> str:
-        by = f"e = {self.e}" if self.solver == "analytical" else f"{self.contacts}"
+        by = "" if isinstance(self.case, MasonryCase) else f", {self.contacts}"
+        by = f", e = {self.e}" if self.solver == "analytical" else by
         options = "".join(f", {name} = {value}" for name, value in self.options.items())
-        return f"<Analysis by {self.solver} of {self.case!r}, {by}{options}>"
+        return f"<Analysis by {self.solver} of {self.case!r}{by}{options}>"
 
     def solve(self) -> Response:
         """The response."""
@@ -104,27 +137,44 @@ class Analysis:
 
     def __call__(self, history: Path | None = None) -> Row:
         """Solve, keep the history in the file given, and return the columns of the row."""
-        return self.row(self.solve(), history)
-
-    def row(self, response: Response, history: Path | None = None) -> Row:
-        """The columns of a response, whose history is kept in the file given."""
+        response = self.solve()
         if history is not None:
             save_history(response, history)
+        values = self._of_wall(response) if isinstance(self.case, Case) else _of_masonry(response)
+        return dict(zip(self.COLUMNS, (*values, float(response.t[-1]), response.message), strict=True))
+
+    def _of_wall(self, response: Response) -> tuple[object, ...]:
+        """The columns of a wall but the last two."""
         restitution = [float(value) for value in response.restitution[:3]] + [None] * 3
         law = "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
-        values = (
-            self.solver,
-            law,
-            response.outcome.value,
-            response.peak_over_alpha,
-            len(response.impacts),
-            *restitution[:3],
-            float(response.t[-1]),
-            response.message,
-        )
-        return dict(zip(self.COLUMNS, values, strict=True))
+        peak = response.peak_over_alpha
+        return self.solver, law, response.outcome.value, peak, len(response.impacts), *restitution[:3]
+
+
+def _of_masonry(response: Response) -> tuple[object, ...]:
+    """The columns of masonry but the last two."""
+    return (
+        response.outcome.value,
+        len(response.fallen),
+        min(response.fallen.values(), default=None),
+        float(response.opening.max()),
+        float(response.sliding.max()),
+        math.inf if response.fallen else float(response.peak.max()),
+    )
+
+
+class MasonryAnalysis(Analysis):
+    """`Analysis` of masonry by MuJoCo, with the arguments in this order."""
+
+    def __init__(
+        self, case: MasonryCase, options: Mapping[str, object] | None = None, labels: Mapping[str, object] | None = None
+    ) -> None:
+        super().__init__(case, options={} if options is None else options, labels={} if labels is None else labels)
 
 
 def save_history(response: Response, path: Path) -> None:
-    """Write t [s], theta [rad], omega [rad/s] and energy [J] to an .npz file."""
-    write_arrays(path, t=response.t, theta=response.theta, omega=response.omega, energy=response.energy)
+    """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file."""
+    arrays = {"t": response.t, "theta": response.theta, "omega": response.omega, "energy": response.energy}
+    if response.joints is not None:
+        arrays = {"t": response.t, "pose": response.pose, "velocity": response.velocity, "energy": response.energy}
+    write_arrays(path, **arrays)

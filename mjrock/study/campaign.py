@@ -36,8 +36,7 @@ def campaign(
         tasks: `Analysis` objects, a `Grid` of them, or an iterator; they are taken as they are needed.
         store: the SQLite file.
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
-            None stands for processes of this machine, which are replaced if they die. Fixed-step runs of one geometry
-            go to threads of this process instead, if a measured first batch says that this is faster.
+            None stands for processes of this machine, which are replaced if they die.
         workers: how many processes, one for each processor by default; 1 runs in a thread of this process.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.
@@ -99,7 +98,7 @@ def _carry_out(
     elif count == 1:
         run.here(pending)
     else:
-        Dispatch(run, run.by_threads(pending, count, total), count, None).go()
+        Dispatch(run, pending, count, None).go()
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:

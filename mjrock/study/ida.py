@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike
 from ..problem.quantities import Array, require_array, require_kind, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
-from .masonry import MasonryAnalysis
 from .task import Row
 
-Build = Callable[[float], Analysis | MasonryAnalysis]
+Build = Callable[[float], Analysis]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +74,7 @@ def ida(
     analyses have labels of these names.
 
     Args:
-        build: `build(scale)` makes the `Analysis` or `MasonryAnalysis` of a scale; or one such function for each
+        build: `build(scale)` makes the `Analysis` of a scale; or one such function for each
             record, by name. The peaks of masonry are those of the rotation of a block [rad].
         scales: increasing, not negative, in the unit that `build` takes, shape (scales,).
         store: the SQLite file.
@@ -90,7 +89,7 @@ def ida(
     if not builds:
         raise ValueError("build holds no records; at least one is needed")
     levels = require_scales(scales)
-    tasks: list[Analysis | MasonryAnalysis] = []
+    tasks: list[Analysis] = []
     for name, make in builds.items():
         require_kind("the name of a record in build", name, str)
         for scale in levels.tolist():
@@ -148,7 +147,7 @@ def _peak(build: Build, scale: float) -> float:
     return float(analysis()[analysis.PEAK])
 
 
-def built(build: Build, scale: float, name: str) -> Analysis | MasonryAnalysis:
+def built(build: Build, scale: float, name: str) -> Analysis:
     """The analysis that a function makes of a scale.
 
     Raises:
@@ -157,7 +156,7 @@ def built(build: Build, scale: float, name: str) -> Analysis | MasonryAnalysis:
     if not callable(build):
         raise TypeError(f"{name} = {shown(build)} is no function of a scale")
     analysis = build(scale)
-    if not isinstance(analysis, Analysis | MasonryAnalysis):
+    if not isinstance(analysis, Analysis):
         raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
     return analysis
 

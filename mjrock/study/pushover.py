@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..engine.tilted import tilted
-from ..engine.wall import wall_scene
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.pulling import pulled, yielded
 from ..problem.quantities import ON_ITS_FACE, Array, require_array, require_kind, require_whole, shown
 from ..problem.uplift import Uplift
+from ..scene.wall import wall_scene
+from .tilted import tilted
 
 MARGIN = 1.1
 """How far a curve is followed, as a multiple of the rotation at which that of the rigid wall falls to zero [-]. The

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import sys
-import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
@@ -15,7 +13,6 @@ from threading import Event, Thread
 
 import numpy as np
 
-from .batch import BATCH, batch_rows, geometry
 from .progress import Progress
 from .store import Store
 from .task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
@@ -24,10 +21,6 @@ from .workers import FLUSH
 CHUNK_SECONDS = 0.5
 """Work that a worker is given at a time [s]: long compared with the 1 ms of handing it over, and short enough to keep
 the progress bar moving."""
-START_UP = 2.5
-"""Time that worker processes need to import what they use [s]."""
-LONG = 1.0
-"""Time of a run that is left to processes, which can be ended in the middle of it [s]."""
 
 
 @dataclass
@@ -130,34 +123,6 @@ class Runner:
         finally:
             stop.set()
             asked.put(([], [], Event()))
-
-    def by_threads(self, pending: Iterator[Job], threads: int, total: int | None) -> Iterator[Job]:
-        """Run batches by threads while there are any and threads are faster; return the jobs that are left.
-
-        Threads share the time that the engine takes for its steps. They do not share the time that Python takes. Each
-        batch measures both. Processes would share both, but they have to start first. The first batch has one run for
-        each thread, and finds out whether the runs are long.
-        """
-        size = threads
-        while job := next(pending, None):
-            batch, mark = [job], geometry(job.task)
-            if mark is None:
-                return itertools.chain(batch, pending)
-            for job in pending:
-                if len(batch) == size or geometry(job.task) != mark:
-                    pending = itertools.chain([job], pending)
-                    break
-                batch.append(job)
-            started = time.perf_counter()
-            rows, stepping = batch_rows([(job.task, job.history) for job in batch])
-            by_threads = (time.perf_counter() - started) / len(batch)
-            self.write(batch, rows)
-            by_processes = stepping + (by_threads - stepping) / threads
-            left = (total or sys.maxsize) - self.skipped - self.finished
-            if left * (by_threads - by_processes) > START_UP or by_threads * threads > LONG:
-                break
-            size = BATCH * threads
-        return pending
 
     def chunk(self) -> int:
         """How many jobs are about CHUNK_SECONDS of work."""

@@ -26,7 +26,9 @@ class Task(Protocol):
     `labels` tell the user which case it was, and are no part of its content; `COLUMNS` names what the call returns.
     """
 
-    COLUMNS: ClassVar[tuple[str, ...]]
+    @property
+    def COLUMNS(self) -> tuple[str, ...]:
+        """Names of what the call returns."""
 
     @property
     def labels(self) -> Mapping[str, object]:

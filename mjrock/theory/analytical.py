@@ -14,11 +14,11 @@ from ..problem.case import Case
 from ..problem.pulling import stored
 from ..problem.quantities import GRAVITY, Array, require_kind, require_size, require_within
 from ..problem.restitution import Restitution
-from ..result.history import Impact
 from ..result.response import Outcome, Plastic, Response, describe
+from ..result.rocking import Impact, Rocking
 from .forced import rock_forced
 from .free import rock_freely
-from .rocking import Rocking
+from .motion import Motion
 
 
 def solve_analytical(
@@ -71,17 +71,17 @@ def solve_analytical(
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
     theta, omega = found.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
-    compliant, plastic = _with_ties(case, found, samples, theta, omega)
+    pose, velocity = case.wall.motion(theta, omega)
+    stretched, plastic = _with_ties(case, found, samples, theta)
     return Response(
         case=case,
         solver="analytical",
         t=samples,
-        theta=theta,
-        omega=omega,
-        impacts=tuple(map(Impact._make, found.impacts.tolist())),
-        peaks=np.append(released, found.peaks),
+        pose=pose,
+        velocity=velocity,
+        energy=case.energy(theta, omega) + stretched,
+        rocking=Rocking(tuple(map(Impact._make, found.impacts.tolist())), np.append(released, found.peaks)),
         outcome=outcome,
-        compliant=compliant,
         plastic=plastic,
         message=describe(outcome, case, t_end, float(theta[-1])),
         stats={
@@ -113,7 +113,7 @@ def _require_solvable(case: Case, e: Restitution) -> None:
         )
 
 
-def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> Rocking:
+def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> Motion:
     """The motion from impact to impact, free or forced."""
     restitution = e.lumped if case.side_stop else e.base
     shaken = case.motion is not None or case.vertical is not None
@@ -125,17 +125,14 @@ def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) 
     return rock_freely(case, restitution, least, rtol, atol)
 
 
-def _with_ties(
-    case: Case, found: Rocking, t: Array, theta: Array, omega: Array
-) -> tuple[tuple[Array, Array] | None, dict[str, Plastic]]:
-    """Energy [J] and pose at the samples, and what the ties have yielded, of a wall with ties; else nothing."""
+def _with_ties(case: Case, found: Motion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
+    """Energy of the ties at the samples [J], and what they have yielded."""
     if not case.pulls or found.plastic is None:
-        return None, {}
+        return 0.0, {}
     times, yielded = found.plastic
     plastic = np.column_stack([np.interp(t, times, own) for own in yielded.T])
-    energy = case.energy(theta, omega) + stored(case.pulls, theta, plastic)
     ends = [
         Plastic(float(gone), float(gone) * pull.strength if gone else 0.0)
         for gone, pull in zip(yielded[-1], case.pulls, strict=True)
     ]
-    return (energy, case.wall.pose(theta)[:, None]), {f"tie_{i}": end for i, end in enumerate(ends)}
+    return stored(case.pulls, theta, plastic), {f"tie_{i}": end for i, end in enumerate(ends)}

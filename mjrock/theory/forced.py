@@ -18,7 +18,7 @@ from ..problem.pulling import yielded
 from ..problem.quantities import ON_ITS_FACE, Array, Integers
 from ..result.samples import interpolated
 from .law import Law, Push, Ties, Toe, acceleration, nystroem, pushed
-from .rocking import Rocking
+from .motion import Motion
 from .ties import take_changes, until_change
 
 NYSTROEM = 50.0
@@ -215,7 +215,7 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, 
     return t, theta, omega, side, at_rest, fell, ended
 
 
-def rock_forced(case: Case, e: float, least: float, rtol: float) -> Rocking:
+def rock_forced(case: Case, e: float, least: float, rtol: float) -> Motion:
     """Rocking over a shaken base, or with ties.
 
     Args:
@@ -243,6 +243,6 @@ def rock_forced(case: Case, e: float, least: float, rtol: float) -> Rocking:
 
     steps = len(t) // 2
     plastic = yielded(case.pulls, theta) if case.pulls else np.empty((len(t), 0))
-    return Rocking(
+    return Motion(
         impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, steps, 3 * steps, (t, plastic)
     )

@@ -21,8 +21,8 @@ from scipy.integrate import solve_ivp
 
 from ..problem.case import Case
 from ..problem.quantities import ON_ITS_FACE, Array
-from ..result.history import Impact
-from .rocking import Rocking
+from ..result.rocking import Impact
+from .motion import Motion
 
 
 class Event(enum.Enum):
@@ -100,7 +100,7 @@ class Arcs:
         return theta, omega
 
 
-def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) -> Rocking:
+def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) -> Motion:
     """Rocking over a base at rest.
 
     Args:
@@ -128,7 +128,7 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
             impacts.append(Impact(state[0], before, after, 0.5 * arriving * before**2, 0.5 * leaving * after**2))
             at_rest = impacts[-1].energy_after <= least
             s, state = math.copysign(1.0, after), (state[0], 0.0, after)
-    return Rocking(
+    return Motion(
         impacts=np.reshape(np.array(impacts, dtype=float), (-1, 5)),
         peaks=np.array(peaks),
         t=state[0],

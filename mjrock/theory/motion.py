@@ -9,7 +9,7 @@ from ..problem.quantities import Array
 
 
 @dataclass(frozen=True)
-class Rocking:
+class Motion:
     """A motion of a rigid wall from impact to impact.
 
     Args:

@@ -70,7 +70,7 @@ def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
 
 
 @jitable
-def push(ground: Ground, masses: Array, t: float, h: float, applied: Array) -> None:
+def push_ground(ground: Ground, masses: Array, t: float, h: float, applied: Array) -> None:
     """Write the force of the moving ground on every body into `applied` [N], shape (3 n,)."""
     if len(ground.x.accel) > 0:
         mean = mean_acceleration(ground.x, t, h)

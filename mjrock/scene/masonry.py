@@ -1,8 +1,9 @@
-"""The scene of masonry: its free blocks as bodies, its contact lines as points and faces; and its model text."""
+"""The scene of masonry: its free blocks as bodies, its contact lines as points and faces."""
 
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -10,18 +11,17 @@ from ..problem.effects import AddedMass, Effect, Load, Thrust, Tie
 from ..problem.lines import Lines
 from ..problem.masonry import Masonry
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import GRAVITY, Array, Integers, require_kind, require_within
+from ..problem.quantities import GRAVITY, Array, Integers, named, require_kind
 from ..problem.statics import falling
-from ..result.masonry import named
-from .attached import attachments
-from .model import released_mjcf
-from .rest import UnsettledError
+from .arrays import GROUND
+from .course import Course
+from .effects import attachments
+from .equilibrium import UnsettledError
 from .scene import Scene
-from .tables import GROUND
 
 
 def masonry_scene(case: MasonryCase) -> Scene:
-    """The scene of a case: the masonry at rest under its weight, then released.
+    """The scene of a case: the masonry under its weight, which all cases of it with the same effects share.
 
     Bodies have the names of the blocks that are not fixed, in order. The groups of contacts are the joints, by name.
 
@@ -29,31 +29,14 @@ def masonry_scene(case: MasonryCase) -> Scene:
         ValueError: if the masonry does not stand. The message names the blocks that fall.
     """
     require_kind("case", case, MasonryCase)
-    scene = standing_masonry(case.masonry, case.effects)
     require_standing(case.masonry, case.effects)
+    return standing_masonry(case.masonry, case.effects)
+
+
+def masonry_course(case: MasonryCase, scene: Scene) -> Course:
+    """What happens to the scene of a case: it starts at rest, with the velocities of the case."""
     velocity = np.zeros_like(scene.at_rest) if case.velocity is None else np.asarray(case.velocity)
-    return scene.released(scene.at_rest, velocity, case.duration, case.motion, case.vertical)
-
-
-def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.25) -> str:
-    """The model of a case as MJCF text; the same arguments give the same bytes.
-
-    Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, timestep=timestep)` where the
-    ground does not move. Names: bodies and geoms as the blocks that are not fixed; contact points `a|b_0`, `a|b_1`, ...
-    of the joint between the blocks a and b; joints `a_x`, `a_z`, `a_theta`; keyframe `release`; camera `front`. What
-    slides in this text is pressed apart, see `wall_mjcf`.
-
-    Args:
-        case: the masonry and its release.
-        timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
-        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `wall_mjcf`.
-
-    Raises:
-        ValueError: if the masonry does not stand, or for a value outside its range.
-    """
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
-    return released_mjcf(masonry_scene(case), timestep, newmark_beta)
+    return Course(scene.at_rest, velocity, case.duration, case.motion, case.vertical)
 
 
 @lru_cache(maxsize=16)
@@ -76,13 +59,21 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
         ) from None
 
 
+def placed(masonry: Masonry, effect: Effect) -> tuple[float, float]:
+    """Where an effect acts on its block, from the origin of the world [m]."""
+    block = masonry.blocks[effect.block]
+    if isinstance(effect, Tie):
+        return block.left_at(effect.height), effect.height
+    return float(block.centroid[0]) + getattr(effect, "offset", 0.0), effect.height
+
+
 def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them, (free, 3)."""
-    case, total = MasonryCase(masonry, 1.0, effects=effects), np.zeros((len(masonry.free), 3))
+    total = np.zeros((len(masonry.free), 3))
     for one in effects:
         if not isinstance(one, Tie):
             row = masonry.free.index(one.block)
-            x, z = np.array(case.place(one)) - masonry.blocks[one.block].centroid
+            x, z = np.array(placed(masonry, one)) - masonry.blocks[one.block].centroid
             across = one.force if isinstance(one, Thrust) else 0.0
             down = one.force if isinstance(one, Load) else GRAVITY * one.mass if isinstance(one, AddedMass) else 0.0
             total[row] += across, -down, across * z + down * x
@@ -91,13 +82,12 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
 
 def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
     """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, (n,), (n, 2) and (n,)."""
-    case = MasonryCase(masonry, 1.0, effects=effects)
     mass = np.array([block.mass for block in masonry.blocks])
     inertia, centroids = np.array([block.inertia for block in masonry.blocks]), np.array(masonry.centroids)
     for one in effects:
         if isinstance(one, AddedMass) and one.mass > 0:
             i = one.block
-            apart, total = np.array(case.place(one)) - centroids[i], mass[i] + one.mass
+            apart, total = np.array(placed(masonry, one)) - centroids[i], mass[i] + one.mass
             inertia[i] += mass[i] * one.mass / total * float(apart @ apart)
             centroids[i] += one.mass / total * apart
             mass[i] = total
@@ -114,7 +104,11 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
     mass, centroids, inertia = laden(masonry, effects)
     origin = np.where(number[:, None] == GROUND, 0.0, centroids)
     middles = np.array([joint.middle for joint in masonry.joints])
-    case = MasonryCase(masonry, 1.0, effects=effects)
+    limits: dict[str, Any] = {}
+    if len(free) > 1:  # one block is stepped as a wall is
+        corners = np.concatenate([blocks[i].corners for i in free])
+        extent = max(float(np.abs(blocks[i].corners - centroids[i]).max()) for i in free)
+        limits = {"reach": float(np.hypot(*np.ptp(corners, axis=0))), "overlap": 2 * extent, "damped_joints": True}
     return Scene(
         names=tuple(masonry.names[i] for i in free),
         mass=mass[free],
@@ -131,8 +125,11 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
         c=masonry.retardation[lines.joint] * lines.k,
         friction=masonry.joint_friction[lines.joint],
         group=tuple(masonry.joints[j].name for j in lines.joint),
+        **limits,
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
-        **attachments(effects, lambda one: int(number[one.block]), lambda one: case.place(one)[0], centroids[free]),
+        **attachments(
+            effects, lambda one: int(number[one.block]), lambda one: placed(masonry, one)[0], centroids[free]
+        ),
     )
 
 

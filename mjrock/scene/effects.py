@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problem.effects import Effect, Load, Thrust, Tie
 from ..problem.quantities import Array
-from .tables import GROUND
+from .arrays import GROUND
 
 
 def attachments(

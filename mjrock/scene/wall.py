@@ -11,9 +11,10 @@ from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.effects import AddedMass, Effect, Tie
 from ..problem.quantities import Array, require_kind
-from .attached import attachments
+from .arrays import GROUND
+from .course import Course
+from .effects import attachments
 from .scene import Scene
-from .tables import GROUND
 
 FREE_FRICTION = 1.0
 """Friction coefficient of the edges of a wall without a side stop on two lines [-]. On a bed of n lines it is n/2 times
@@ -59,12 +60,7 @@ def base_friction(wall: Block, contacts: Contacts, side_stop: bool) -> Array:
 
 
 def wall_scene(case: Case, contacts: Contacts) -> Scene:
-    """The scene of a case on its contacts.
-
-    The wall is released tilted about its toe, on a base that is compressed until it carries the weight. A wall set down
-    on undeformed springs would fall by m g / k and bounce. It would lose in its base an energy of the order of what an
-    impact is measured by, 1 % of the release energy on the paper's wall. A wall that is not tilted and not moving is
-    released from its equilibrium under all effects.
+    """The scene of a case on its contacts, which all cases of one wall with the same effects share.
 
     The body is `wall`. The groups of contacts are `base`, from the inner to the outer edge, and `side`, from the bottom
     to the top. The ties are `tie_0`, `tie_1` and so on in the order of the case, the forces `load_0` and `thrust_0`.
@@ -74,26 +70,33 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
     """
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts)
-    wall, scene = case.wall, standing_wall(case.block, contacts, case.stop_top, case.effects)
-    if case.theta0 == case.omega0 == 0:
-        pose, velocity = scene.at_rest, np.zeros((1, 3))
-    else:
-        pose = scene.lowered(wall.pose(np.array([case.theta0])))
-        velocity = case.omega0 * wall.turning(case.theta0, case.direction)[None]
-    return scene.released(pose, velocity, case.duration, case.motion, case.vertical)
+    contacts.require_fit(case.block, side_stop=case.one_sided)
+    require_carried(case, contacts)
+    return standing_wall(case.wall, contacts, case.stop_top, case.effects)
+
+
+def wall_course(case: Case, scene: Scene) -> Course:
+    """What happens to the scene of a case.
+
+    The wall is released tilted about its toe, on a base that is compressed until it carries the weight. A wall set down
+    on undeformed springs would fall by m g / k and bounce. It would lose in its base an energy of the order of what an
+    impact is measured by, 1 % of the release energy on the paper's wall. A wall that is not tilted and not moving is
+    released from its equilibrium under all effects.
+
+    Raises:
+        ValueError: if the bodies do not stand.
+    """
+    pose, velocity = scene.at_rest, np.zeros((1, 3))
+    if not case.theta0 == case.omega0 == 0:
+        pose = scene.lowered(case.wall.pose(np.array([case.theta0])))
+        velocity = case.omega0 * case.wall.turning(case.theta0, case.direction)[None]
+    return Course(pose, velocity, case.duration, case.motion, case.vertical)
 
 
 @lru_cache(maxsize=64)
-def standing_wall(block: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...]) -> Scene:
-    """The scene of a wall at rest, which all cases of one wall with the same effects on the same contacts share.
-
-    Raises:
-        ValueError: if the contacts do not fit the wall, or cannot carry it.
-    """
-    contacts.require_fit(block, side_stop=stop_top is not None)
-    case = Case(block, 0.0, 1.0, side_stop=stop_top is not None, effects=effects)
-    wall, base = case.wall, contacts.base
-    require_carried(case, contacts)
+def standing_wall(wall: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...]) -> Scene:
+    """The scene of a wall, its added masses included, against a stop up to a height [m], or None."""
+    base = contacts.base
     centroid = np.array([wall.centroid_offset, wall.centroid_height])
     places = [(x - centroid[0], -centroid[1]) for x in base.positions]
     faces, normals, groups = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, ["base"] * base.points

@@ -1,8 +1,8 @@
-"""The scene: one flat description of what MuJoCo simulates, for any number of bodies.
+"""The scene: one flat description of what stands, for any number of bodies.
 
 Everything lies in a plane, x horizontal and z upwards. At rest no body is turned, so that a vector in the frame of a
 body is the same in the world. Contact points on one body meet plane faces of another body or of the ground. The model
-text, the steps, the energy ledger and the result all follow from this description.
+text, the steps, the energy ledger and the result all follow from this description. What happens to it is its `Course`.
 """
 
 from __future__ import annotations
@@ -11,30 +11,26 @@ import hashlib
 import math
 from collections import Counter
 from collections.abc import Mapping
-from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
 
-from ..problem.motion import GroundMotion
+from ..geometry.frames import PLANE
+from ..geometry.kinematics import Forces, Places, Ties, gaps
 from ..problem.quantities import GRAVITY, Array, Flags, Integers
-from .contact import BORNE, HELD_GROWTH, HELD_MASSES, OVERDAMPED, planar_weight
-from .kinematics import Forces, Points, Ties, energies, gaps
-from .rest import gap_rates, lowered, settled
-from .tables import checked, frozen, nothing
+from .arrays import checked, frozen, nothing
+from .equilibrium import lowered, settled
+from .potential import Potential, Structure, energies
 
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
 surface, which is why it is tiny."""
 
-SHARED = ("points", "ties", "masses", "rest_energies", "highest_frequency", "tie_frequency", "rocking_frequency", "key")
-"""What scenes that differ in their release share."""
-
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Rigid bodies in a plane, the compliant contacts between them and with the ground, and how they are released.
+    """Rigid bodies in a plane, and the compliant contacts between them and with the ground.
 
     Args:
         names: names of the n bodies.
@@ -64,9 +60,10 @@ class Scene:
         force_body, force_point: the body that each force acts on, and where, from its centroid [m], (f,) and (f, 2).
         force: its x and z component [N], shape (f, 2).
         settled: pose of the bodies at rest under their weight, shape (n, 3). None searches for it.
-        release: pose and velocity at the release, shape (n, 3) each. None stands for rest at `settled`.
-        duration: how long to follow the motion [s].
-        motion, vertical: acceleration of the ground, horizontal and upwards, or None.
+        reach, overlap: largest gap and deepest penetration of a contact that a run follows [m]; beyond them a body has
+            gone too far.
+        damped_joints: whether the dashpots of contacts that bear weight matter in long steps too, as those between flat
+            blocks do; see `mjrock.engine.pace`.
         title: what the scene is, in words, for the model text.
         facts: numbers and texts that the model records.
 
@@ -103,10 +100,9 @@ class Scene:
     force_point: Array = field(default_factory=nothing)
     force: Array = field(default_factory=nothing)
     settled: Array | None = None
-    release: tuple[Array, Array] | None = None
-    duration: float = 1.0
-    motion: GroundMotion | None = None
-    vertical: GroundMotion | None = None
+    reach: float = math.inf
+    overlap: float = math.inf
+    damped_joints: bool = False
     title: str = "Rigid bodies on compliant contacts"
     facts: Mapping[str, float | str] = field(default_factory=dict)
 
@@ -117,36 +113,13 @@ class Scene:
         for name, values in checked(vars(self)).items():
             object.__setattr__(self, name, values)
         object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), self.k.shape)))
-        bodies = len(self.names)
-        for name in ("settled", "release"):
-            values = getattr(self, name)
-            if values is not None:
-                shape = (-1, bodies, 3) if name == "release" else (bodies, 3)
-                values = frozen(np.reshape(np.asarray(values, dtype=float), shape))
-                object.__setattr__(self, name, tuple(values) if name == "release" else values)
+        if self.settled is not None:
+            pose = np.reshape(np.asarray(self.settled, dtype=float), (len(self.names), 3))
+            object.__setattr__(self, "settled", frozen(pose))
 
     def lowered(self, pose: Array) -> Array:
         """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3)."""
-        return lowered(self._points, self.forces, self.masses, pose)
-
-    def released(self, pose: Array, velocity: Array, duration: float, *shaking: GroundMotion | None) -> Scene:
-        """This scene with another release, shape (n, 3) each, duration [s], and horizontal and vertical ground motion.
-
-        What follows from the scene at rest is found once and shared.
-        """
-        for name in SHARED:
-            getattr(self, name)
-        made, (motion, vertical, *_) = copy(self), (*shaking, None, None)
-        made.__dict__.update(release=(pose, velocity), duration=duration, motion=motion, vertical=vertical)
-        for name in ("started", "release_energy"):
-            made.__dict__.pop(name, None)
-        return made
-
-    @cached_property
-    def weight(self) -> Array:
-        """Sum of MuJoCo's inverse weights of the two bodies of each contact [1/kg], shape (m,)."""
-        inverse = planar_weight(self.mass)
-        return frozen(inverse[self.point_body] + np.where(self.face_body < 0, 0.0, inverse[self.face_body]))
+        return lowered(self.places, self.k, self.forces, self.masses, pose)
 
     @cached_property
     def extent(self) -> float:
@@ -185,29 +158,17 @@ class Scene:
         return frozen(np.column_stack([self.mass, self.mass, self.inertia]).ravel())
 
     @cached_property
-    def _points(self) -> Points:
-        """The contacts for the compiled functions, before it is known which of them bear the weight."""
-        corners = np.concatenate([rest + outline for rest, outline in zip(self.rest, self.outlines, strict=True)])
-        span = float(np.hypot(*np.ptp(corners, axis=0))) if len(self.names) > 1 else np.inf
-        return Points(
+    def places(self) -> Places:
+        """The contacts for the compiled functions."""
+        return Places(
+            axes=PLANE.axes,
             body=self.point_body,
             at=self.point,
             face_body=self.face_body,
             face_at=self.face,
             normal=self.normal,
             between=self._between(self.point_body, self.point, self.face_body, self.face),
-            k=self.k,
-            c=self.c,
-            friction=self.friction,
-            rubs=frozen((self.friction > 0) & np.logical_not(self.holds)),
-            weight=self.weight,
-            held=frozen(np.where(self.friction > 0, HELD_MASSES * 2 / (3 * self.weight), 0.0)),
-            growth=0.0 if np.any(self.holds) else HELD_GROWTH,
             radius=self.radius,
-            reach=span,
-            overlap=2 * self.extent if len(self.names) > 1 else np.inf,
-            bears=np.zeros(len(self.k)),
-            overdamped=np.full(len(self.k), OVERDAMPED),
         )
 
     def _between(self, body: Integers, at: Array, other: Integers, start: Array) -> Array:
@@ -220,8 +181,8 @@ class Scene:
         return Ties(
             body=self.tie_body,
             at=self.tie_point,
-            face_body=self.anchor_body,
-            face_at=self.anchor,
+            anchor_body=self.anchor_body,
+            anchor_at=self.anchor,
             between=self._between(self.tie_body, self.tie_point, self.anchor_body, self.anchor),
             k=self.tie_k,
             reach=self.tie_length,
@@ -234,21 +195,24 @@ class Scene:
         return Forces(self.force_body, self.force_point, self.force)
 
     @cached_property
-    def points(self) -> Points:
-        """The contacts for the compiled functions."""
-        bears = np.maximum(-gaps(self._points, _one(self.at_rest))[0], 0)
-        mild = (len(self.names) > 1) & (bears > 0) & (self.c * self.weight < self.highest_frequency)
-        return self._points._replace(bears=bears, overdamped=np.where(mild, BORNE, OVERDAMPED))
+    def structure(self) -> Structure:
+        """What has energy, for the compiled functions."""
+        return Structure(self.places, self.k, self.ties, self.forces, self.masses)
+
+    @cached_property
+    def potential(self) -> Potential:
+        """The energy of springs, weight and constant forces as a function of the pose."""
+        return Potential(self.structure)
 
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, 3)."""
-        return settled(self._points, self.ties, self.forces, self.masses) if self.settled is None else self.settled
+        return settled(self.potential, self.friction) if self.settled is None else self.settled
 
     @cached_property
-    def started(self) -> tuple[Array, Array]:
-        """Pose and velocity at the release, shape (n, 3) each."""
-        return (self.at_rest, np.zeros_like(self.at_rest)) if self.release is None else self.release
+    def bears(self) -> Array:
+        """Penetration of each contact at rest [m], zero where it is open, shape (m,)."""
+        return frozen(np.maximum(-gaps(self.places, _one(self.at_rest))[0], 0))
 
     @cached_property
     def rest_energies(self) -> Array:
@@ -257,8 +221,8 @@ class Scene:
         return self.accounts(rest, np.zeros_like(rest))[0][0]
 
     def accounts(self, q: Array, v: Array) -> tuple[Array, Array]:
-        """Kinetic, potential and elastic energy, and what ties have taken, see `kinematics.energies`."""
-        return energies(self._points, self.ties, self.forces, self.masses, q, v)
+        """Kinetic, potential and elastic energy, and what ties have taken, see `potential.energies`."""
+        return energies(self.structure, q, v)
 
     def energy(self, pose: Array, velocity: Array) -> Array:
         """Energy above the scene at rest [J], shape (steps,), for poses and velocities of shape (steps, n, 3)."""
@@ -268,23 +232,19 @@ class Scene:
         return total
 
     @cached_property
-    def release_energy(self) -> float:
-        """Energy at the release above the scene at rest [J]."""
-        return float(self.energy(*(np.array([values]) for values in self.started))[0])
-
-    @cached_property
     def highest_frequency(self) -> float:
         """The highest natural frequency with every contact closed and free to slide [rad/s].
 
         No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
         """
-        rates = gap_rates(self._points, self.ties, np.zeros(3 * len(self.names))) / np.sqrt(self.masses)
-        return math.sqrt(float(np.linalg.eigvalsh((rates.T * np.append(self.k, self.tie_k)) @ rates)[-1]))
+        stiffness = self.potential.stiffness(np.zeros_like(self.masses), self.potential.springs)
+        root = np.sqrt(self.masses)
+        return math.sqrt(float(np.linalg.eigvalsh(stiffness / root / root[:, None])[-1]))
 
     @cached_property
     def tie_frequency(self) -> float:
         """The highest natural frequency of the bodies on one tie alone [rad/s], zero without ties."""
-        rates = gap_rates(self._points, self.ties, np.zeros(3 * len(self.names)))[len(self.k) :]
+        rates = self.potential.rates(np.zeros_like(self.masses))[len(self.k) :]
         return math.sqrt(max(self.tie_k * (rates**2 @ (1 / self.masses)), default=0.0))
 
     @cached_property
@@ -295,11 +255,11 @@ class Scene:
 
     @cached_property
     def key(self) -> str:
-        """A digest of all that has to be compiled: everything but what is set anew for every run.
+        """A digest of all that has to be compiled.
 
-        Springs and dashpots are set with each step, the release with each run, and titles and facts move nothing.
+        Springs and dashpots are set with each step, and limits, titles and facts move nothing.
         """
-        set_anew = {"k", "c", "settled", "release", "duration", "motion", "vertical", "title", "facts"}
+        set_anew = {"k", "c", "settled", "reach", "overlap", "damped_joints", "title", "facts"}
         digest = hashlib.sha256()
         for name in (one.name for one in fields(self) if one.name not in set_anew):
             parts = getattr(self, name) if name == "outlines" else (getattr(self, name),)

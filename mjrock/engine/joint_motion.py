@@ -1,0 +1,84 @@
+"""What the joints of masonry do in a run: how far they open and slide, and when they hold no longer."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled
+from ..geometry.frames import frames_of, take_frames
+from ..geometry.kinematics import Places, along, depth
+from ..problem.masonry import Masonry
+from ..problem.quantities import Array, Flags, Integers
+from ..result.joints import LOST
+from ..scene.scene import Scene
+from .steps import Steps
+
+AT_ONCE = 1_000_000
+"""Most gaps that are held at once while the joints of a run are looked at."""
+
+
+class Followed(NamedTuple):
+    """What joints did in a run.
+
+    Args:
+        opening, sliding: the largest of each joint [m], shape (joints,).
+        deepest: the deepest penetration [m].
+        lost: which joints hold no longer, shape (steps, joints).
+    """
+
+    opening: Array
+    sliding: Array
+    deepest: float
+    lost: Flags
+
+
+def joint_motion(masonry: Masonry, scene: Scene, steps: Steps) -> Followed:
+    """What the joints of masonry did."""
+    joints = masonry.joints
+    number = {joint.name: i for i, joint in enumerate(joints)}
+    of, widths = np.array([number[name] for name in scene.group]), np.array([joint.width for joint in joints])
+    opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
+    lost, (back, forth) = np.zeros((len(steps.t), len(joints)), dtype=bool), np.array([j.travel for j in joints]).T
+    start = scene.at_rest.ravel()
+    frames = frames_of(start, scene.places.freedom)
+    at_rest = np.array(
+        [along(scene.places, i, frames, start).place for i in range(len(of))]
+    )  # of each line on its face
+    size = max(1, AT_ONCE // max(1, len(joints)))
+    for first in range(0, len(steps.t), size):
+        pose = steps.pose[first : first + size]
+        room = np.empty((2, len(pose), len(joints)))
+        deepest = max(deepest, _look(scene.places, Lines(of, at_rest), pose, frames, np.empty(len(joints)), *room))
+        opening, sliding = np.maximum(opening, room[0].max(axis=0)), np.maximum(sliding, np.abs(room[1]).max(axis=0))
+        lost[first : first + size] = (room[0] > LOST * widths) | (room[1] > forth) | (room[1] < -back)
+    return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
+
+
+class Lines(NamedTuple):
+    """The joint of each contact line, and the place of the line on its face at rest [m], shape (m,) each."""
+
+    joint: Integers
+    at_rest: Array
+
+
+@compiled
+def _look(places: Places, lines: Lines, pose: Array, frames: Array, most: Array, opened: Array, slid: Array) -> float:
+    """Write the opening of each joint at its widest line, and its sliding at its most pressed, shape (steps, joints).
+
+    Returns the deepest penetration [m]. `most` is room for the deepest line of each joint, shape (joints,).
+    """
+    deepest = 0.0
+    for n in range(len(pose)):
+        take_frames(pose[n], frames, places.axes)
+        for j in range(len(most)):
+            most[j], opened[n, j], slid[n, j] = -np.inf, 0.0, 0.0
+        for i in range(len(lines.joint)):
+            pressed, j = depth(places, i, frames), lines.joint[i]
+            opened[n, j] = max(opened[n, j], -pressed)
+            if pressed > most[j]:
+                most[j] = pressed
+                slid[n, j] = along(places, i, frames, pose[n]).place - lines.at_rest[i]
+                deepest = max(deepest, pressed)
+    return deepest

@@ -1,0 +1,75 @@
+"""Points: the contacts of a scene as the engine's loops take them."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.kinematics import Places
+from ..problem.quantities import Array, Flags
+from ..scene.arrays import frozen
+from ..scene.scene import Scene
+from .contact import BORNE, HELD_GROWTH, HELD_MASSES, OVERDAMPED, planar_weight
+from .rows import Law, RowInertia
+
+
+class Reach(NamedTuple):
+    """How far contacts go.
+
+    Args:
+        bears: penetration of each at rest [m], zero where it is open, shape (m,).
+        opened, overlapped: largest gap and deepest penetration that a run follows [m].
+    """
+
+    bears: Array
+    opened: float
+    overlapped: float
+
+
+class Points(NamedTuple):
+    """The contacts of a scene.
+
+    Args:
+        places: where they are.
+        law: their springs, dashpots and friction.
+        inertia: what MuJoCo's rows need besides.
+        reach: how far they go.
+        rubs: which slide by Coulomb's law, see `mjrock.engine.sliding`, shape (m,).
+    """
+
+    places: Places
+    law: Law
+    inertia: RowInertia
+    reach: Reach
+    rubs: Flags
+
+
+def inverse_weights(scene: Scene) -> Array:
+    """Sum of MuJoCo's inverse weights of the two bodies of each contact [1/kg], shape (m,)."""
+    inverse = planar_weight(scene.mass)
+    return frozen(inverse[scene.point_body] + np.where(scene.face_body < 0, 0.0, inverse[scene.face_body]))
+
+
+@lru_cache(maxsize=64)
+def points_of(scene: Scene) -> Points:
+    """The contacts of a scene.
+
+    Friction of a base that holds is a number that holds it, and no law of sliding. A joint that bears weight, and whose
+    dashpot is weaker than the stiffest vibration, has it centred in long steps too where the scene asks for that.
+    """
+    weight = inverse_weights(scene)
+    mild = scene.damped_joints & (scene.bears > 0) & (scene.c * weight < scene.highest_frequency)
+    return Points(
+        places=scene.places,
+        law=Law(scene.k, scene.c, scene.friction),
+        inertia=RowInertia(
+            weight=weight,
+            overdamped=np.where(mild, BORNE, OVERDAMPED),
+            friction=frozen(np.where(scene.friction > 0, HELD_MASSES * 2 / (3 * weight), 0.0)),
+            growth=0.0 if np.any(scene.holds) else HELD_GROWTH,
+        ),
+        reach=Reach(scene.bears, scene.reach, scene.overlap),
+        rubs=frozen((scene.friction > 0) & np.logical_not(scene.holds)),
+    )

@@ -1,0 +1,129 @@
+"""Reading: what a motion says of a wall, or of the joints of masonry. All else of a run is the same for both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..geometry.kinematics import gaps
+from ..problem.case import Case
+from ..problem.contacts import Contacts
+from ..problem.masonry_case import MasonryCase
+from ..problem.quantities import Array, Integers
+from ..problem.uplift import Uplift
+from ..result.history import rocking_history
+from ..result.joints import JointMotion, fallen_blocks
+from ..result.response import Outcome, ending, masonry_ending
+from ..result.rocking import Rocking
+from ..scene.course import Course
+from ..scene.scene import Scene
+from .joint_motion import joint_motion
+from .steps import Steps
+
+MARKS = 1000
+"""Times in a run of masonry between which no energy may appear."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """What a motion says.
+
+    Args:
+        outcome, message: how it ended.
+        marks: windows of the steps between which no energy may appear, in order.
+        count: how many steps come before the wall cannot come back, or before the first block falls.
+        rocking: impacts and peaks of a wall.
+        joints: openings, slidings and falls of masonry.
+        stats: how far contacts went.
+        slid: largest slip of the base of a wall since the release while it can still come back [m].
+    """
+
+    outcome: Outcome
+    message: str
+    marks: Integers
+    count: int
+    rocking: Rocking | None = None
+    joints: JointMotion | None = None
+    stats: dict[str, Any] = field(default_factory=dict)
+    slid: float = 0.0
+
+
+class Asked(Protocol):
+    """A case, and how the motion of its bodies is read."""
+
+    @property
+    def case(self) -> Case | MasonryCase:
+        """What was asked."""
+
+    def read(self, scene: Scene, course: Course, steps: Steps, energy: Array) -> Reading:
+        """What a motion says; `energy` is that at the steps above the scene at rest [J]."""
+
+
+@dataclass(frozen=True)
+class AskedWall:
+    """A wall on its contacts."""
+
+    case: Case
+    contacts: Contacts
+
+    def read(self, scene: Scene, course: Course, steps: Steps, energy: Array) -> Reading:
+        """Peaks and impacts. No energy may appear from one peak to a later one."""
+        case, uplift = self.case, Uplift.of(self.case, self.contacts)
+        t, theta, omega = steps.t, steps.pose[:, 2], steps.velocity[:, 2]
+        times, peaks, impacts = rocking_history(case, t, theta, omega, energy, uplift, released=course.released)
+        # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
+        standing = np.flatnonzero(case.returns_from(theta))
+        count = int(standing[-1]) + 1 if standing.size else 1
+        met = np.searchsorted(steps.windows.t, times[times <= t[count - 1]])
+        slip = steps.pose[:, 0] - case.wall.pose(theta)[:, 0]
+        deepest, groups = -gaps(scene.places, steps.pose).min(axis=0), np.array(scene.group)
+        stats = {"base_displacement": float(np.interp(case.duration, t, slip) - slip[0])}
+        stats |= {f"deepest_{name}": float(max(0.0, *deepest[groups == name])) for name in dict.fromkeys(scene.group)}
+        return Reading(
+            *ending(case, t, theta, energy, uplift.energy),
+            marks=np.unique(np.concatenate([[0], np.minimum(met, count - 1), [count - 1]])),
+            count=count,
+            rocking=Rocking(impacts, peaks),
+            stats=stats,
+            slid=float(np.abs(slip[:count] - slip[0]).max()),
+        )
+
+
+@dataclass(frozen=True)
+class AskedMasonry:
+    """Masonry on its joints."""
+
+    case: MasonryCase
+
+    def read(self, scene: Scene, course: Course, steps: Steps, energy: Array) -> Reading:
+        """Openings, slidings and falls. No energy may appear from one of MARKS times to a later one before a fall.
+
+        Masonry is quiet when the energy that is left opens no joint: it is less than that of the springs at rest. A
+        structure that is falling has less energy than at rest, and is not quiet.
+        """
+        masonry, t = self.case.masonry, steps.t
+        motion = joint_motion(masonry, scene, steps)
+        sizes = np.array([masonry.blocks[i].size for i in masonry.free])
+        drop = (scene.at_rest[:, 1] - steps.pose[:, 1::3]) / sizes
+        fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
+        count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
+        quiet = bool(abs(energy[-1]) < scene.rest_energies[2])
+        return Reading(
+            *masonry_ending(fallen, quiet, min(float(t[-1]), course.duration)),
+            marks=np.linspace(0, count - 1, min(count, MARKS)).astype(int),
+            count=count,
+            joints=JointMotion(motion.opening, motion.sliding, fallen),
+            stats={"deepest": motion.deepest},
+        )
+
+
+def left_behind(scene: Scene, course: Course, steps: Steps) -> dict[str, float]:
+    """When a run ended that a block left by going too far or turning over [s], by the name of each that did."""
+    end = float(steps.t[-1])
+    if end >= course.duration - 0.5 * float(steps.h[-1]):
+        return {}
+    moved = steps.pose[-1].reshape(-1, 3) - scene.at_rest
+    far = np.hypot(moved[:, 0], moved[:, 1]) + np.abs(moved[:, 2]) * scene.extent
+    return {name: end for name, distance in zip(scene.names, far, strict=True) if distance >= 0.5 * far.max()}

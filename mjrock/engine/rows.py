@@ -1,0 +1,105 @@
+"""Rows: what MuJoCo solves for each contact in a step, from the contact law and the length of the step.
+
+A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate of
+1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its inertia
+leaves: a load F creeps at F h / held, or F / (growth held) in a step longer than 1 / growth. MuJoCo has one impratio
+for all contacts. It is the largest with which no friction row has more inertia than it should.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import jitable
+from ..problem.quantities import Array
+from .contact import pair_values, row
+
+
+class Law(NamedTuple):
+    """The contact law.
+
+    Args:
+        k, c: spring [N/m] and dashpot [N s/m] of each contact, shape (m,).
+        friction: coefficient of friction [-], zero for none, shape (m,).
+    """
+
+    k: Array
+    c: Array
+    friction: Array
+
+
+class RowInertia(NamedTuple):
+    """What the rows of contacts need besides the law.
+
+    Args:
+        weight: sum of MuJoCo's inverse weights of the two bodies W [1/kg], shape (m,).
+        overdamped: c h W from which a dashpot is stiff for a step, see `contact.row` [-], shape (m,).
+        friction: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
+        growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
+    """
+
+    weight: Array
+    overdamped: Array
+    friction: Array
+    growth: float
+
+
+class Step(NamedTuple):
+    """A step.
+
+    Args:
+        h: its length [s].
+        beta: Newmark's beta of each contact [-], shape (m,).
+        ringing: an extra dashpot of each in units of h k [-], shape (m,).
+    """
+
+    h: float
+    beta: Array
+    ringing: Array
+
+
+class Rows(NamedTuple):
+    """The rows as MuJoCo keeps them, shapes (m, 2), (m, 2 or more) and (m, 2)."""
+
+    solref: Array
+    solimp: Array
+    solreffriction: Array
+
+    @classmethod
+    def of(cls, contacts: int) -> Rows:
+        """Room for the rows of some contacts."""
+        return cls(
+            np.zeros((contacts, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (contacts, 1)), np.zeros((contacts, 2))
+        )
+
+
+@jitable
+def row_of(law: Law, inertia: RowInertia, i: int, step: Step) -> tuple[float, float]:
+    """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `contact.row`."""
+    return row(law.k[i], law.c[i], step.h, inertia.weight[i], step.beta[i], step.ringing[i], inertia.overdamped[i])
+
+
+@jitable
+def impratio_of(inertia: RowInertia, i: int, own: float, h: float) -> float:
+    """Inertia that the friction row of contact i should have in a step h, over that of its normal row [-]."""
+    if inertia.friction[i] == 0:
+        return math.inf
+    return max(inertia.growth * h, 1.0) * inertia.friction[i] / own
+
+
+@jitable
+def set_rows(law: Law, inertia: RowInertia, step: Step, rows: Rows) -> float:
+    """Write the rows of all contacts for a step, and return the `impratio` of the model [-]."""
+    impratio = math.inf
+    for i in range(len(law.k)):
+        dashpot, own = row_of(law, inertia, i, step)
+        W = inertia.weight[i]
+        rows.solref[i, 0], rows.solref[i, 1], d = pair_values(law.k[i], dashpot, own, W)
+        rows.solimp[i, 0] = rows.solimp[i, 1] = d
+        if inertia.friction[i] > 0:
+            rows.solreffriction[i, 0], rows.solreffriction[i, 1] = -1e-30, -d / step.h
+        impratio = min(impratio, impratio_of(inertia, i, own, step.h))
+    return impratio if impratio < math.inf else 1.0

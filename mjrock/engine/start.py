@@ -1,0 +1,39 @@
+"""The start of a run that carries on an earlier one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..problem.case import Case
+from ..problem.effects import Tie
+from ..problem.masonry_case import MasonryCase
+from ..problem.quantities import ON_ITS_FACE, require_array, require_within, shown
+from ..result.response import State
+
+PARTS = ("pose", "velocity")
+"""What a state is made of."""
+LARGEST = 1e3
+"""Largest displacement or rate of a start [m, m/s, rad/s]."""
+
+
+def required_start(start: object, case: Case | MasonryCase, bodies: int) -> State:
+    """A start as pose and velocity of all bodies, each of shape (bodies, 3) and finite.
+
+    Raises:
+        TypeError: if it is no pose and velocity.
+        ValueError: for another shape, a value out of range, or ties that yield among the effects.
+    """
+    if any(isinstance(effect, Tie) and effect.strength < math.inf for effect in case.effects):
+        raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
+    pose, velocity = (
+        require_array(f"start, {name}", part, (bodies, 3)) for name, part in zip(PARTS, start, strict=True)
+    )
+    if isinstance(case, Case):
+        require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
+    for name, values in zip(PARTS, (pose, velocity), strict=True):
+        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, LARGEST)
+    return pose, velocity

@@ -1,0 +1,58 @@
+"""The model text of a case."""
+
+from __future__ import annotations
+
+from ..problem.case import Case
+from ..problem.contacts import Contacts
+from ..problem.masonry_case import MasonryCase
+from ..problem.quantities import require_kind, require_within
+from ..scene.of_case import course_of, scene_of
+from .model import released_mjcf
+
+
+def mjcf_of(case: Case | MasonryCase, contacts: Contacts | None, timestep: float, *, newmark_beta: float = 0.25) -> str:
+    """The model of a case as MJCF text; the same arguments give the same bytes.
+
+    Reset to the keyframe `release` and stepped, stock MuJoCo repeats `simulate(case, contacts, timestep)` where the
+    ground does not move. The camera is `front`. See `wall_mjcf` and `masonry_mjcf` for the other names in the text.
+
+    What slides in this text is pressed apart: a contact with the slip v adds mu (c / 2 + newmark_beta h k) |v| to its
+    normal force, as `simulate` at a fixed step does and warns of. Steps of the package that fit the motion, or
+    `simulate(..., coulomb=True)`, slide by Coulomb's law, and no text can say so.
+
+    Args:
+        case: the wall or the masonry, and its release.
+        contacts: the interfaces of a wall; None for masonry.
+        timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
+        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.contact`. Rows that MuJoCo
+            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.contact.row`.
+
+    Raises:
+        ValueError: if the contacts do not fit the case, if the masonry does not stand, or for a value outside its
+            range.
+    """
+    require_within("timestep", timestep, 1e-9, 1.0, "s")
+    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    scene = scene_of(case, contacts)
+    return released_mjcf(scene, course_of(case, scene), timestep, newmark_beta)
+
+
+def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: float = 0.25) -> str:
+    """The model of a wall as MJCF text, see `mjcf_of`.
+
+    Names: bodies and geoms `wall`, `base`, `side`; contact points `base_0`, `base_1`, ... from the inner to the outer
+    edge and `side_0`, ... from the bottom to the top; joints `x`, `z`, `theta`. Without a side stop there is no side
+    geom and no side pair.
+    """
+    require_kind("case", case, Case)
+    return mjcf_of(case, contacts, timestep, newmark_beta=newmark_beta)
+
+
+def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.25) -> str:
+    """The model of masonry as MJCF text, see `mjcf_of`.
+
+    Names: bodies and geoms as the blocks that are not fixed; contact points `a|b_0`, `a|b_1`, ... of the joint between
+    the blocks a and b; joints `a_x`, `a_z`, `a_theta`.
+    """
+    require_kind("case", case, MasonryCase)
+    return mjcf_of(case, None, timestep, newmark_beta=newmark_beta)

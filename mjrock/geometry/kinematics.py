@@ -1,0 +1,276 @@
+"""Kinematics of rigid bodies: gaps between points and faces, their rates, slip, lengths of ties.
+
+A contact is a point of one body and a face of another body or of the ground. Everything about it at a pose follows from
+where the two meet: the gap, the normal of the face, and the arms from the two centroids to the point. Rates follow from
+the velocity of the point over the body of the face, in which the face is at rest. This package is the only place where
+these formulas stand, apart from the independent solvers in `mjrock.reference`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled, inlined, jitable
+from ..problem.quantities import Array, Integers
+from .frames import Freedom, displaced, linear, place, push_body, spin, swung, take_frames
+from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, vector
+
+
+class Places(NamedTuple):
+    """Contact points and the faces that they meet, as arrays for compiled functions. Vectors have d = 2 or 3 numbers.
+
+    Args:
+        axes: of the freedom of the bodies, see `Freedom`.
+        body: the body that carries each point, shape (m,).
+        at: position of the point from the centroid of that body, at rest [m], shape (m, d).
+        face_body: the body whose face the point meets, -1 for the ground, shape (m,).
+        face_at: origin of the face from the centroid of its body, at rest, or from the origin of the world [m], (m, d).
+        normal: unit vector out of the face at rest, shape (m, d).
+        between: vector from the origin of the face to the point, at rest [m], shape (m, d).
+        radius: of the spheres that stand for the points in MuJoCo [m].
+    """
+
+    axes: tuple[int, ...]
+    body: Integers
+    at: Array
+    face_body: Integers
+    face_at: Array
+    normal: Array
+    between: Array
+    radius: float
+
+    @property
+    def freedom(self) -> Freedom:
+        """How the bodies may move."""
+        return Freedom(self.axes)
+
+
+class Ties(NamedTuple):
+    """Ties between points of two bodies, or of a body and the ground, as arrays for compiled functions.
+
+    Args:
+        body: the body that each tie holds, shape (t,).
+        at: position of the held point from the centroid of that body, at rest [m], shape (t, d).
+        anchor_body: the body of the anchor, -1 for the ground, shape (t,).
+        anchor_at: the anchor from the centroid of its body, at rest, or from the origin of the world [m], shape (t, d).
+        between: vector from the anchor to the held point, at rest [m], shape (t, d).
+        k: stiffness [N/m], shape (t,).
+        reach: length up to which the tie is slack [m], shape (t,). It grows as the tie yields.
+        stretch: elongation at which the tie yields [m], infinite for one that does not, shape (t,).
+    """
+
+    body: Integers
+    at: Array
+    anchor_body: Integers
+    anchor_at: Array
+    between: Array
+    k: Array
+    reach: Array
+    stretch: Array
+
+
+class Forces(NamedTuple):
+    """Forces that keep size and direction and follow a point of a body, as arrays for compiled functions.
+
+    Args:
+        body: the body that each force acts on, shape (f,).
+        at: position of its point from the centroid of that body, at rest [m], shape (f, d).
+        force: its components [N], shape (f, d).
+    """
+
+    body: Integers
+    at: Array
+    force: Array
+
+
+class Meeting(NamedTuple):
+    """A point and its face at a pose.
+
+    Args:
+        gap: between point and face [m]; a negative gap is a penetration.
+        normal: of the face, in the world.
+        across: from the origin of the face to the point [m].
+        arm, face_arm: from the centroids of the two bodies to the point [m]; of the ground no arm is taken.
+    """
+
+    gap: float
+    normal: Vector
+    across: Vector
+    arm: Vector
+    face_arm: Vector
+
+
+class Gap(NamedTuple):
+    """How a gap, or the slack of a tie, changes.
+
+    Args:
+        value: the gap [m].
+        rate: its rate [m/s], linear in the velocities.
+        linear: the part of the second rate that is linear in the accelerations, and the same function of them as the
+            rate is of the velocities [m/s2].
+        swept: the part that is quadratic in the velocities, centripetal and Coriolis [m/s2].
+    """
+
+    value: float
+    rate: float
+    linear: float
+    swept: float
+
+
+class Slip(NamedTuple):
+    """How a point moves along its face.
+
+    Args:
+        place: position along the face, from the origin of the face [m].
+        rate: its rate [m/s].
+        bodies: slip of the two bodies where MuJoCo lets friction act, halfway between the surface of the sphere and the
+            face [m/s].
+    """
+
+    place: float
+    rate: float
+    bodies: float
+
+
+@inlined
+def meeting(places: Places, i: int, frames: Array) -> Meeting:
+    """Where point i and its face meet at a pose."""
+    axes, body, face = places.axes, places.body[i], places.face_body[i]
+    at, normal = vector(places.at, i, axes), vector(places.normal, i, axes)
+    between = plus(vector(places.between, i, axes), place(frames, body, axes))
+    arm, across = plus(at, swung(frames, body, at)), displaced(between, frames, body, at)
+    if face < 0:
+        return Meeting(dot(normal, across), normal, across, arm, across)
+    at = vector(places.face_at, i, axes)
+    across = minus(across, displaced(place(frames, face, axes), frames, face, at))
+    normal = displaced(normal, frames, face, normal)
+    face_arm = plus(plus(at, swung(frames, face, at)), across)
+    return Meeting(dot(normal, across), normal, across, arm, face_arm)
+
+
+@inlined
+def where_friction_acts(places: Places, meets: Meeting) -> Meeting:
+    """The same meeting with its arms to where friction acts, see `Slip`."""
+    below = scaled(0.5 * meets.gap + places.radius, meets.normal)
+    return Meeting(meets.gap, meets.normal, meets.across, minus(meets.arm, below), minus(meets.face_arm, below))
+
+
+@inlined
+def over_face(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> Vector:
+    """Velocity, over the body of the face, of the place of the other body to which the arms lead [m/s].
+
+    For accelerations it is the part that is linear in them [m/s2].
+    """
+    axes, body, face = places.axes, places.body[i], places.face_body[i]
+    moving = plus(linear(v, body, axes), spun(spin(frames, v, body, axes), meets.arm))
+    if face < 0:
+        return moving
+    return minus(moving, plus(linear(v, face, axes), spun(spin(frames, v, face, axes), meets.face_arm)))
+
+
+@inlined
+def gap(places: Places, i: int, frames: Array, v: Array, a: Array) -> Gap:
+    """The gap of point i, and how it changes with the velocities v and accelerations a of the bodies."""
+    meets, axes, face = meeting(places, i, frames), places.axes, places.face_body[i]
+    velocity, normal = over_face(places, i, meets, frames, v), meets.normal
+    turning = spin(frames, v, places.body[i], axes)
+    swept = dot(normal, spun(turning, spun(turning, meets.arm)))
+    if face >= 0:
+        turning = spin(frames, v, face, axes)
+        swept -= dot(normal, spun(turning, plus(spun(turning, meets.face_arm), scaled(2.0, velocity))))
+    return Gap(meets.gap, dot(normal, velocity), dot(normal, over_face(places, i, meets, frames, a)), swept)
+
+
+@inlined
+def depth(places: Places, i: int, frames: Array) -> float:
+    """Penetration of point i [m], negative where it is open."""
+    return -meeting(places, i, frames).gap
+
+
+@inlined
+def along(places: Places, i: int, frames: Array, v: Array) -> Slip:
+    """Where point i is along its face, in the plane, and how it moves with the velocities v of the bodies."""
+    meets = meeting(places, i, frames)
+    along_face = tangent(meets.normal)
+    rate = dot(along_face, over_face(places, i, meets, frames, v))
+    bodies = dot(along_face, over_face(places, i, where_friction_acts(places, meets), frames, v))
+    return Slip(dot(along_face, meets.across), rate, bodies)
+
+
+@jitable
+def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vector, total: Array) -> None:
+    """Add to generalised forces what a force does on the body of point i, and its reaction on that of the face [N]."""
+    push_body(frames, places.body[i], meets.arm, force, total)
+    if places.face_body[i] >= 0:
+        push_body(frames, places.face_body[i], meets.face_arm, scaled(-1.0, force), total)
+
+
+@inlined
+def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array, axes: tuple[int, ...]) -> Gap:
+    """How much longer tie i may still become before it pulls [m], and how that changes; else as `gap`."""
+    body, anchor = ties.body[i], ties.anchor_body[i]
+    at = vector(ties.at, i, axes)
+    arm = plus(at, swung(frames, body, at))
+    across = plus(vector(ties.between, i, axes), plus(place(frames, body, axes), minus(arm, at)))
+    turning = spin(frames, v, body, axes)
+    velocity = plus(linear(v, body, axes), spun(turning, arm))
+    acceleration = plus(linear(a, body, axes), spun(spin(frames, a, body, axes), arm))
+    centripetal = spun(turning, spun(turning, arm))
+    if anchor >= 0:
+        at = vector(ties.anchor_at, i, axes)
+        arm = plus(at, swung(frames, anchor, at))
+        across = minus(across, plus(place(frames, anchor, axes), minus(arm, at)))
+        turning = spin(frames, v, anchor, axes)
+        velocity = minus(velocity, plus(linear(v, anchor, axes), spun(turning, arm)))
+        acceleration = minus(acceleration, plus(linear(a, anchor, axes), spun(spin(frames, a, anchor, axes), arm)))
+        centripetal = minus(centripetal, spun(turning, spun(turning, arm)))
+    length = math.sqrt(dot(across, across))
+    way = scaled(1 / length, across)
+    longer = dot(way, velocity)
+    swept = dot(way, centripetal) + (dot(velocity, velocity) - longer * longer) / length
+    return Gap(ties.reach[i] - length, -longer, -dot(way, acceleration), -swept)
+
+
+@inlined
+def opening(places: Places, ties: Ties, i: int, frames: Array, v: Array, a: Array) -> Gap:
+    """The gap of contact i, or the slack of the tie that follows after the contacts."""
+    if i < len(places.body):
+        return gap(places, i, frames, v, a)
+    return slack(ties, i - len(places.body), frames, v, a, places.axes)
+
+
+@jitable
+def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> tuple[float, float]:
+    """Elastic elongation of tie i, and by how much it has just yielded [m]. Its reach is brought up to date.
+
+    The velocities v of the bodies make no difference.
+    """
+    pulled = -slack(ties, i, frames, v, v, axes).value
+    yielded = max(pulled - ties.stretch[i], 0.0)
+    ties.reach[i] += yielded
+    return max(pulled - yielded, 0.0), yielded
+
+
+@inlined
+def displacement(forces: Forces, i: int, frames: Array, axes: tuple[int, ...]) -> Vector:
+    """Displacement of the point of force i from rest [m]."""
+    body = forces.body[i]
+    return displaced(place(frames, body, axes), frames, body, vector(forces.at, i, axes))
+
+
+def gaps(places: Places, q: Array) -> Array:
+    """Gap of every point [m] at many poses of shape (steps, coordinates), shape (steps, m)."""
+    values, freedom = np.empty((len(q), len(places.body))), places.freedom
+    _gaps(places, q, freedom.frames(q.shape[1] // freedom.nq), values)
+    return values
+
+
+@compiled
+def _gaps(places: Places, q: Array, frames: Array, values: Array) -> None:
+    for step in range(len(q)):
+        take_frames(q[step], frames, places.axes)
+        for i in range(len(places.body)):
+            values[step, i] = -depth(places, i, frames)

@@ -1,0 +1,83 @@
+"""Vectors as tuples, for compiled functions: one text for the plane and for space.
+
+A vector of the plane is (x, z), and one of space is (x, y, z). A spin is (about y,) in the plane, positive where z
+turns towards x, and the three components of an angular velocity in space. numba compiles each function for the lengths
+of the tuples that it meets, so that the plane costs what it would cost alone.
+"""
+
+from __future__ import annotations
+
+from ..compiled import inlined
+from ..problem.quantities import Array
+
+Vector = tuple[float, ...]
+
+
+@inlined
+def vector(values: Array, i: int, axes: tuple[int, ...]) -> Vector:
+    """The first numbers of row i, as many as there are axes."""
+    if len(axes) == 2:
+        return values[i, 0], values[i, 1]
+    return values[i, 0], values[i, 1], values[i, 2]
+
+
+@inlined
+def plus(a: Vector, b: Vector) -> Vector:
+    """a + b."""
+    if len(a) == 1:
+        return (a[0] + b[0],)
+    if len(a) == 2:
+        return a[0] + b[0], a[1] + b[1]
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@inlined
+def minus(a: Vector, b: Vector) -> Vector:
+    """a - b."""
+    if len(a) == 1:
+        return (a[0] - b[0],)
+    if len(a) == 2:
+        return a[0] - b[0], a[1] - b[1]
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@inlined
+def scaled(factor: float, a: Vector) -> Vector:
+    """A vector times a number."""
+    if len(a) == 2:
+        return factor * a[0], factor * a[1]
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+@inlined
+def dot(a: Vector, b: Vector) -> float:
+    """Scalar product."""
+    if len(a) == 2:
+        return a[0] * b[0] + a[1] * b[1]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def spun(spin: Vector, r: Vector) -> Vector:
+    """Spin x r: the velocity of a point at r from the axis of a spin."""
+    if len(r) == 2:
+        return spin[0] * r[1], -spin[0] * r[0]
+    return spin[1] * r[2] - spin[2] * r[1], spin[2] * r[0] - spin[0] * r[2], spin[0] * r[1] - spin[1] * r[0]
+
+
+@inlined
+def moment(r: Vector, force: Vector) -> Vector:
+    """r x force: the moment of a force at r, with the components of a spin."""
+    if len(r) == 2:
+        return (r[1] * force[0] - r[0] * force[1],)
+    return (
+        r[1] * force[2] - r[2] * force[1],
+        r[2] * force[0] - r[0] * force[2],
+        r[0] * force[1] - r[1] * force[0],
+    )
+
+
+@inlined
+def tangent(normal: Vector) -> Vector:
+    """The direction along a face of the plane, a quarter turn from its normal."""
+    return normal[1], -normal[0]

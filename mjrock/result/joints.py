@@ -1,0 +1,79 @@
+"""What the joints of masonry did, and which blocks fell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..problem.joints import Joint
+from ..problem.masonry import Masonry
+from ..problem.quantities import Array, Flags
+
+LOST = 0.7
+"""Opening of a joint, over its width, beyond which it holds no longer [-]: the blocks have turned by 45 degrees."""
+DROPPED = 1.0
+"""Drop of a centroid, over the largest distance of a corner from it, beyond which a block has fallen [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """What is read from the motion of masonry.
+
+    Args:
+        opening: largest gap of each joint [m], shape (joints,).
+        sliding: largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,).
+        fallen: when each block that fell did [s], by its name, the first first. A block has fallen when no joint that
+            holds connects it with a fixed block any more, or when its centroid has dropped by its size. A joint no
+            longer holds when it has opened by 0.7 of its width, or when one block has slid off the other.
+    """
+
+    opening: Array
+    sliding: Array
+    fallen: Mapping[str, float]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, JointMotion):
+            return NotImplemented
+        same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in ("opening", "sliding"))
+        return same and dict(self.fallen) == dict(other.fallen)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[str, float]:
+    """When each block that fell did [s], by its name, the first first.
+
+    Args:
+        masonry: the masonry.
+        t: times [s], shape (n,).
+        lost: whether each joint has ceased to hold by then, shape (n, joints).
+        drop: how far each free block has dropped from rest, over its size [-], shape (n, bodies).
+    """
+    gone: dict[int, float] = {}
+    for body, block in enumerate(masonry.free):
+        late = np.flatnonzero(drop[:, body] > DROPPED)
+        if late.size:
+            gone[block] = float(t[late[0]])
+    for step in np.flatnonzero(np.diff(lost.sum(axis=1), prepend=0)):
+        held = [joint for joint, over in zip(masonry.joints, lost[step], strict=True) if not over]
+        for block in _cut_off(masonry, held):
+            gone[block] = min(gone.get(block, np.inf), float(t[step]))
+    return {masonry.names[block]: gone[block] for block in sorted(gone, key=gone.__getitem__)}
+
+
+def _cut_off(masonry: Masonry, held: Sequence[Joint]) -> list[int]:
+    """Blocks that no joint in `held` connects with a fixed block."""
+    beside: dict[int, list[int]] = {}
+    for joint in held:
+        beside.setdefault(joint.below, []).append(joint.above)
+        if not masonry.blocks[joint.below].fixed:
+            beside.setdefault(joint.above, []).append(joint.below)
+    reached = {i for i, block in enumerate(masonry.blocks) if block.fixed}
+    waiting = list(reached)
+    while waiting:
+        new = [block for block in beside.get(waiting.pop(), []) if block not in reached]
+        reached.update(new)
+        waiting += new
+    return [block for block in masonry.free if block not in reached]

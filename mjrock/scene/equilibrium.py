@@ -1,0 +1,130 @@
+"""Equilibrium: the poses in which the springs of the contacts carry the weight and the constant forces."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import null_space
+
+from ..geometry.kinematics import Forces, Places, gaps
+from ..problem.quantities import GRAVITY, Array, Flags
+from .potential import Potential
+
+ITERATIONS = 1000
+"""Most iterations of Newton's method. A wall that is nearly too heavy for its base takes hundreds."""
+ROUNDING = 16 * np.finfo(float).eps
+"""Rounding of the length of a tie, over that length [-]."""
+LEANING = 1e-6
+"""Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
+SMALLEST_SHARE = 1e-6
+"""Smallest share of a step of Newton's method [-]."""
+TURNED = 0.5
+"""Rotation beyond which a body no longer stands [rad]."""
+FLAT = 1e-12
+"""Negative stiffness that is put down to rounding, over the largest [-]."""
+
+
+class UnsettledError(ValueError):
+    """No pose of rest was found; `pose` is the last one that was tried, shape (n, 3)."""
+
+    def __init__(self, pose: Array) -> None:
+        super().__init__(
+            "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and "
+            "forces. The valid range are contacts that are stiffer, or loads and thrusts whose line of action with the "
+            "weight runs nearer to the middle of the base"
+        )
+        self.pose = pose
+
+
+def settled(potential: Potential, friction: Array) -> Array:
+    """The pose in which the springs of contacts and ties carry weight and forces, shape (n, 3).
+
+    Friction holds every joint that touches. Where no pose is found so, it holds those that are pressed: a block beside
+    a wall that touches and does not press would else carry it by friction alone.
+
+    Args:
+        potential: of the scene.
+        friction: coefficient of friction of each contact [-], shape (m,).
+
+    Raises:
+        UnsettledError: if no such pose is found near the undeformed one.
+    """
+    try:
+        return _settled(potential, friction, pressed=False)
+    except UnsettledError as error:
+        try:
+            return _settled(potential, friction, pressed=True)
+        except UnsettledError:
+            raise error from None
+
+
+def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
+    """As `settled`, by Newton's method on the potential energy, which every step lowers.
+
+    Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, or those that
+    are `pressed`.
+    """
+    ties, masses, m = potential.structure.ties, potential.structure.masses, len(friction)
+    pose, k = np.zeros_like(masses), potential.springs
+    closed = np.append(np.ones(m, dtype=bool), potential.openings(pose)[m:] < 0)
+    scale = GRAVITY * float(masses[1::3].max())
+    tolerated = max(1e-9 * scale, ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+    for _ in range(ITERATIONS):
+        rates, depth = potential.rates(pose), -potential.openings(pose)
+        stiffness = (rates.T * np.where(closed, k, LEANING * k)) @ rates
+        residual = potential.load(pose) + rates.T @ (np.where(closed, k, 0.0) * depth)
+        grip = k.max() * held_slips(potential, friction, closed & (depth > 0) if pressed else closed, pose)
+        matrix = np.block([[stiffness, grip.T], [grip, np.zeros((len(grip), len(grip)))]])
+        solution = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-14)[0]
+        moved, held = solution[: len(pose)], solution[len(pose) :]
+        if np.abs(residual - grip.T @ held).max() < tolerated and (closed == (depth > 0)).all():
+            if is_stable(potential, friction, closed, pose):
+                return pose.reshape(-1, 3)
+            break
+        energy, share = potential.energy(pose), 1.0
+        lower = energy + 1e-13 * max(scale, abs(energy))
+        while share > SMALLEST_SHARE and potential.energy(pose + share * moved) > lower:
+            share *= 0.5
+        pose = pose + share * moved
+        if not np.abs(pose[2::3]).max() < TURNED:
+            break
+        closed = potential.openings(pose) < 0
+    raise UnsettledError(pose.reshape(-1, 3))
+
+
+def is_stable(potential: Potential, friction: Array, closed: Flags, pose: Array) -> bool:
+    """Whether no motion that friction allows takes energy from a pose at rest, of shape (3 n,)."""
+    stiffness = potential.stiffness(pose, np.where(closed, potential.springs, 0.0))
+    size = float(np.abs(stiffness).max())
+    free = null_space(held_slips(potential, friction, closed, pose), rcond=1e-9)
+    hessian = stiffness + potential.curvature(pose)
+    return not free.size or float(np.linalg.eigvalsh(free.T @ hessian @ free)[0]) > -FLAT * size
+
+
+def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array) -> Array:
+    """Rates of the slip between bodies that friction holds, for unit velocities, shape (pairs of bodies, 3 n).
+
+    It is the mean slip of the closed points with friction of each pair. Two edges of one joint that both held would
+    lock its rotation.
+    """
+    places, slips = potential.structure.places, potential.slip_rates(pose)
+    pairs: dict[tuple[int, int], list[int]] = {}
+    for i in np.flatnonzero(closed[: len(friction)] & (friction > 0)):
+        body, face = int(places.body[i]), int(places.face_body[i])
+        pairs.setdefault((min(body, face), max(body, face)), []).append(int(i))
+    return np.reshape([slips[lines].mean(axis=0) for lines in pairs.values()], (-1, slips.shape[1]))
+
+
+def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:
+    """A pose lowered until the springs of level ground carry the weight of all bodies, shape (n, 3).
+
+    The bodies keep their rotations and their horizontal positions.
+    """
+    level = (places.face_body < 0) & (places.normal[:, 1] > 1 - 1e-12)
+    depth, k = -gaps(places, np.array(pose, dtype=float).reshape(1, -1))[0][level], springs[level]
+    order = np.argsort(-depth, kind="stable")  # the deepest points are loaded first
+    depth, k = depth[order], k[order]
+    # sum k_i max(0, depth_i - z) = m g + what presses down, for the points down to the i-th
+    carries = GRAVITY * masses[1::3].sum() - forces.force[:, 1].sum()
+    levels = (np.cumsum(k * depth) - carries) / np.cumsum(k)
+    z = levels[np.flatnonzero(levels >= np.append(depth[1:], -np.inf))[0]]
+    return pose + np.array([0.0, z, 0.0])

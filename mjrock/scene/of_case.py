@@ -1,0 +1,35 @@
+"""The scene and the course of a case, of a wall or of masonry."""
+
+from __future__ import annotations
+
+from ..problem.case import Case
+from ..problem.contacts import Contacts
+from ..problem.masonry_case import MasonryCase
+from ..problem.quantities import require_kind, shown
+from .course import Course
+from .masonry import masonry_course, masonry_scene
+from .scene import Scene
+from .wall import wall_course, wall_scene
+
+
+def scene_of(case: Case | MasonryCase, contacts: Contacts | None = None) -> Scene:
+    """What stands in a case: a wall on its contacts, or masonry, which has joints of its own.
+
+    Raises:
+        ValueError: if the contacts do not fit the case, or what stands in it falls under its weight.
+    """
+    if isinstance(case, MasonryCase):
+        if contacts is not None:
+            raise TypeError(f"contacts = {shown(contacts)}: masonry has its joints; leave contacts out")
+        return masonry_scene(case)
+    if isinstance(case, Contacts) and isinstance(contacts, Case):
+        raise TypeError("case and contacts are swapped: the case comes first")
+    require_kind("case", case, Case, MasonryCase)
+    require_kind("contacts", contacts, Contacts)
+    assert contacts is not None
+    return wall_scene(case, contacts)
+
+
+def course_of(case: Case | MasonryCase, scene: Scene) -> Course:
+    """What happens to the scene of a case."""
+    return masonry_course(case, scene) if isinstance(case, MasonryCase) else wall_course(case, scene)

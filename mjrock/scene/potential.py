@@ -1,0 +1,248 @@
+"""Potential: the energy of springs, weight and constant forces as a function of the pose, and its derivatives.
+
+Contacts and ties are springs alike, which act while they are pressed or taut. Contacts come first, then ties.
+Velocities and forces are those of the joints of all bodies, shape (n nv,) with nv velocities a body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled, inlined, jitable
+from ..geometry.frames import frames_of, push_body, swung, take_frames
+from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, stretch
+from ..geometry.vectors import dot, plus, vector
+from ..problem.quantities import GRAVITY, Array
+
+
+class Structure(NamedTuple):
+    """What has energy in a scene, as arrays for compiled functions.
+
+    Args:
+        places: the contacts.
+        k: their springs [N/m], shape (m,).
+        ties, forces: the ties and the constant forces.
+        masses: the generalised ones, the mass in every direction and then the moments of inertia of each body, (n nv,).
+    """
+
+    places: Places
+    k: Array
+    ties: Ties
+    forces: Forces
+    masses: Array
+
+
+@jitable
+def spring_energy(places: Places, k: Array, i: int, frames: Array) -> float:
+    """Energy in the spring of contact i [J]."""
+    pressed = max(depth(places, i, frames), 0.0)
+    return 0.5 * k[i] * pressed * pressed
+
+
+@inlined
+def weight_energy(masses: Array, q: Array, axes: tuple[int, ...]) -> float:
+    """Energy of the weight of all bodies above their position at rest [J]."""
+    energy = 0.0
+    if len(axes) == 2:
+        for body in range(len(masses) // 3):
+            energy += GRAVITY * masses[3 * body] * q[3 * body + 1]
+    else:
+        for body in range(len(masses) // 6):
+            energy += GRAVITY * masses[6 * body] * q[7 * body + 2]
+    return energy
+
+
+@jitable
+def force_energy(forces: Forces, frames: Array, axes: tuple[int, ...]) -> float:
+    """Energy of the constant forces above their position at rest [J]."""
+    energy = 0.0
+    for i in range(len(forces.body)):
+        energy -= dot(vector(forces.force, i, axes), displacement(forces, i, frames, axes))
+    return energy
+
+
+def energies(structure: Structure, q: Array, v: Array) -> tuple[Array, Array]:
+    """Kinetic, potential and elastic energy at the steps of a motion [J], shape (steps, 3), and what ties have taken.
+
+    The potential energy is that of the weight above the position of rest of the centroids, and that of the constant
+    forces. Ties yield as the motion goes on. What they have taken up to each step has the shape (steps, t) [J].
+
+    Args:
+        structure: what has energy.
+        q, v: poses and velocities, shapes (steps, n nq) and (steps, n nv).
+    """
+    parts, taken = np.zeros((len(q), 3)), np.zeros((len(q), len(structure.ties.k)))
+    ties = structure.ties._replace(reach=np.array(structure.ties.reach))
+    freedom = structure.places.freedom
+    _energies(structure._replace(ties=ties), q, v, freedom.frames(q.shape[1] // freedom.nq), parts, taken)
+    return parts, taken
+
+
+@compiled
+def _energies(structure: Structure, q: Array, v: Array, frames: Array, parts: Array, taken: Array) -> None:
+    places, k, ties, masses = structure.places, structure.k, structure.ties, structure.masses
+    for step in range(len(q)):
+        take_frames(q[step], frames, places.axes)
+        for j in range(len(masses)):
+            parts[step, 0] += 0.5 * masses[j] * v[step, j] ** 2
+        parts[step, 1] = weight_energy(masses, q[step], places.axes)
+        parts[step, 1] += force_energy(structure.forces, frames, places.axes)
+        for i in range(len(k)):
+            parts[step, 2] += spring_energy(places, k, i, frames)
+        for i in range(len(ties.k)):
+            stretched, yielded = stretch(ties, i, frames, v[step], places.axes)
+            parts[step, 2] += 0.5 * ties.k[i] * stretched * stretched
+            taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * stretched * yielded
+
+
+@dataclass(frozen=True, eq=False)
+class Potential:
+    """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities."""
+
+    structure: Structure
+
+    @property
+    def springs(self) -> Array:
+        """Stiffness of contacts and ties [N/m], shape (m + t,)."""
+        return np.append(self.structure.k, self.structure.ties.k)
+
+    def openings(self, pose: Array) -> Array:
+        """Gaps of the contacts and slack of the ties [m], shape (m + t,)."""
+        places, ties, _, _, masses = self._parts
+        values, none = np.empty(len(places.body) + len(ties.k)), np.zeros_like(masses)
+        _openings(places, ties, frames_of(pose, places.freedom), none, values)
+        return values
+
+    def pressed(self, pose: Array) -> Array:
+        """How far each spring is pressed or stretched [m], zero where it is open, shape (m + t,)."""
+        pressed: Array = np.maximum(-self.openings(pose), 0.0)
+        return pressed
+
+    def rates(self, pose: Array) -> Array:
+        """Rates of the openings for unit velocities, shape (m + t, n nv)."""
+        places, ties, _, _, masses = self._parts
+        rates, none = np.zeros((len(places.body) + len(ties.k), len(masses))), np.zeros_like(masses)
+        _rates(places, ties, frames_of(pose, places.freedom), np.zeros_like(masses), none, rates)
+        return rates
+
+    def slip_rates(self, pose: Array) -> Array:
+        """Rates at which the points move along their faces for unit velocities, shape (m, n nv)."""
+        places, _, _, _, masses = self._parts
+        rates = np.zeros((len(places.body), len(masses)))
+        _slip_rates(places, frames_of(pose, places.freedom), np.zeros_like(masses), rates)
+        return rates
+
+    def load(self, pose: Array) -> Array:
+        """Generalised force of the weight and of the constant forces, shape (n nv,)."""
+        places, _, forces, _, masses = self._parts
+        axes, freedom = places.axes, places.freedom
+        total, frames, upwards = np.zeros_like(masses), frames_of(pose, freedom), freedom.translations - 1
+        total[upwards :: freedom.nv] = -GRAVITY * masses[upwards :: freedom.nv]
+        for i, body in enumerate(forces.body):
+            at = vector(forces.at, i, axes)
+            push_body(frames, body, plus(at, swung(frames, body, at)), vector(forces.force, i, axes), total)
+        return total
+
+    def energy(self, pose: Array) -> float:
+        """Energy of springs, weight and constant forces [J]."""
+        places, _, forces, _, masses = self._parts
+        elastic = 0.5 * float(self.springs @ self.pressed(pose) ** 2)
+        weight = weight_energy(masses, pose, places.axes)
+        return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom), places.axes))
+
+    def gradient(self, pose: Array) -> Array:
+        """Derivatives of the energy, shape (n nv,)."""
+        gradient: Array = -self.load(pose) - self.rates(pose).T @ (self.springs * self.pressed(pose))
+        return gradient
+
+    def stiffness(self, pose: Array, springs: Array) -> Array:
+        """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
+        rates = self.rates(pose)
+        stiffness: Array = (rates.T * springs) @ rates
+        return stiffness
+
+    def curvature(self, pose: Array) -> Array:
+        """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
+
+        A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
+        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise.
+        """
+        places, ties, forces, _, masses = self._parts
+        frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
+        curvature = np.zeros((len(masses), len(masses)))
+        _curvatures(places, ties, frames, none, self.springs * self.pressed(pose), curvature)
+        for i, body in enumerate(forces.body):  # a planar body has one rotation
+            at = vector(forces.at, i, places.axes)
+            arm = plus(at, swung(frames, body, at))
+            curvature[3 * body + 2, 3 * body + 2] += dot(vector(forces.force, i, places.axes), arm)
+        return curvature
+
+    def hessian(self, pose: Array) -> Array:
+        """Second derivatives of the energy, shape (n nv, n nv)."""
+        closed = self.openings(pose) < 0
+        hessian: Array = self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
+        return hessian
+
+    @property
+    def _parts(self) -> tuple[Places, Ties, Forces, Array, Array]:
+        structure = self.structure
+        return structure.places, structure.ties, structure.forces, structure.k, structure.masses
+
+
+@inlined
+def _bodies(places: Places, ties: Ties, i: int) -> tuple[int, int]:
+    """The two bodies of contact i, or of the tie that follows after the contacts."""
+    m = len(places.body)
+    return (places.body[i], places.face_body[i]) if i < m else (ties.body[i - m], ties.anchor_body[i - m])
+
+
+@compiled
+def _openings(places: Places, ties: Ties, frames: Array, none: Array, values: Array) -> None:
+    for i in range(len(values)):
+        values[i] = opening(places, ties, i, frames, none, none).value
+
+
+@compiled
+def _rates(places: Places, ties: Ties, frames: Array, unit: Array, none: Array, rates: Array) -> None:
+    nv = len(unit) // len(frames)
+    for i in range(len(rates)):
+        for body in _bodies(places, ties, i):
+            for j in range(nv * body, nv * body + nv if body >= 0 else 0):
+                unit[j] = 1.0
+                rates[i, j] = opening(places, ties, i, frames, unit, none).rate
+                unit[j] = 0.0
+
+
+@compiled
+def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> None:
+    nv = len(unit) // len(frames)
+    for i in range(len(rates)):
+        for body in (places.body[i], places.face_body[i]):
+            for j in range(nv * body, nv * body + nv if body >= 0 else 0):
+                unit[j] = 1.0
+                rates[i, j] = along(places, i, frames, unit).rate
+                unit[j] = 0.0
+
+
+@compiled
+def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: Array, curvature: Array) -> None:
+    """Add the geometric stiffness of each closed spring. What is quadratic in the velocities in the second rate of an
+    opening is its second derivative along them."""
+    nv, way = len(none) // len(frames), none
+    for i in range(len(force)):
+        if force[i] == 0:
+            continue
+        body, other = _bodies(places, ties, i)
+        for p in range(2 * nv if other >= 0 else nv):
+            for r in range(2 * nv if other >= 0 else nv):
+                row = nv * body + p if p < nv else nv * other + p - nv
+                column = nv * body + r if r < nv else nv * other + r - nv
+                for sign in (1.0, -1.0):
+                    way[row] += 1.0
+                    way[column] += sign
+                    bent = opening(places, ties, i, frames, way, way).swept
+                    curvature[row, column] -= 0.25 * sign * force[i] * bent
+                    way[row], way[column] = 0.0, 0.0
