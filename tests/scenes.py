@@ -3,13 +3,20 @@
 import numpy as np
 
 import mjrock as mr
+from mjrock.scene.course import Course
 
 
-def two_blocks(k_n=5e8, friction=0.7, xi=0.049, *, motion=None, duration=1.0, width=0.6, height=2.1):
+def course(scene, velocity=None, duration=1.0, motion=None, *, pose=None, vertical=None):
+    """The course of a scene that starts at rest, or with a pose and a velocity of shape (n, 3)."""
+    pose = scene.at_rest if pose is None else np.asarray(pose, dtype=float)
+    velocity = np.zeros_like(scene.at_rest) if velocity is None else np.asarray(velocity, dtype=float)
+    return Course(pose, velocity, duration, motion, vertical)
+
+
+def two_blocks(k_n=5e8, friction=0.7, xi=0.049, *, width=0.6, height=2.1):
     """Two equal blocks one on the other, 1 m long, of 2000 kg/m3, with two lines a joint.
 
-    The damping ratio refers to the rocking of what stands on a joint about the middle of that joint. The blocks start
-    at rest.
+    The damping ratio refers to the rocking of what stands on a joint about the middle of that joint.
     """
     b, h = width / 2, height / 2
     mass = 2000.0 * width * height
@@ -37,6 +44,7 @@ def two_blocks(k_n=5e8, friction=0.7, xi=0.049, *, motion=None, duration=1.0, wi
         c=c,
         friction=[friction] * 4,
         group=("foot", "foot", "middle", "middle"),
-        motion=motion,
-        duration=duration,
+        reach=float(np.hypot(width, 2 * height)),
+        overlap=height,
+        damped_joints=True,
     )

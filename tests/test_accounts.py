@@ -10,12 +10,12 @@ from scenes import two_blocks
 import mjrock as mr
 from mjrock.engine import run as engine_run
 from mjrock.engine.accounts import ledger
-from mjrock.engine.kinematics import gaps
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fixed_steps
-from mjrock.engine.wall import wall_scene
+from mjrock.geometry.kinematics import gaps
 from mjrock.problem.uplift import Uplift
+from mjrock.scene.wall import wall_scene
 
 SQUAT = mr.Block.from_size(2.0, 2.0)
 """A block that slides before it rocks."""
@@ -63,7 +63,7 @@ def test_the_accounts_are_the_work_of_the_engines_forces(friction):
     model = mujoco.MjModel.from_xml_string(released_mjcf(scene, h))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    springs = 0.5 * scene.k * np.minimum(gaps(scene.points, steps.windows.pose), 0) ** 2
+    springs = 0.5 * scene.k * np.minimum(gaps(scene.places, steps.windows.pose), 0) ** 2
     exact = np.zeros((len(steps.t) - 1, 2, 4))
     for n in range(len(exact)):
         before = data.qvel.copy()

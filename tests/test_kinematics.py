@@ -6,11 +6,12 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from mjrock.engine.rest import settled
 from scenes import two_blocks
 
 import mjrock as mr
-from mjrock.engine.kinematics import along, depth, energies, frame_of, gap, gaps, slack, stretch
-from mjrock.engine.rest import settled
+from mjrock.geometry.frames import frames_of
+from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from paper import K_N
 
 
@@ -25,7 +26,7 @@ def test_the_released_wall_is_carried_by_its_springs(wall, points, share):
     contacts = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.05, points=points)
     scene = mr.wall_scene(mr.Case(wall, share * wall.alpha, 1.0, side_stop=False), contacts)
     pose, velocity = scene.started
-    forces = -scene.k * np.minimum(gaps(scene.points, pose), 0)
+    forces = -scene.k * np.minimum(gaps(scene.places, pose), 0)
     # rounding leaves some eps h of a gap, which is a small difference of lengths like h, and k times that of the force
     assert forces.sum() == pytest.approx(wall.weight, abs=10 * np.finfo(float).eps * wall.h * scene.k.sum())
     assert not velocity.any()
@@ -53,7 +54,7 @@ def test_gaps_are_those_of_the_corners(wall, contacts):
     c, s = math.cos(0.1), math.sin(0.1)
     heights = [wall.h - 0.001 - x * s - wall.h * c for x in (-wall.b, wall.b)]
     distances = [0.02 - wall.b * c + z * s + wall.b for z in (-wall.h, wall.h)]
-    np.testing.assert_allclose(gaps(scene.points, pose)[0], heights + distances, rtol=1e-13)
+    np.testing.assert_allclose(gaps(scene.places, pose)[0], heights + distances, rtol=1e-13)
 
 
 def test_rates_are_derivatives_also_of_a_face_that_turns():
@@ -63,12 +64,12 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
     t = 1e-4
     for q, v, a in zip(*poses(rng, 20, 2), strict=True):
         for i in range(len(scene.k)):
-            before, after = (gap(scene.points, i, frame_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
-            now = gap(scene.points, i, frame_of(q), v, a)
+            before, after = (gap(scene.places, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
+            now = gap(scene.places, i, frames_of(q), v, a)
             assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
             assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
-            assert gap(scene.points, i, frame_of(q), 2 * v, a)[1] == pytest.approx(2 * now[1])
-            assert gap(scene.points, i, frame_of(q), a, v)[1] == pytest.approx(now[2])
+            assert gap(scene.places, i, frames_of(q), 2 * v, a)[1] == pytest.approx(2 * now[1])
+            assert gap(scene.places, i, frames_of(q), a, v)[1] == pytest.approx(now[2])
 
 
 def tied_blocks():
@@ -102,12 +103,12 @@ def test_ties_between_bodies_that_turn():
     for q, v, a in zip(*poses(np.random.default_rng(9), 20, 2), strict=True):
         for i in range(2):
             ends = world(q, scene.tie_body[i], scene.tie_point[i]), world(q, scene.anchor_body[i], scene.anchor[i])
-            now = slack(scene.ties, i, frame_of(q), v, a)
+            now = slack(scene.ties, i, frames_of(q), v, a)
             assert now[0] == pytest.approx(scene.tie_length[i] - math.dist(*ends), abs=1e-12)
-            before, after = (slack(scene.ties, i, frame_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
+            before, after = (slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
             assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
             assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
-            assert slack(scene.ties, i, frame_of(q), a, v)[1] == pytest.approx(now[2])
+            assert slack(scene.ties, i, frames_of(q), a, v)[1] == pytest.approx(now[2])
 
 
 def test_a_tie_yields_beyond_its_strength_and_stays_longer():
@@ -115,7 +116,7 @@ def test_a_tie_yields_beyond_its_strength_and_stays_longer():
     scene = tied_blocks()
     ties = scene.ties._replace(reach=np.array(scene.ties.reach))
     q = np.zeros(6)
-    length = 2.0 - slack(ties, 0, frame_of(q), q, q)[0]
+    length = 2.0 - slack(ties, 0, frames_of(q), q, q)[0]
     limit = 1e5 / 2e6
     for reach, elastic, yielded in (
         (length + 0.1, 0.0, 0.0),
@@ -123,7 +124,7 @@ def test_a_tie_yields_beyond_its_strength_and_stays_longer():
         (length - limit - 0.3, limit, 0.3),
     ):
         ties.reach[0] = reach
-        assert stretch(ties, 0, frame_of(q), q) == pytest.approx((elastic, yielded), abs=1e-12)
+        assert stretch(ties, 0, frames_of(q), q) == pytest.approx((elastic, yielded), abs=1e-12)
         assert ties.reach[0] == pytest.approx(reach + yielded)
 
 
@@ -132,12 +133,12 @@ def test_a_place_along_a_face_moves_with_its_rate():
     scene, t = two_blocks(), 1e-5
     for q, v, _ in zip(*poses(np.random.default_rng(10), 20, 2), strict=True):
         for i in range(len(scene.k)):
-            before, after = (along(scene.points, i, frame_of(q + s * v), v)[0] for s in (-t, t))
-            assert (after - before) / (2 * t) == pytest.approx(along(scene.points, i, frame_of(q), v)[1], abs=1e-7)
-            assert depth(scene.points, i, frame_of(q)) == pytest.approx(-gap(scene.points, i, frame_of(q), v, v)[0])
+            before, after = (along(scene.places, i, frames_of(q + s * v), v)[0] for s in (-t, t))
+            assert (after - before) / (2 * t) == pytest.approx(along(scene.places, i, frames_of(q), v)[1], abs=1e-7)
+            assert depth(scene.places, i, frames_of(q)) == pytest.approx(-gap(scene.places, i, frames_of(q), v, v)[0])
     still = np.zeros(6)
     for i, place in enumerate((-0.3, 0.3, -0.3, 0.3)):
-        assert along(scene.points, i, frame_of(still), still)[0] == pytest.approx(place)
+        assert along(scene.places, i, frames_of(still), still)[0] == pytest.approx(place)
 
 
 def test_slip_is_the_relative_velocity_where_friction_acts():
@@ -159,7 +160,7 @@ def test_slip_is_the_relative_velocity_where_friction_acts():
     t = 1e-5
     for q, v, _ in zip(*poses(rng, 20, 2), strict=True):
         for i in range(len(scene.k)):
-            g = gap(scene.points, i, frame_of(q), v, v)[0]
+            g = gap(scene.places, i, frames_of(q), v, v)[0]
             face = scene.face_body[i]
             turn = q[3 * face + 2] if face >= 0 else 0.0
             nx, nz = scene.normal[i]
@@ -170,7 +171,7 @@ def test_slip_is_the_relative_velocity_where_friction_acts():
                 if body >= 0:
                     own = local_to(q, body, place)
                     relative += sign * (world(q + t * v, body, own) - world(q - t * v, body, own)) / (2 * t)
-            assert along(scene.points, i, frame_of(q), v)[2] == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
+            assert along(scene.places, i, frames_of(q), v)[2] == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
 
 
 def test_gaps_and_slip_are_those_of_the_engine():
@@ -188,19 +189,19 @@ def test_gaps_and_slip_are_those_of_the_engine():
             data.qpos[:], data.qvel[:] = q, v
             mujoco.mj_forward(model, data)
             jacobian = np.reshape(data.efc_J, (data.nefc, model.nv))
-            closed = np.flatnonzero(gaps(scene.points, q[None])[0] < 0)
+            closed = np.flatnonzero(gaps(scene.places, q[None])[0] < 0)
             assert data.ncon == len(closed)
             for contact in data.contact:
                 i = next(
                     i for i in range(model.npair) if {model.pair_geom1[i], model.pair_geom2[i]} == set(contact.geom)
                 )
                 seen.add(i)
-                g, rate, _, _ = gap(scene.points, i, frame_of(q), v, v)
+                g, rate, _, _ = gap(scene.places, i, frames_of(q), v, v)
                 assert contact.dist == pytest.approx(g, abs=1e-12)
                 row = contact.efc_address
                 assert jacobian[row] @ v == pytest.approx(rate, rel=1e-9, abs=1e-9)
                 slips = jacobian[row + 1 : row + contact.dim] @ v
-                assert np.hypot(*slips) == pytest.approx(abs(along(scene.points, i, frame_of(q), v)[2]), abs=1e-9)
+                assert np.hypot(*slips) == pytest.approx(abs(along(scene.places, i, frames_of(q), v)[2]), abs=1e-9)
     assert seen == set(range(len(scene.k)))
 
 
@@ -220,7 +221,7 @@ def test_energies_of_bodies_that_move():
     assert (found.shape, taken.shape) == ((5, 3), (5, 0))
     np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.masses))
     np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.mass))
-    np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.points, q), 0) ** 2 @ scene.k)
+    np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.places, q), 0) ** 2 @ scene.k)
 
 
 @pytest.mark.parametrize("side_stop", [True, False])
@@ -233,8 +234,8 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
     np.testing.assert_allclose(settled(scene.points, scene.ties, scene.forces, scene.masses), scene.at_rest, atol=1e-15)
-    np.testing.assert_allclose(scene.points.bears, wall.weight / scene.k[:2].sum() * np.array([1, 1, 0, 0]))
+    np.testing.assert_allclose(scene.bears, wall.weight / scene.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
-    force = -blocks.k * np.minimum(gaps(blocks.points, blocks.at_rest.reshape(1, -1))[0], 0)
+    force = -blocks.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)
     weights = mr.GRAVITY * blocks.mass
     np.testing.assert_allclose([force[2:].sum(), force[:2].sum()], [weights[1], weights.sum()], rtol=1e-9)

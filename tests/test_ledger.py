@@ -3,7 +3,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.engine import caveats
-from mjrock.engine.kinematics import gaps
+from mjrock.geometry.kinematics import gaps
 from paper import FIGURE_3, K_N
 
 
@@ -83,7 +83,7 @@ def test_the_dashpots_take_what_the_law_says(contacts):
     law = mr.solve_compliant(case, contacts, output_step=1e-5)
     book = mr.simulate(case, contacts, accuracy=1e-5, ledger=True).ledger
     scene = mr.wall_scene(case, contacts)
-    gap = gaps(scene.points, law.pose[:, 0])
+    gap = gaps(scene.places, law.pose[:, 0])
     rate = np.gradient(gap, law.t, axis=0)
     force = -(scene.k * gap + scene.c * rate)
     power = np.where(force > 0, scene.c * rate, -scene.k * gap) * rate * (gap < 0)

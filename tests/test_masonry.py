@@ -8,9 +8,10 @@ import pytest
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.engine.kinematics import frame_of, gap
-from mjrock.engine.masonry import standing_masonry
+from mjrock.geometry.frames import frames_of
+from mjrock.geometry.kinematics import gap
 from mjrock.problem.lines import rates
+from mjrock.scene.masonry import standing_masonry
 
 LEFT, RIGHT, TOP = (
     box(-1, 0, 0, 1, name="left"),
@@ -142,7 +143,7 @@ def test_rates_of_lines_are_those_of_the_engine():
     flat = np.zeros(9)
     mine = {}
     for i in range(len(scene.k)):
-        columns_ = [gap(scene._points, i, frame_of(flat), one, flat)[1] for one in np.eye(9)]
+        columns_ = [gap(scene._points, i, frames_of(flat), one, flat)[1] for one in np.eye(9)]
         mine[scene.group[i], *np.round(scene.rest[scene.point_body[i]] + scene.point[i], 9)] = columns_
     for row, joint, at in zip(
         rates(masonry.blocks, masonry.lines, masonry.lines.normal), masonry.lines.joint, masonry.lines.at, strict=True

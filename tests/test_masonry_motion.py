@@ -9,7 +9,7 @@ from explicit_blocks import explicit
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.engine.kinematics import gaps
+from mjrock.geometry.kinematics import gaps
 
 PULSE = mr.GroundMotion.sine(2.0, 0.7)
 STRONG = mr.GroundMotion.sine(3.0, 0.9)
@@ -207,7 +207,7 @@ def test_the_solver_of_many_bodies():
 def test_gaps_and_slips_are_what_the_answer_says():
     answer = follow(columns(2), 1.5, PULSE)
     scene = mr.masonry_scene(answer.case)
-    largest = gaps(scene.points, answer.pose.reshape(len(answer.t), -1)).max(axis=0)
+    largest = gaps(scene.places, answer.pose.reshape(len(answer.t), -1)).max(axis=0)
     assert answer.opening[0] == pytest.approx(largest[:2].max(), rel=1e-3)
     assert answer.opening[1] == pytest.approx(max(0, largest[2:].max()), rel=1e-3, abs=1e-7)
     assert answer == follow(columns(2), 1.5, PULSE)

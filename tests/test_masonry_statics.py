@@ -7,8 +7,8 @@ import pytest
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 
 import mjrock as mr
-from mjrock.engine.masonry import require_standing, standing_masonry
 from mjrock.problem.statics import falling
+from mjrock.scene.masonry import require_standing, standing_masonry
 
 
 def rigid(masonry):
@@ -81,7 +81,7 @@ def test_what_settles_is_in_equilibrium():
     """Springs carry the weight of an arch, and symmetric abutments half of it each."""
     masonry = mr.Masonry.arch(5.0, 0.75, voussoirs=16, points=3)
     scene = standing_masonry(masonry)
-    pressed = scene.k * scene.points.bears
+    pressed = scene.k * scene.bears
     turned = scene.normal * pressed[:, None]
     left = np.array([name.startswith("left") for name in scene.group])
     right = np.array([name.startswith("right") for name in scene.group])

@@ -108,7 +108,7 @@ def test_a_row_that_mujoco_would_clamp_takes_the_smallest_inertia_it_represents(
 
 def test_every_contact_point_sits_where_the_wall_touches(one_sided, contacts, wall):
     """Gap and normal are those of the corner at every rotation, whatever the radius of the sphere."""
-    from mjrock.engine.kinematics import gaps
+    from mjrock.geometry.kinematics import gaps
 
     scene = mr.wall_scene(one_sided, contacts)
     model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(one_sided, contacts, 1e-3))
@@ -119,7 +119,7 @@ def test_every_contact_point_sits_where_the_wall_touches(one_sided, contacts, wa
         found = {model.geom(c.geom[1]).name: c.dist for c in data.contact} | {
             model.geom(c.geom[0]).name: c.dist for c in data.contact
         }
-        for name, gap in zip(scene.point_names, gaps(scene.points, data.qpos[None].copy())[0], strict=True):
+        for name, gap in zip(scene.point_names, gaps(scene.places, data.qpos[None].copy())[0], strict=True):
             assert (name in found) == (gap < 0)
             if gap < 0:
                 assert found[name] == pytest.approx(gap, abs=1e-14)

@@ -8,7 +8,6 @@ import pytest
 from scenes import two_blocks
 
 import mjrock as mr
-from mjrock.engine.kinematics import frame_of, gap, gaps
 from mjrock.engine.pace import (
     CHANGE,
     DASHPOT,
@@ -29,7 +28,9 @@ from mjrock.engine.pace import (
     while_taut,
 )
 from mjrock.engine.sticking import Joints, deepest, presses, rolled
-from mjrock.engine.wall import wall_scene
+from mjrock.geometry.frames import frames_of
+from mjrock.geometry.kinematics import gap, gaps
+from mjrock.scene.wall import wall_scene
 
 
 @pytest.fixture
@@ -82,7 +83,7 @@ def test_a_step_is_judged_by_the_change_of_acceleration(scene):
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_loaded_point_stays_loaded(scene, sign):
     """h^2/2 |g2| = STAYS |g|; what has lifted off or bears nothing at rest does not count."""
-    pressed, short, curve = scene.points.bears[0], 1e-5, 3.0
+    pressed, short, curve = scene.bears[0], 1e-5, 3.0
     motion = np.zeros((4, 4))
     longest = math.sqrt(2 * STAYS * pressed / curve)
     for point, share, counts in ((0, 1.0, True), (1, 1.01 * LOADED, True), (1, 0.99 * LOADED, False), (3, 1, False)):
@@ -145,7 +146,7 @@ def with_stops(scene):
 def test_which_body_presses_what_bears_nothing_at_rest():
     """The stop of a body concerns that body alone, and the pin between the two concerns both."""
     scene = with_stops(two_blocks())
-    np.testing.assert_array_equal(scene.points.bears > 0, [True] * 4 + [False] * 3)
+    np.testing.assert_array_equal(scene.bears > 0, [True] * 4 + [False] * 3)
     for moved, pressing in (
         ((0, 0, 0, 0), (False, False)),
         ((-0.002, 0, 0, 0), (True, False)),
@@ -153,7 +154,7 @@ def test_which_body_presses_what_bears_nothing_at_rest():
         ((0, 0, 0, -0.002), (True, True)),
     ):
         pose = scene.at_rest.ravel() + np.array([moved[0], moved[1], 0, moved[2], moved[3], 0])
-        found = tuple(presses(scene.points, body, frame_of(pose)) for body in (0, 1))
+        found = tuple(presses(scene.points, body, frames_of(pose)) for body in (0, 1))
         assert found == pressing
 
 
@@ -180,8 +181,8 @@ def test_the_deepest_point_of_a_joint():
     joints, frame = Joints.of_scene(scene), np.zeros((2, 4))
     for lean, found in (((0.01, 0.01), (1, -1)), ((-0.01, 0.02), (0, 3)), ((0.01, -0.03), (1, 2))):
         pose = np.array([0, -1e-3, lean[0], 0, -2e-3, lean[1]])
-        frame[:] = frame_of(pose)
-        depths = -gaps(scene.points, pose[None])[0]
+        frame[:] = frames_of(pose)
+        depths = -gaps(scene.places, pose[None])[0]
         for joint, of in ((0, (0, 1)), (1, (2, 3))):
             best = max(of, key=lambda i: depths[i])
             expected = best if depths[best] > 0 else -1
@@ -198,9 +199,9 @@ def test_an_edge_rolls_about_the_place_of_friction(i):
     later[3 * scene.point_body[i] + 2] += turn
     if i == 3:
         later[2] += 3 * turn  # the face turns as well, and only what is left turns the point against it
-    depth = [-gap(scene.points, i, frame_of(q), q, q)[0] for q in (pose, later)]
+    depth = [-gap(scene.places, i, frames_of(q), q, q)[0] for q in (pose, later)]
     relative = turn if i == 1 else -2 * turn
-    moved = rolled(scene.points, i, frame_of(pose), frame_of(later), pose, later)
+    moved = rolled(scene.points, i, frames_of(pose), frames_of(later), pose, later)
     assert moved == pytest.approx(-relative * 0.5 * np.mean(depth), rel=1e-12)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.tilted import tilted
 from mjrock.reference.equations import Wall
+from mjrock.study.tilted import tilted
 
 B, H, L, RHO, G = 0.3, 2.1, 1.5, 2000.0, 9.81
 WEIGHT = 4 * B * H * L * RHO * G

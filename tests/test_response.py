@@ -2,11 +2,12 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.kinematics import gaps
-from mjrock.engine.wall import wall_scene
+from mjrock.geometry.kinematics import gaps
 from mjrock.problem.uplift import Uplift
-from mjrock.result.history import peak_energies, restitution_of, rocking_history
+from mjrock.result.history import rocking_history
 from mjrock.result.response import ending
+from mjrock.result.rocking import peak_energies, restitution_of
+from mjrock.scene.wall import wall_scene
 from paper import K_N
 
 

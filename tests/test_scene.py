@@ -9,11 +9,11 @@ import pytest
 from scenes import two_blocks
 
 import mjrock as mr
-from mjrock.engine.ground import Shaking, ground_velocity, mean_acceleration
 from mjrock.engine.mjcf import pair_rows, scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fitted_steps
-from mjrock.engine.wall import wall_scene
+from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
+from mjrock.scene.wall import wall_scene
 
 
 def fields(scene):

@@ -7,11 +7,11 @@ import pytest
 import mjrock as mr
 from mjrock.engine import run as engine_run
 from mjrock.engine.contact import OVERDAMPED
-from mjrock.engine.kinematics import gaps
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import short_step
 from mjrock.engine.stepping import fitted_steps, fixed_steps
+from mjrock.geometry.kinematics import gaps
 from paper import FIGURE_3, K_N
 
 
@@ -64,7 +64,7 @@ def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
     with engine_of(scene) as engine:
         engine.place(scene.started)
         steps = fitted_steps(engine, scene, 1e-3)
-    top = gaps(scene.points, steps.pose)[:, -1]
+    top = gaps(scene.places, steps.pose)[:, -1]
     first = np.flatnonzero((top[:-1] > 0) & (top[1:] <= 0))[0] + 1
     speed = (top[first] - top[first - 1]) / steps.h[first - 1]
     assert steps.h[first] == h

@@ -13,7 +13,7 @@ from mjrock.engine.mjcf import pair_rows, scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.pace import short_step
 from mjrock.engine.stepping import fitted_steps, fixed_steps
-from mjrock.engine.wall import wall_scene
+from mjrock.scene.wall import wall_scene
 
 
 def fields(scene):

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.ground import Ground
-from mjrock.engine.kinematics import gaps
 from mjrock.engine.loop import Clock, Progress, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
@@ -17,7 +15,9 @@ from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
 from mjrock.engine.touches import ABRUPT, FADED, Springs, hardest, predict
-from mjrock.engine.wall import wall_scene
+from mjrock.geometry.kinematics import gaps
+from mjrock.scene.ground import Ground
+from mjrock.scene.wall import wall_scene
 
 BLOCK = mr.Block.from_size(2.0, 2.0)
 ACCURACY, SPEED = 1e-3, 0.5
@@ -45,7 +45,7 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
         state = Progress.of(engine.memory, Springs.of(scene.points, ties))
         record, sliding = Record.of(1, 3, len(scene.k)), Sliding.of(scene.points, coulomb=True)
-        state.acceleration[:], state.closed[:] = 0.0, gaps(scene.points, start)[0] < 0
+        state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         joints, ground = Joints.of_scene(scene), Ground.of(None)
         values, n = fitted_loop(

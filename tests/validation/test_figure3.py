@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.wall import standing_wall
+from mjrock.scene.wall import standing_wall
 from paper import FIGURE_3, FIGURE_3_XI, K_N
 
 
@@ -59,8 +59,8 @@ class TestVerification:
 
     def test_a_base_that_slips_fails(self, one_sided, contacts, monkeypatch):
         """The twin that must fail: with mu = 1 the side impact throws the base along."""
-        monkeypatch.setattr("mjrock.engine.wall.HELD_FRICTION", 1.0)
-        monkeypatch.setattr("mjrock.engine.wall.standing_wall", standing_wall.__wrapped__)
+        monkeypatch.setattr("mjrock.scene.wall.HELD_FRICTION", 1.0)
+        monkeypatch.setattr("mjrock.scene.wall.standing_wall", standing_wall.__wrapped__)
         found = mr.compare(mr.solve_compliant(one_sided, contacts), mr.simulate(one_sided, contacts, 1e-4))
         assert found.restitution[0, 1] < 0.9 * found.restitution[0, 0]
 
@@ -68,10 +68,10 @@ class TestVerification:
     def test_friction_is_not_what_limits_the_agreement(self, one_sided, contacts, monkeypatch):
         """At a step of 10 us friction coefficient and row inertia can be varied a hundredfold without effect."""
         exact = mr.solve_compliant(one_sided, contacts).restitution[0]
-        monkeypatch.setattr("mjrock.engine.wall.standing_wall", standing_wall.__wrapped__)
+        monkeypatch.setattr("mjrock.scene.wall.standing_wall", standing_wall.__wrapped__)
         for mu, masses in ((10.0, 1e3), (30.0, 1e1), (30.0, 1e3), (30.0, 1e5), (1000.0, 1e3)):
-            monkeypatch.setattr("mjrock.engine.wall.HELD_FRICTION", mu)
-            monkeypatch.setattr("mjrock.engine.scene.HELD_MASSES", masses)
+            monkeypatch.setattr("mjrock.scene.wall.HELD_FRICTION", mu)
+            monkeypatch.setattr("mjrock.scene.scene.HELD_MASSES", masses)
             run = mr.simulate(mr.Case(FIGURE_3, one_sided.theta0, 1.2), contacts, 1e-5)
             assert run.restitution[0] == pytest.approx(exact, rel=0.002)
 

@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+from mjrock.engine.rest import curvature, gap_rates, load, openings, potential
 from scenes import two_blocks
 
 import mjrock as mr
-from mjrock.engine.rest import curvature, gap_rates, load, openings, potential
 
 
 @pytest.fixture
