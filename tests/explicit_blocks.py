@@ -111,15 +111,15 @@ def _integrate(
             q[j] += h * v[j]
 
 
-def explicit(scene, duration, h=2e-6, every=500):
-    """Times and poses (n, bodies, 3) of the bodies of a scene from its release, from where its contacts are at rest."""
+def explicit(scene, course, h=2e-6, every=500):
+    """Times and poses (n, bodies, 3) of the bodies of a scene in a course, from where its contacts are at rest."""
     shaking = [
         (np.zeros(2), 1.0) if motion is None else (np.array(motion.accel), motion.dt)
-        for motion in (scene.motion, scene.vertical)
+        for motion in (course.motion, course.vertical)
     ]
-    pose, velocity = (np.ravel(part).copy() for part in scene.started)
+    pose, velocity = (np.ravel(part).copy() for part in (course.pose, course.velocity))
     count = len(scene.k)
-    out = np.empty((round(duration / h) // every + 1, len(pose)))
+    out = np.empty((round(course.duration / h) // every + 1, len(pose)))
     # the face passes through its point of the contact at rest, so that the gap is zero there
     origin = scene.rest[scene.point_body] + scene.point
     along = np.where(scene.face_body[:, None] < 0, scene.face, scene.rest[scene.face_body] + scene.face) - origin
