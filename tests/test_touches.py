@@ -4,19 +4,20 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scenes import course
 
 import mjrock as mr
 from mjrock.engine.loop import Clock, Progress, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
-from mjrock.engine.pace import Pace
+from mjrock.engine.pace import Pace, short_step
+from mjrock.engine.problem import Problem
 from mjrock.engine.sliding import Sliding
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
-from mjrock.engine.touches import ABRUPT, FADED, Springs, hardest, predict
+from mjrock.engine.touches import ABRUPT, FADED, Openings, Springs, Touches, hardest, predict
 from mjrock.geometry.kinematics import gaps
-from mjrock.scene.ground import Ground
 from mjrock.scene.wall import wall_scene
 
 BLOCK = mr.Block.from_size(2.0, 2.0)
@@ -37,33 +38,19 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
 
     The pace allows the step h, as long as the last. The acceleration in the last step was zero.
     """
-    pace, start = Pace.of(scene, ACCURACY), scene.at_rest + np.array([away, 0.0, 0.0])
-    ties = scene.ties._replace(reach=np.array(scene.ties.reach))
+    start = scene.at_rest + np.array([away, 0.0, 0.0])
+    slides = course(scene, [[-SPEED, 0.0, 0.0]], 1.0, pose=start)
+    pace, problem = Pace.of(scene, slides, ACCURACY), Problem.of(scene, slides)
     with engine_of(scene) as engine:
         engine.follow(h, pair_rows(scene, h, 0.25))
-        engine.release((start, np.array([[-SPEED, 0.0, 0.0]])))
+        engine.release(slides)
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
-        state = Progress.of(engine.memory, Springs.of(scene.points, ties))
-        record, sliding = Record.of(1, 3, len(scene.k)), Sliding.of(scene.points, coulomb=True)
+        sliding = Sliding.of(problem.points, coulomb=True)
+        state = Progress.of(engine.memory, problem, Joints.of_scene(scene), sliding)
+        record = Record.of(1, 3, len(scene.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
-        joints, ground = Joints.of_scene(scene), Ground.of(None)
-        values, n = fitted_loop(
-            *(
-                engine.memory,
-                scene.points,
-                ties,
-                scene.masses,
-                ground,
-                pace,
-                joints,
-                sliding,
-                state,
-                before,
-                record,
-                1.0,
-            )
-        )
+        values, n = fitted_loop(engine.memory, problem, pace, state, before, record)
     assert n == 1
     return Clock(*values), record
 
@@ -71,7 +58,7 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
 @pytest.mark.parametrize("share", [0.1, 0.9])
 def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
     """The block arrives after a share of the step that the pace allows; a step that does not arrive is left alone."""
-    short = Pace.of(ice, ACCURACY).short
+    short = short_step(ice, ACCURACY)
     for h in (short, 4 * short):
         after, record = one_step(ice, share * h * SPEED, h)
         assert (after.touches, after.h, after.calm, after.fresh) == (1, short, 0, True)
@@ -86,7 +73,7 @@ def test_a_faint_touch_is_not_met(ice, share):
 
     That is k (v h)^2 / 4 in the spring and c h v^2 in the dashpot.
     """
-    h = 2 * Pace.of(ice, ACCURACY).short
+    h = 2 * short_step(ice, ACCURACY)
     misplaced = (0.25 * ice.k[-1] * h + ice.c[-1]) * h * SPEED**2
     after, _ = one_step(ice, 0.5 * h * SPEED, h, share * misplaced / (FADED * ACCURACY))
     assert after.touches == (1 if share < 1 else 0)
@@ -94,7 +81,7 @@ def test_a_faint_touch_is_not_met(ice, share):
 
 def test_no_touch_is_predicted_from_an_abrupt_step(ice):
     """A dashpot that has just thrown the velocity about says nothing of where the next step leads."""
-    h = 2 * Pace.of(ice, ACCURACY).short
+    h = 2 * short_step(ice, ACCURACY)
     after, record = one_step(ice, 0.5 * h * SPEED, h, abrupt=True)
     assert (after.touches, record.h[0]) == (0, h)
 
@@ -102,7 +89,7 @@ def test_no_touch_is_predicted_from_an_abrupt_step(ice):
 @pytest.mark.parametrize("share", [0.98, 1.02])
 def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
     """The stop takes a share of ABRUPT of the speed of the last touch in one step. Speeds weigh with the masses."""
-    h = Pace.of(ice, ACCURACY).short
+    h = short_step(ice, ACCURACY)
     _, record = one_step(ice, -1e-4, h)
     change = ice.masses @ (record.after[0] - record.before[0]) ** 2
     after, _ = one_step(ice, -1e-4, h, change / (share * ABRUPT) ** 2)
@@ -115,18 +102,20 @@ def test_when_a_gap_closes(curve):
     g, g1, springs = 0.01, -0.3, Springs(np.ones(2), np.zeros(2))
     t = min(root.real for root in np.roots([0.5 * curve, g1, g]) if root.real > 0)
     for parts in ((curve, 0.0), (3.0, curve - 3.0)):
-        motion, touch = np.array([[1.0, -0.3, 0.0, 0.0], [g, g1, *parts]]), np.zeros((2, 2))
-        assert predict(springs, motion, 1.01 * t, 1.0, 0.0, touch) == pytest.approx(t)
-        assert touch[1] == pytest.approx([t, -(g1 + curve * t)])
-        assert touch[0, 0] == np.inf
-        assert predict(springs, motion, 0.99 * t, 1.0, 0.0, touch) == np.inf
-        motion[1, 0] = -1e-9  # it is closed already
-        assert predict(springs, motion, 1.0, 1.0, 0.0, touch) == np.inf
+        openings, touches = Openings.of(springs), Touches.of(springs)
+        for i, opening in enumerate([(1.0, -0.3, 0.0, 0.0), (g, g1, *parts)]):
+            openings.value[i], openings.rate[i], openings.linear[i], openings.swept[i] = opening
+        assert predict(springs, openings, 1.01 * t, 1.0, 0.0, touches) == pytest.approx(t)
+        assert (touches.time[1], touches.speed[1]) == pytest.approx((t, -(g1 + curve * t)))
+        assert touches.time[0] == np.inf
+        assert predict(springs, openings, 0.99 * t, 1.0, 0.0, touches) == np.inf
+        openings.value[1] = -1e-9  # it is closed already
+        assert predict(springs, openings, 1.0, 1.0, 0.0, touches) == np.inf
 
 
 def test_the_hardest_of_the_touches_in_a_short_window_is_met():
-    touch = np.array([[0.3, 0.1], [0.2, 0.5], [0.25, 0.9], [0.31, 2.0], [np.inf, 9.0]])
-    assert [hardest(touch, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
+    touches = Touches(np.array([0.3, 0.2, 0.25, 0.31, np.inf]), np.array([0.1, 0.5, 0.9, 2.0, 9.0]))
+    assert [hardest(touches, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
 
 
 def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
@@ -146,14 +135,13 @@ def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
     }
     pull = {"force_names": ("pull",), "force_body": [0], "force_point": [(0.0, 0.0)], "force": [(4e3, 0.0)]}
     scene = mr.Scene(**parts | tie | pull)
-    scene = scene.released(scene.at_rest, np.array([[SPEED, 0.0, 0.0]]), 1.0, None)
-    short = Pace.of(scene, ACCURACY).short
+    pulled = course(scene, [[SPEED, 0.0, 0.0]], 1.0)
     with engine_of(scene) as engine:
-        engine.place(scene.started)
-        steps = fitted_steps(engine, scene, ACCURACY)
+        engine.place(pulled)
+        steps = fitted_steps(engine, scene, pulled, ACCURACY)
     elongation = scene.accounts(steps.pose, steps.velocity)[1][-1, 0] / 2e4
     assert elongation > 0.04
     beyond = steps.pose[:, 0] - 0.02 - elongation
     again = np.flatnonzero((beyond[:-1] <= 0) & (beyond[1:] > 0) & (steps.t[1:] > steps.t[beyond.argmax()]))[0] + 1
-    assert steps.h[again] == short
-    assert beyond[again] / steps.before[again, 0] == pytest.approx(0.5 * short, rel=0.02)
+    assert steps.h[again] == short_step(scene, ACCURACY)
+    assert beyond[again] / steps.record.before[again, 0] == pytest.approx(0.5 * steps.h[again], rel=0.02)
