@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from unittest import mock
 
 from tqdm import tqdm
 
 import cli
 import mjrock as mr
-from mjrock.engine import contact, scene, wall
+from mjrock.method import METHOD
 from paper import FIGURE_3, K_N
 
 
@@ -27,18 +26,16 @@ def main(argv: Sequence[str] | None = None) -> None:
     one_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 1.6)
     two_sided = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0, side_stop=False)
     limits = [mr.solve_compliant(case, contacts) for case in (two_sided, one_sided)]
-    variants = [(mu, contact.HELD_MASSES) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
-    variants += [(wall.HELD_FRICTION, masses) for masses in (1e1, 1e2, 1e4)]
+    variants = [(mu, METHOD.held_masses) for mu in (1.0, 3.0, 10.0, 30.0, 100.0)]
+    variants += [(METHOD.held_friction, masses) for masses in (1e1, 1e2, 1e4)]
     rows: list[list[object]] = [
         ["no slip", "", "SciPy", *(f"{r:.4f}" for limit in limits for r in limit.restitution[:2])]
     ]
     for step in steps:
         for mu, masses in tqdm(variants, desc=f"step {step:g} s", disable=None, leave=False):
-            with mock.patch.object(wall, "HELD_FRICTION", mu), mock.patch.object(scene, "HELD_MASSES", masses):
-                wall.standing_wall.cache_clear()
-                runs = [mr.simulate(case, contacts, step) for case in (two_sided, one_sided)]
+            method = METHOD._replace(held_friction=mu, held_masses=masses)
+            runs = [mr.simulate(case, contacts, step, method=method) for case in (two_sided, one_sided)]
             rows.append([mu, masses, step * 1e3, *(f"{r:.4f}" for run in runs for r in run.restitution[:2])])
-    wall.standing_wall.cache_clear()
     header = ["mu [-]", "row inertia [m]", "step [ms]", "2s e_1", "2s e_2", "1s e_1", "1s e_2"]
     text = cli.table(header, rows)
     cli.write_text(out / "friction.txt", text + "\n")

@@ -217,10 +217,10 @@ the law of the contacts: rocking theory and the SciPy solver of the package are 
 
     def lift(self, slip: float) -> float:
         """What a slip [m/s] adds to the normal force of a line in the text, the most over what it bears at rest [-]."""
-        points = mr.masonry_scene(self.case).points
-        bears = points.bears > 0
-        added = points.friction * (points.c / 2 + 0.25 * self.timestep * points.k) * slip
-        return float((added[bears] / (points.k * points.bears)[bears]).max())
+        scene = mr.masonry_scene(self.case)
+        bears = scene.bears > 0
+        added = scene.friction * (scene.c / 2 + 0.25 * self.timestep * scene.k) * slip
+        return float((added[bears] / (scene.k * scene.bears)[bears]).max())
 
     def files(self) -> dict[str, str]:
         """File names and contents."""

@@ -26,7 +26,8 @@ import cli
 import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.quantities import Array
-from mjrock.result.history import peak_energies, restitution_of, rocking_history
+from mjrock.result.history import rocking_history
+from mjrock.result.rocking import peak_energies, restitution_of
 from paper import FIGURE_3, K_N
 from peer.question import Question
 from peer.worker import Task

@@ -30,10 +30,13 @@ from mjrock import plotting
 from mjrock.engine import loop, stepping
 from mjrock.engine.contact import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
+from mjrock.engine.points import inverse_weights
 from mjrock.engine.stepping import fixed_steps
 from mjrock.engine.steps import StepError
-from mjrock.result.history import peak_energies, restitution_of, rocking_history
+from mjrock.result.history import rocking_history
 from mjrock.result.response import Response
+from mjrock.result.rocking import Rocking, peak_energies, restitution_of
+from mjrock.scene.of_case import course_of
 from paper import FIGURE_3, K_N
 
 Solve = Callable[[mr.Case, mr.Contacts, bool], tuple[Response, float]]
@@ -60,7 +63,7 @@ def our_steps(**options: float) -> Solve:
     """`simulate` with the options given."""
 
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
-        response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[call-overload]
+        response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
         return response, response.stats["wall_time"]
 
     return solve
@@ -72,7 +75,7 @@ def plain_steps(**options: float) -> Solve:
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
         plain = getattr(loop.fitted_loop, "py_func", loop.fitted_loop)
         with mock.patch.object(stepping, "fitted_loop", plain):
-            response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[call-overload]
+            response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
         return response, response.stats["wall_time"]
 
     return solve
@@ -94,19 +97,20 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
             model.opt.impratio = 1
         else:
             d = WITHIN[0]
-            for i, (k, c, W) in enumerate(zip(scene.k, scene.c, scene.weight, strict=True)):
+            for i, (k, c, W) in enumerate(zip(scene.k, scene.c, inverse_weights(scene), strict=True)):
                 model.pair_solref[i] = pair_values(k, c, inertia_of(d, W), W)[:2]
             model.pair_solimp[:, :2] = d
             held = model.pair_solreffriction[:, 1] < 0
             model.pair_solreffriction[held, 1] = -d / (2 * h)
             model.opt.impratio = 1e7
-        engine.release(scene.started)
+        course = course_of(case, scene)
+        engine.release(course)
         synchronised = integrator == "RK4"  # the others keep velocities half a step back, as our own steps do
         if synchronised:
-            engine.data.qvel[:] = scene.started[1].ravel()
-        steps = fixed_steps(engine, scene, h, 0)
+            engine.data.qvel[:] = course.velocity.ravel()
+        steps = fixed_steps(engine, scene, course, h, 0)
         seconds = time.perf_counter() - started
-        omega = (steps.before if synchronised else steps.velocity)[:, 2]
+        omega = (steps.record.before if synchronised else steps.velocity)[:, 2]
         return _as_response(case, contacts, steps.t, steps.pose[:, 2], omega, len(steps.t)), seconds
 
     return solve
@@ -185,16 +189,10 @@ def scipy_law(rtol: float) -> Solve:
 
 def _as_response(case: mr.Case, contacts: mr.Contacts, t, theta, omega, steps: int) -> Response:  # type: ignore[no-untyped-def]
     _, peaks, impacts = rocking_history(case, t, theta, omega, 0 * t, (contacts.uplift_rotation(case.block), 0.0))
+    pose, velocity = case.wall.motion(theta, omega)
     return Response(
-        case,
-        "stock",
-        t,
-        theta,
-        omega,
-        impacts,
-        peaks,
-        mr.Outcome.TIME_ENDED,
-        "",
+        *(case, "stock", t, pose, velocity, case.energy(theta, omega), mr.Outcome.TIME_ENDED, ""),
+        rocking=Rocking(impacts, peaks),
         stats={"steps": steps},
     )
 
@@ -321,7 +319,7 @@ def walls_study(count: int) -> str:
 
         def error(run: Response, exact: Response = exact) -> float:
             pairs = [(i.energy_after, j.energy_after) for i, j in zip(exact.impacts[:2], run.impacts[:2], strict=False)]
-            released = exact.case.release_energy
+            released: float = exact.case.release_energy
             if len(run.impacts) < min(2, len(exact.impacts)):
                 return 1.0
             return max([abs(a - b) / released for a, b in pairs] + [mr.compare(exact, run).rms])

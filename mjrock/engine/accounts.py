@@ -1,11 +1,10 @@
 """The accounts of a run: where its energy is at every step, and what dashpots, friction and the ground did to it.
 
-Everything follows from the recorded poses and half-step velocities. Energies are evaluated half a step before each pose,
-where the leapfrog's velocity is exact and where a touch that is centred in time falls. From one of these times to the
-next, which is the window of a step, a constant force acts.
-What it does to the kinetic energy is force times mean velocity times length, without error. With Newmark's beta = 1/4 a
-spring stores exactly what it should; with another beta the residual contains the (1/4 - beta) h^2 k v^2 / 2 by which
-the step shifts the energy of the contact.
+Everything follows from the recorded poses and half-step velocities. Energies are evaluated half a step before each
+pose, where the leapfrog's velocity is exact and where a touch that is centred in time falls. From one of these times to
+the next, which is the window of a step, a constant force acts. What it does to the kinetic energy is force times mean
+velocity times length, without error. With Newmark's beta = 1/4 a spring stores exactly what it should; with another
+beta the residual contains the (1/4 - beta) h^2 k v^2 / 2 by which the step shifts the energy of the contact.
 """
 
 from __future__ import annotations

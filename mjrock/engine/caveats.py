@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import warnings
 
+from ..method import METHOD
 from ..result.response import Response
 from ..scene.scene import Scene
 from .accounts import contact_work
-from .pace import SMOOTH
 from .points import points_of
 from .reading import AskedWall
 from .run import Run, sound_timestep
@@ -32,14 +32,14 @@ def warn_if_coarse(scene: Scene, h: float) -> None:
     """Warn of a fixed step h [s] with which |e| depends on the phase of the touch."""
     resolved = h * scene.highest_frequency
     scatter = SCATTER * resolved if (scene.bears == 0).any() else 0.0
-    if scatter > WORTH_SAYING and resolved <= SMOOTH:
+    if scatter > WORTH_SAYING and resolved <= METHOD.smooth:
         warnings.warn(
             f"with a fixed step of {h:.3g} s |e| scatters by {scatter:.0%} (standard deviation) with the phase of the "
             f"touch; below {WORTH_SAYING / SCATTER / scene.highest_frequency:.3g} s it is less than "
             f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter",
             stacklevel=3,
         )
-    if resolved > SMOOTH:
+    if resolved > METHOD.smooth:
         warnings.warn(
             f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
             f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",

@@ -28,19 +28,6 @@ IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
 WITHIN = (IMPEDANCE_RANGE[0] * (1 + 1e-9), IMPEDANCE_RANGE[1] * (1 - 1e-9))
 """The same range less a margin for rounding."""
-OVERDAMPED = 0.2
-"""c h W above which a dashpot acts on the velocity at the end of the step instead of the mean velocity [-]. The inverse
-mass that a contact of the wall feels is up to six times W. A centred dashpot leaves a quarter of the velocity there."""
-BORNE = 2.0
-"""The same for a joint of several bodies that bears weight, whose dashpot a resolving step centres well [-]. It stays
-closed in long steps, and a dashpot at their end would damp the rocking of flat blocks to first order in the step."""
-HELD_MASSES = 1e3
-"""Inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a creeps at
-a h / HELD_MASSES. It is no larger, because two edges that both hold rigidly do work against each other."""
-HELD_GROWTH = 3e5
-"""Factor over the step by which it grows where there are several bodies [1/s]. A joint under a sustained thrust creeps
-at F / (1.5e8 m) at most, however long the step, m the mass of the blocks. The edge of a single wall is put back
-instead, see `sticking`."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +84,7 @@ def row(
     inverse_weight: float,
     newmark_beta: float,
     ringing: float,
-    overdamped: float = OVERDAMPED,
+    overdamped: float,
 ) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
 

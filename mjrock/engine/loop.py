@@ -25,7 +25,7 @@ from .rows import set_rows
 from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .steps import Record
 from .sticking import Joints, Moved, put_sticking_edges_back
-from .touches import ABRUPT, FADED, Openings, Springs, Touches, closure_changed, follow, step_to_touch
+from .touches import Openings, Springs, Touches, closure_changed, follow, step_to_touch
 
 
 class Progress(NamedTuple):
@@ -232,7 +232,7 @@ def settle_pose(memory: Memory, problem: Problem, pace: Pace, state: Progress, r
 @jitable
 def allowed_step(problem: Problem, pace: Pace, openings: Openings, h: float) -> float:
     """The step that the pace allows, shortened for loaded contacts and taut ties."""
-    loaded = while_loaded(problem.points.reach, openings, h, pace.short)
+    loaded = while_loaded(pace, problem.points.reach, openings, h)
     return while_taut(pace, problem.ties, openings, loaded)
 
 
@@ -259,7 +259,7 @@ def fitted_loop(
 
         # predict
         now = allowed_step(problem, pace, openings, h)
-        least = FADED * pace.accuracy * energy
+        least = pace.method.faded * pace.accuracy * energy
         to_touch = 0.0
         if not abrupt:
             to_touch = step_to_touch(state.springs, openings, now, h, least, pace.short, state.touches)
@@ -279,7 +279,7 @@ def fitted_loop(
         ended = t >= problem.duration or fallen(record.pose[n]) or out_of_reach(points.reach, openings)
         turned = sliding_changed(sliding)
         change = change_of_acceleration(memory, problem.masses, state, last, now, fresh or turned) / energy
-        abrupt = change > ABRUPT**2
+        abrupt = change > pace.method.abrupt**2
         settle_pose(memory, problem, pace, state, record, n)
 
         # judge

@@ -18,6 +18,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from .._version import __version__
+from ..method import METHOD, Method
 from ..problem.quantities import GRAVITY, Array
 from ..scene.arrays import GROUND
 from ..scene.scene import Scene
@@ -138,9 +139,9 @@ class FixedRows(NamedTuple):
     impratio: float
 
 
-def pair_rows(scene: Scene, timestep: float, newmark_beta: float) -> FixedRows:
+def pair_rows(scene: Scene, timestep: float, newmark_beta: float, method: Method = METHOD) -> FixedRows:
     """The rows of a scene at a fixed step."""
-    points, m = points_of(scene), len(scene.k)
+    points, m = points_of(scene, method), len(scene.k)
     rows, step = Rows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
     return FixedRows(rows, set_rows(points.law, points.inertia, step, rows))
 

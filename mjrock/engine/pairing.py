@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
+from ..method import METHOD
 from ..problem.quantities import Array, require_real, require_whole, require_within, shown
 from ..problem.rebound import rebound_damping
 from .contact import WITHIN, inertia_of, longest_step, pair_values, row
@@ -161,7 +162,7 @@ def _row(
         )
     sound = h * math.sqrt(k / mass) <= UNSOUND
     beta, ringing = (newmark_beta, 0.0) if sound else (max(newmark_beta, 0.5), 1.0)
-    dashpot, inertia = row(k, c, h, inverse_weight, beta, ringing)
+    dashpot, inertia = row(k, c, h, inverse_weight, beta, ringing, METHOD.overdamped)
     if dashpot < c:
         raise ValueError(
             f"damping c = {c:g} N s/m at timestep = {h:g} s is beyond what MuJoCo represents, {dashpot:.3g} N s/m; "

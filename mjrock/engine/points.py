@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.kinematics import Places
+from ..method import METHOD, Method
 from ..problem.quantities import Array, Flags
 from ..scene.arrays import frozen
 from ..scene.scene import Scene
-from .contact import BORNE, HELD_GROWTH, HELD_MASSES, OVERDAMPED, planar_weight
+from .contact import planar_weight
 from .rows import Law, RowInertia
 
 
@@ -53,7 +54,7 @@ def inverse_weights(scene: Scene) -> Array:
 
 
 @lru_cache(maxsize=64)
-def points_of(scene: Scene) -> Points:
+def points_of(scene: Scene, method: Method = METHOD) -> Points:
     """The contacts of a scene.
 
     Friction of a base that holds is a number that holds it, and no law of sliding. A joint that bears weight, and whose
@@ -66,9 +67,9 @@ def points_of(scene: Scene) -> Points:
         law=Law(scene.k, scene.c, scene.friction),
         inertia=RowInertia(
             weight=weight,
-            overdamped=np.where(mild, BORNE, OVERDAMPED),
-            friction=frozen(np.where(scene.friction > 0, HELD_MASSES * 2 / (3 * weight), 0.0)),
-            growth=0.0 if np.any(scene.holds) else HELD_GROWTH,
+            overdamped=np.where(mild, method.borne, method.overdamped),
+            friction=frozen(np.where(scene.friction > 0, method.held_masses * 2 / (3 * weight), 0.0)),
+            growth=0.0 if np.any(scene.holds) else method.held_growth,
         ),
         reach=Reach(scene.bears, scene.reach, scene.overlap),
         rubs=frozen((scene.friction > 0) & np.logical_not(scene.holds)),

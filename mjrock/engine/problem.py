@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from ..compiled import jitable
 from ..geometry.kinematics import Ties
+from ..method import METHOD, Method
 from ..problem.quantities import Array
 from ..scene.course import Course
 from ..scene.ground import Ground, push_ground
@@ -32,10 +33,10 @@ class Problem(NamedTuple):
     duration: float
 
     @classmethod
-    def of(cls, scene: Scene, course: Course) -> Problem:
+    def of(cls, scene: Scene, course: Course, method: Method = METHOD) -> Problem:
         """That of a run, whose ties yield in it alone."""
         ties = scene.ties._replace(reach=scene.ties.reach.copy())
-        return cls(points_of(scene), ties, scene.masses, course.ground, float(course.duration))
+        return cls(points_of(scene, method), ties, scene.masses, course.ground, float(course.duration))
 
 
 @jitable

@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from typing import Any
 
+from ..method import METHOD, Method
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.contacts import Contacts
@@ -16,7 +17,7 @@ from ..scene.course import Course
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
 from .caveats import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
-from .mjcf import pair_rows
+from .mjcf import FixedRows, pair_rows
 from .model import engine_of
 from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
@@ -52,6 +53,7 @@ def simulate(
     output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
+    method: Method = METHOD,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, on compliant contacts in MuJoCo.
 
@@ -69,6 +71,7 @@ def simulate(
         ledger: whether to account for every part of the energy, see `mjrock.engine.accounts`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
+        method: the constants of the method, see `mjrock.method`, for studies that vary them.
 
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, if the masonry does not
@@ -79,7 +82,8 @@ def simulate(
         UserWarning: if a fixed step is too long to resolve the contacts.
     """
     begun = time.perf_counter()
-    scene = scene_of(case, contacts)
+    require_kind("method", method, Method)
+    scene = scene_of(case, contacts, method)
     require_within("accuracy", accuracy, 1e-8, 0.1)
     require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_flag("ledger", ledger)
@@ -95,14 +99,15 @@ def simulate(
     if timestep is None:
         spacing = output_step or 1e-3
         require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
-        run, settings = fitted(asked, scene, course, accuracy, coulomb=coulomb is not False)
+        run, settings = fitted(asked, scene, course, accuracy, coulomb=coulomb is not False, method=method)
         response = run.response(spacing, 1, ledger, settings)
         advice = f"lower accuracy = {accuracy:g}"
     else:
         require_within("timestep", timestep, 1e-9, 1.0, "s")
         require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
         warn_if_coarse(scene, timestep)
-        run, settings = fixed(asked, scene, course, timestep, newmark_beta, coulomb=coulomb is True)
+        rows = pair_rows(scene, timestep, newmark_beta, method)
+        run, settings = fixed(asked, scene, course, timestep, newmark_beta, rows, coulomb=coulomb is True)
         stride = max(1, round(output_step / timestep)) if output_step else 1
         response = run.response(None, stride, ledger, settings)
         advice = "take a shorter timestep"
@@ -115,7 +120,9 @@ def simulate(
     return response
 
 
-def fitted(asked: Asked, scene: Scene, course: Course, accuracy: float, *, coulomb: bool) -> tuple[Run, dict[str, Any]]:
+def fitted(
+    asked: Asked, scene: Scene, course: Course, accuracy: float, *, coulomb: bool, method: Method
+) -> tuple[Run, dict[str, Any]]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
@@ -123,12 +130,12 @@ def fitted(asked: Asked, scene: Scene, course: Course, accuracy: float, *, coulo
     """
     used = accuracy
     while True:
-        h = short_step(scene, used)
+        h = short_step(scene, used, method)
         try:
             with engine_of(scene) as engine:
                 engine.place(course)
                 begun = time.perf_counter()
-                steps = fitted_steps(engine, scene, course, used, coulomb=coulomb)
+                steps = fitted_steps(engine, scene, course, used, coulomb=coulomb, method=method)
             took = time.perf_counter() - begun
             run = Run.judged(asked, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, "stepping_time": took}
@@ -139,7 +146,7 @@ def fitted(asked: Asked, scene: Scene, course: Course, accuracy: float, *, coulo
 
 
 def fixed(
-    asked: Asked, scene: Scene, course: Course, timestep: float, newmark_beta: float, *, coulomb: bool
+    asked: Asked, scene: Scene, course: Course, timestep: float, newmark_beta: float, rows: FixedRows, *, coulomb: bool
 ) -> tuple[Run, dict[str, Any]]:
     """A run at one step, and what it took.
 
@@ -148,7 +155,7 @@ def fixed(
     """
     try:
         with engine_of(scene) as engine:
-            engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
+            engine.follow(timestep, rows)
             engine.release(course)
             begun = time.perf_counter()
             steps = fixed_steps(engine, scene, course, timestep, newmark_beta, coulomb=coulomb)

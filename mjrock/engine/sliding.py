@@ -21,6 +21,7 @@ import numpy as np
 from ..compiled import inlined, jitable
 from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
 from ..geometry.vectors import dot, scaled, tangent
+from ..method import METHOD, Method
 from ..problem.quantities import Array, Flags
 from .contact import inertia_of
 from .memory import IMPRATIO, TIMESTEP, Memory
@@ -30,16 +31,8 @@ from .touches import ROUNDING
 
 SMOOTH, ROUGH = 1, 3
 """MuJoCo's dimension of a contact without and with rows of friction."""
-SLIDES = 2.0
-"""Force that would stop the slip, over what friction can give, from which a contact is taken to slide [-]."""
-LOOKS = 6
-"""Most looks at a step."""
-PATIENT = 2
-"""Looks in which a row is given back only once the friction is known."""
 STAGE_VELOCITY = 2
 """mjSTAGE_VEL: positions and velocities are as in the last look, and only forces have changed."""
-FOUND = 0.02
-"""Change of a friction force from look to look, over the largest of the step, that asks for no other look [-]."""
 
 
 class Sliding(NamedTuple):
@@ -47,23 +40,23 @@ class Sliding(NamedTuple):
 
     Args:
         coulomb: whether contacts that slide obey Coulomb's law; otherwise all have their rows.
-        neglected: share of the normal force that a friction row may add to it [-].
+        method: the constants of the method.
         slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
         force: friction of each that does, positive along (nz, -nx) on the body that carries the point [N], shape (m,).
     """
 
     coulomb: bool
-    neglected: float
+    method: Method
     slides: Flags
     slid: Flags
     force: Array
 
     @classmethod
-    def of(cls, points: Points, *, coulomb: bool, neglected: float = 1e-3) -> Sliding:
+    def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
         """None slides yet."""
         m = len(points.rubs)
         none = np.zeros((2, m), dtype=np.bool_)
-        return cls(coulomb and bool(points.rubs.any()), neglected, none[0], none[1], np.zeros(m))
+        return cls(coulomb and bool(points.rubs.any()), method, none[0], none[1], np.zeros(m))
 
 
 @inlined
@@ -100,8 +93,8 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         own = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
         stopping = own * abs(slip) / memory.options[TIMESTEP]
         pressing = normal_force(memory, points, i, meets, frames)
-        beyond = memory.options[IMPRATIO] * stopping > SLIDES * mu * pressing
-        if beyond and mu * stopping > sliding.neglected * pressing:
+        beyond = memory.options[IMPRATIO] * stopping > sliding.method.slides * mu * pressing
+        if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
             sliding.force[i] = -math.copysign(mu * pressing, slip)
             memory.dimension[i] = SMOOTH
@@ -138,13 +131,13 @@ def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int
             change = max(change, abs(force - sliding.force[i]))
             largest = max(largest, abs(force), abs(sliding.force[i]))
             sliding.force[i] = force
-    again, stopped = change > FOUND * largest, False
+    again, stopped = change > sliding.method.known * largest, False
     for i in range(len(sliding.slides)):
-        if sliding.slides[i] and (n >= PATIENT or not again):
+        if sliding.slides[i] and (n >= sliding.method.patient or not again):
             meets = where_friction_acts(places, meeting(places, i, frames))
             slip = slipping(places, i, meets, frames, memory.velocity)
             later = slip + memory.options[TIMESTEP] * slipping(places, i, meets, frames, memory.acceleration)
-            if slip * later <= 0 or (again and n == LOOKS - 1):
+            if slip * later <= 0 or (again and n == sliding.method.looks - 1):
                 memory.dimension[i] = ROUGH
                 sliding.slides[i] = False
                 stopped = True
@@ -157,7 +150,7 @@ def slide(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: 
     if not (sliding.coulomb and find_sliding(memory, problem.points, sliding, frames)):
         return False
     rows_changed = True
-    for n in range(LOOKS):
+    for n in range(sliding.method.looks):
         apply_friction(memory, problem, sliding, frames, t)
         if rows_changed:
             memory.forward(memory.model, memory.data)

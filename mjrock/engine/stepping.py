@@ -16,18 +16,21 @@ from tqdm import tqdm
 
 from ..geometry.frames import frames_of
 from ..geometry.kinematics import stretch
+from ..method import METHOD, Method
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .loop import Clock, Progress, fitted_loop, fixed_loop, release
 from .model import Engine
-from .pace import SMOOTH, Pace
+from .pace import Pace
 from .problem import Problem
 from .sliding import Sliding
 from .steps import Kinds, Record, StepError, Steps
 from .sticking import Joints
 
 
-def fitted_steps(engine: Engine, scene: Scene, course: Course, accuracy: float, *, coulomb: bool = True) -> Steps:
+def fitted_steps(
+    engine: Engine, scene: Scene, course: Course, accuracy: float, *, coulomb: bool = True, method: Method = METHOD
+) -> Steps:
     """Steps that fit the motion, until the duration of the course or until a body lies on its face.
 
     Args:
@@ -35,15 +38,16 @@ def fitted_steps(engine: Engine, scene: Scene, course: Course, accuracy: float, 
         scene, course: what stands, and what happens to it.
         accuracy: the relative tolerance that is aimed at [-].
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`.
+        method: the constants of the method.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, problem, pace = engine.memory, Problem.of(scene, course), Pace.of(scene, course, accuracy)
+    memory, problem, pace = engine.memory, Problem.of(scene, course, method), Pace.of(scene, course, accuracy, method)
     places, released_on = problem.points.places, engine.closed
     for i in range(len(problem.ties.k)):
         stretch(problem.ties, i, frames_of(memory.pose, places.freedom), memory.velocity, places.axes)
-    sliding = Sliding.of(problem.points, coulomb=coulomb)
+    sliding = Sliding.of(problem.points, coulomb=coulomb, method=method)
     state = Progress.of(memory, problem, Joints.of_scene(scene), sliding)
     clock = Clock.started(pace, course.energy(scene))
 
@@ -54,7 +58,7 @@ def fitted_steps(engine: Engine, scene: Scene, course: Course, accuracy: float, 
         return n, clock.t, clock.ended
 
     record = _recorded(engine, course.duration, advance)
-    kind = (record.h * pace.frequency >= SMOOTH).astype(np.int64)
+    kind = (record.h * pace.frequency >= method.smooth).astype(np.int64)
     return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches)
 
 

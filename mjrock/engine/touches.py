@@ -17,11 +17,6 @@ from ..geometry.kinematics import Places, Ties, opening
 from ..problem.quantities import Array, Flags
 from .rows import Law
 
-FADED = 0.01
-"""A touch is met with a short step where ignoring it would misplace more than this share of accuracy x energy [-]."""
-ABRUPT = 0.1
-"""Change of velocity in a step, over the speed at the last touch, beyond which no touch is predicted from it [-]. How a
-strong dashpot stops a body within a step or two says nothing of the next step."""
 ROUNDING = 1e-12
 """Gap below which a contact has neither opened nor closed [m]. A joint that bears nothing rests at a gap of zero."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..method import METHOD, Method
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.masonry_case import MasonryCase
@@ -12,7 +13,7 @@ from .scene import Scene
 from .wall import wall_course, wall_scene
 
 
-def scene_of(case: Case | MasonryCase, contacts: Contacts | None = None) -> Scene:
+def scene_of(case: Case | MasonryCase, contacts: Contacts | None = None, method: Method = METHOD) -> Scene:
     """What stands in a case: a wall on its contacts, or masonry, which has joints of its own.
 
     Raises:
@@ -27,7 +28,7 @@ def scene_of(case: Case | MasonryCase, contacts: Contacts | None = None) -> Scen
     require_kind("case", case, Case, MasonryCase)
     require_kind("contacts", contacts, Contacts)
     assert contacts is not None
-    return wall_scene(case, contacts)
+    return wall_scene(case, contacts, method)
 
 
 def course_of(case: Case | MasonryCase, scene: Scene) -> Course:

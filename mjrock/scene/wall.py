@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..method import METHOD, Method
 from ..problem.block import Block
 from ..problem.case import Case
 from ..problem.contacts import Contacts
@@ -16,33 +17,20 @@ from .course import Course
 from .effects import attachments
 from .scene import Scene
 
-FREE_FRICTION = 1.0
-"""Friction coefficient of the edges of a wall without a side stop on two lines [-]. On a bed of n lines it is n/2 times
-that, because an edge carries so much less. It holds any wall in free rocking, whose base is pushed with at most
-(3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of its load. It is no larger, because two edges that both stick while the
-wall turns over do work against each other. With mu = 30 a wall of h/b = 15 on 5e7 N/m3 loses a third too much."""
-HELD_FRICTION = 30.0
-"""Friction coefficient of the outer edge of a wall with a side stop on two lines [-]. On a bed of n lines it is n/2
-times that. This edge must not slip when the side impact pushes the hardly loaded base. On the paper's wall mu = 1 loses
-13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on nothing changes (`scripts/friction.py`). The inner edge takes as
-much of it as SELF_WORK allows."""
-SELF_WORK = 1e-4
-"""Most work that two sticking edges may do against each other in an impact, over the energy of a release at alpha/2."""
 
-
-def inner_friction(wall: Block, contacts: Contacts) -> float:
-    """Friction coefficient of the inner edge of a wall with a side stop [-], 1 to HELD_FRICTION.
+def inner_friction(wall: Block, contacts: Contacts, method: Method = METHOD) -> float:
+    """Friction coefficient of the inner edge of a wall with a side stop [-], `free_friction` to `held_friction`.
 
     While both edges are loaded, up to the uplift rotation theta_u, they slide against each other by b theta_u^2. This
     takes the energy mu m g b theta_u^2. A release at alpha/2 has about (3/8) m g b alpha. On a stiff base the share is
     negligible, and the inner edge has to hold where a soft side stop lets the wall lean on it. On a soft base the wall
     never leans on it.
     """
-    allowed = SELF_WORK * 0.375 * wall.alpha / contacts.uplift_rotation(wall) ** 2
-    return min(max(allowed, FREE_FRICTION), HELD_FRICTION)
+    allowed = method.self_work * 0.375 * wall.alpha / contacts.uplift_rotation(wall) ** 2
+    return min(max(allowed, method.free_friction), method.held_friction)
 
 
-def base_friction(wall: Block, contacts: Contacts, side_stop: bool) -> Array:
+def base_friction(wall: Block, contacts: Contacts, side_stop: bool, method: Method) -> Array:
     """Friction coefficients of the lines of the base [-], shape (points,).
 
     A coefficient that is given acts at every line. A base that holds does so at the two edges alone: a bed of which
@@ -53,13 +41,13 @@ def base_friction(wall: Block, contacts: Contacts, side_stop: bool) -> Array:
         return np.full(points, contacts.base.friction)
     friction = np.zeros(points)
     if side_stop:
-        friction[0], friction[-1] = inner_friction(wall, contacts), HELD_FRICTION * points / 2
+        friction[0], friction[-1] = inner_friction(wall, contacts, method), method.held_friction * points / 2
     else:
-        friction[0] = friction[-1] = FREE_FRICTION * points / 2
+        friction[0] = friction[-1] = method.free_friction * points / 2
     return friction
 
 
-def wall_scene(case: Case, contacts: Contacts) -> Scene:
+def wall_scene(case: Case, contacts: Contacts, method: Method = METHOD) -> Scene:
     """The scene of a case on its contacts, which all cases of one wall with the same effects share.
 
     The body is `wall`. The groups of contacts are `base`, from the inner to the outer edge, and `side`, from the bottom
@@ -72,7 +60,7 @@ def wall_scene(case: Case, contacts: Contacts) -> Scene:
     require_kind("contacts", contacts, Contacts)
     contacts.require_fit(case.block, side_stop=case.one_sided)
     require_carried(case, contacts)
-    return standing_wall(case.wall, contacts, case.stop_top, case.effects)
+    return standing_wall(case.wall, contacts, case.stop_top, case.effects, method)
 
 
 def wall_course(case: Case, scene: Scene) -> Course:
@@ -94,13 +82,15 @@ def wall_course(case: Case, scene: Scene) -> Course:
 
 
 @lru_cache(maxsize=64)
-def standing_wall(wall: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...]) -> Scene:
+def standing_wall(
+    wall: Block, contacts: Contacts, stop_top: float | None, effects: tuple[Effect, ...], method: Method = METHOD
+) -> Scene:
     """The scene of a wall, its added masses included, against a stop up to a height [m], or None."""
     base = contacts.base
     centroid = np.array([wall.centroid_offset, wall.centroid_height])
     places = [(x - centroid[0], -centroid[1]) for x in base.positions]
     faces, normals, groups = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, ["base"] * base.points
-    k, c, friction = base.stiffness, base.damping, base_friction(wall, contacts, stop_top is not None)
+    k, c, friction = base.stiffness, base.damping, base_friction(wall, contacts, stop_top is not None, method)
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
     if stop_top is not None:
         side = contacts.side_up_to(stop_top)
