@@ -6,13 +6,20 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from mjrock.engine.rest import settled
 from scenes import two_blocks
 
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
+from mjrock.scene.equilibrium import settled
+from mjrock.scene.of_case import course_of, scene_of
 from paper import K_N
+
+
+def course_and_scene(case, contacts):
+    """The course of a case, and its scene."""
+    scene = scene_of(case, contacts)
+    return course_of(case, scene), scene
 
 
 def poses(rng, count, bodies):
@@ -24,28 +31,27 @@ def poses(rng, count, bodies):
 @pytest.mark.parametrize("share", [0.0, 1e-6, 1e-3, 0.5, 0.999, -0.5])
 def test_the_released_wall_is_carried_by_its_springs(wall, points, share):
     contacts = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.05, points=points)
-    scene = mr.wall_scene(mr.Case(wall, share * wall.alpha, 1.0, side_stop=False), contacts)
-    pose, velocity = scene.started
-    forces = -scene.k * np.minimum(gaps(scene.places, pose), 0)
+    course, scene = course_and_scene(mr.Case(wall, share * wall.alpha, 1.0, side_stop=False), contacts)
+    forces = -scene.k * np.minimum(gaps(scene.places, course.pose), 0)
     # rounding leaves some eps h of a gap, which is a small difference of lengths like h, and k times that of the force
     assert forces.sum() == pytest.approx(wall.weight, abs=10 * np.finfo(float).eps * wall.h * scene.k.sum())
-    assert not velocity.any()
+    assert not course.velocity.any()
 
 
 def test_the_toe_stays_where_it_is(wall, contacts):
     for theta in (0.05, -0.05):
-        scene = mr.wall_scene(mr.Case(wall, theta, 1.0, side_stop=False), contacts)
+        course, _ = course_and_scene(mr.Case(wall, theta, 1.0, side_stop=False), contacts)
         toe = math.copysign(wall.b, theta)
-        x, _, _ = scene.started[0][0]
+        x, _, _ = course.pose[0]
         assert x + toe * math.cos(theta) - wall.h * math.sin(theta) == pytest.approx(toe, abs=1e-15)
 
 
 def test_release_velocity_turns_about_the_toe(wall, contacts):
     dt = 1e-6
-    now, later = (
-        mr.wall_scene(mr.Case(wall, theta, 1.0, omega0=0.2), contacts).started for theta in (0.05, 0.05 + 0.2 * dt)
+    (now, _), (later, _) = (
+        course_and_scene(mr.Case(wall, theta, 1.0, omega0=0.2), contacts) for theta in (0.05, 0.05 + 0.2 * dt)
     )
-    np.testing.assert_allclose((later[0] - now[0]) / dt, now[1], rtol=1e-5)
+    np.testing.assert_allclose((later.pose - now.pose) / dt, now.velocity, rtol=1e-5)
 
 
 def test_gaps_are_those_of_the_corners(wall, contacts):
@@ -66,10 +72,10 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
         for i in range(len(scene.k)):
             before, after = (gap(scene.places, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
             now = gap(scene.places, i, frames_of(q), v, a)
-            assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
-            assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
-            assert gap(scene.places, i, frames_of(q), 2 * v, a)[1] == pytest.approx(2 * now[1])
-            assert gap(scene.places, i, frames_of(q), a, v)[1] == pytest.approx(now[2])
+            assert (after.value - before.value) / (2 * t) == pytest.approx(now.rate, abs=1e-6)
+            assert (after.rate - before.rate) / (2 * t) == pytest.approx(now.linear + now.swept, abs=1e-5)
+            assert gap(scene.places, i, frames_of(q), 2 * v, a).rate == pytest.approx(2 * now.rate)
+            assert gap(scene.places, i, frames_of(q), a, v).rate == pytest.approx(now.linear)
 
 
 def tied_blocks():
@@ -92,6 +98,7 @@ def tied_blocks():
 def test_ties_between_bodies_that_turn():
     """Slack from the two ends written out; its rate and curvature along q + v t + a t^2/2, by central differences."""
     scene, t = tied_blocks(), 1e-4
+    axes = scene.places.axes
 
     def world(q, body, local):
         if body < 0:
@@ -103,20 +110,22 @@ def test_ties_between_bodies_that_turn():
     for q, v, a in zip(*poses(np.random.default_rng(9), 20, 2), strict=True):
         for i in range(2):
             ends = world(q, scene.tie_body[i], scene.tie_point[i]), world(q, scene.anchor_body[i], scene.anchor[i])
-            now = slack(scene.ties, i, frames_of(q), v, a)
-            assert now[0] == pytest.approx(scene.tie_length[i] - math.dist(*ends), abs=1e-12)
-            before, after = (slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
-            assert (after[0] - before[0]) / (2 * t) == pytest.approx(now[1], abs=1e-6)
-            assert (after[1] - before[1]) / (2 * t) == pytest.approx(now[2] + now[3], abs=1e-5)
-            assert slack(scene.ties, i, frames_of(q), a, v)[1] == pytest.approx(now[2])
+            now = slack(scene.ties, i, frames_of(q), v, a, axes)
+            assert now.value == pytest.approx(scene.tie_length[i] - math.dist(*ends), abs=1e-12)
+            before, after = (
+                slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a, axes) for s in (-t, t)
+            )
+            assert (after.value - before.value) / (2 * t) == pytest.approx(now.rate, abs=1e-6)
+            assert (after.rate - before.rate) / (2 * t) == pytest.approx(now.linear + now.swept, abs=1e-5)
+            assert slack(scene.ties, i, frames_of(q), a, v, axes).rate == pytest.approx(now.linear)
 
 
 def test_a_tie_yields_beyond_its_strength_and_stays_longer():
     """k (length - reach) up to the strength; what is beyond lengthens the reach, and less than that gives no force."""
     scene = tied_blocks()
-    ties = scene.ties._replace(reach=np.array(scene.ties.reach))
+    ties, axes = scene.ties._replace(reach=np.array(scene.ties.reach)), scene.places.axes
     q = np.zeros(6)
-    length = 2.0 - slack(ties, 0, frames_of(q), q, q)[0]
+    length = 2.0 - slack(ties, 0, frames_of(q), q, q, axes).value
     limit = 1e5 / 2e6
     for reach, elastic, yielded in (
         (length + 0.1, 0.0, 0.0),
@@ -124,7 +133,7 @@ def test_a_tie_yields_beyond_its_strength_and_stays_longer():
         (length - limit - 0.3, limit, 0.3),
     ):
         ties.reach[0] = reach
-        assert stretch(ties, 0, frames_of(q), q) == pytest.approx((elastic, yielded), abs=1e-12)
+        assert stretch(ties, 0, frames_of(q), q, axes) == pytest.approx((elastic, yielded), abs=1e-12)
         assert ties.reach[0] == pytest.approx(reach + yielded)
 
 
@@ -133,12 +142,12 @@ def test_a_place_along_a_face_moves_with_its_rate():
     scene, t = two_blocks(), 1e-5
     for q, v, _ in zip(*poses(np.random.default_rng(10), 20, 2), strict=True):
         for i in range(len(scene.k)):
-            before, after = (along(scene.places, i, frames_of(q + s * v), v)[0] for s in (-t, t))
-            assert (after - before) / (2 * t) == pytest.approx(along(scene.places, i, frames_of(q), v)[1], abs=1e-7)
-            assert depth(scene.places, i, frames_of(q)) == pytest.approx(-gap(scene.places, i, frames_of(q), v, v)[0])
+            before, after = (along(scene.places, i, frames_of(q + s * v), v).place for s in (-t, t))
+            assert (after - before) / (2 * t) == pytest.approx(along(scene.places, i, frames_of(q), v).rate, abs=1e-7)
+            assert depth(scene.places, i, frames_of(q)) == pytest.approx(-gap(scene.places, i, frames_of(q), v, v).value)
     still = np.zeros(6)
     for i, place in enumerate((-0.3, 0.3, -0.3, 0.3)):
-        assert along(scene.places, i, frames_of(still), still)[0] == pytest.approx(place)
+        assert along(scene.places, i, frames_of(still), still).place == pytest.approx(place)
 
 
 def test_slip_is_the_relative_velocity_where_friction_acts():
@@ -160,7 +169,7 @@ def test_slip_is_the_relative_velocity_where_friction_acts():
     t = 1e-5
     for q, v, _ in zip(*poses(rng, 20, 2), strict=True):
         for i in range(len(scene.k)):
-            g = gap(scene.places, i, frames_of(q), v, v)[0]
+            g = gap(scene.places, i, frames_of(q), v, v).value
             face = scene.face_body[i]
             turn = q[3 * face + 2] if face >= 0 else 0.0
             nx, nz = scene.normal[i]
@@ -171,7 +180,7 @@ def test_slip_is_the_relative_velocity_where_friction_acts():
                 if body >= 0:
                     own = local_to(q, body, place)
                     relative += sign * (world(q + t * v, body, own) - world(q - t * v, body, own)) / (2 * t)
-            assert along(scene.places, i, frames_of(q), v)[2] == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
+            assert along(scene.places, i, frames_of(q), v).bodies == pytest.approx(relative @ [n[1], -n[0]], abs=1e-8)
 
 
 def test_gaps_and_slip_are_those_of_the_engine():
@@ -201,23 +210,24 @@ def test_gaps_and_slip_are_those_of_the_engine():
                 row = contact.efc_address
                 assert jacobian[row] @ v == pytest.approx(rate, rel=1e-9, abs=1e-9)
                 slips = jacobian[row + 1 : row + contact.dim] @ v
-                assert np.hypot(*slips) == pytest.approx(abs(along(scene.places, i, frames_of(q), v)[2]), abs=1e-9)
+                assert np.hypot(*slips) == pytest.approx(abs(along(scene.places, i, frames_of(q), v).bodies), abs=1e-9)
     assert seen == set(range(len(scene.k)))
 
 
 def test_energy_is_none_at_rest_and_the_rigid_one_at_release(wall, contacts):
-    at_rest = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    assert at_rest.release_energy == pytest.approx(0, abs=1e-9)
+    course, scene = course_and_scene(mr.Case(wall, 0.0, 1.0), contacts)
+    assert course.energy(scene) == pytest.approx(0, abs=1e-9)
     case = mr.Case(wall, 0.5 * wall.alpha, 1.0)
     # one corner instead of two carries the wall: m g (m g / 4 k) less, k that of one corner
     less = wall.weight**2 / (4 * contacts.base.stiffness[0])
-    assert mr.wall_scene(case, contacts).release_energy == pytest.approx(case.release_energy - less, rel=1e-10)
+    course, scene = course_and_scene(case, contacts)
+    assert course.energy(scene) == pytest.approx(case.release_energy - less, rel=1e-10)
 
 
 def test_energies_of_bodies_that_move():
     scene = two_blocks()
     q, v, _ = poses(np.random.default_rng(8), 5, 2)
-    found, taken = energies(scene.points, scene.ties, scene.forces, scene.masses, q, v)
+    found, taken = scene.accounts(q, v)
     assert (found.shape, taken.shape) == ((5, 3), (5, 0))
     np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.masses))
     np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.mass))
@@ -233,7 +243,7 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    np.testing.assert_allclose(settled(scene.points, scene.ties, scene.forces, scene.masses), scene.at_rest, atol=1e-15)
+    np.testing.assert_allclose(settled(scene.potential, scene.friction), scene.at_rest, atol=1e-15)
     np.testing.assert_allclose(scene.bears, wall.weight / scene.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
     force = -blocks.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)
