@@ -6,11 +6,12 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from scenes import two_blocks
+from scenes import course, two_blocks
 
 import mjrock as mr
 from mjrock.engine.mjcf import pair_rows, scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
+from mjrock.engine.points import inverse_weights
 from mjrock.engine.stepping import fitted_steps
 from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
 from mjrock.scene.wall import wall_scene
@@ -53,33 +54,34 @@ def test_bodies_that_do_not_stand_are_refused():
 def test_the_text_of_many_bodies():
     """Names, joints, and what stock MuJoCo makes of them."""
     scene = two_blocks()
-    text = released_mjcf(scene, 1e-3)
-    assert text == released_mjcf(two_blocks(), 1e-3)
+    text, again = released_mjcf(scene, course(scene), 1e-3), two_blocks()
+    assert text == released_mjcf(again, course(again), 1e-3)
     model = mujoco.MjModel.from_xml_string(text)
     joints = [model.joint(i).name for i in range(model.njnt)]
     assert joints == ["lower_x", "lower_z", "lower_theta", "upper_x", "upper_z", "upper_theta"]
     assert [model.pair(i).name for i in range(model.npair)] == ["foot_0", "foot_1", "middle_0", "middle_1"]
     assert model.geom("middle").bodyid[0] == model.body("lower").id
+    weight = inverse_weights(scene)
     for i in range(4):
         pair = model.pair(i)
-        found = mr.contact_stiffness(tuple(pair.solref), tuple(pair.solimp), inverse_weight=scene.weight[i])
+        found = mr.contact_stiffness(tuple(pair.solref), tuple(pair.solimp), inverse_weight=weight[i])
         assert found == pytest.approx((scene.k[i], scene.c[i]), rel=1e-12)
-    assert scene.weight[3] == pytest.approx(2 * scene.weight[0])
+    assert weight[3] == pytest.approx(2 * weight[0])
 
 
 def test_stock_mujoco_repeats_the_fixed_steps_of_many_bodies():
     from mjrock.engine.stepping import fixed_steps
 
-    scene = two_blocks(duration=0.05)
+    scene = two_blocks()
     lifted = scene.at_rest + np.array([[0, 1e-4, 1e-3], [0, 3e-4, 2e-3]])
-    scene = scene.released(lifted, np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.2]]), 0.05, None)
-    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, 1e-4))
+    thrown = course(scene, [[0.0, 0.0, 0.0], [0.1, 0.0, 0.2]], 0.05, pose=lifted)
+    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, thrown, 1e-4))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     with engine_of(scene) as engine:
         engine.follow(1e-4, pair_rows(scene, 1e-4, 0.25))
-        engine.release(scene.started)
-        steps = fixed_steps(engine, scene, 1e-4, 0.25)
+        engine.release(thrown)
+        steps = fixed_steps(engine, scene, thrown, 1e-4, 0.25)
     for pose in steps.pose:
         np.testing.assert_allclose(data.qpos, pose, rtol=0, atol=1e-13)
         mujoco.mj_step(model, data)
@@ -153,9 +155,10 @@ def test_the_push_of_the_ground_is_its_impulse():
 
 def test_a_stack_at_rest_stays_at_rest():
     """Two blocks, ten seconds: nothing moves, and the steps grow long."""
-    scene = two_blocks(duration=10.0)
+    scene = two_blocks()
+    still = course(scene, duration=10.0)
     with engine_of(scene) as engine:
-        engine.place(scene.started)
-        steps = fitted_steps(engine, scene, 1e-3)
+        engine.place(still)
+        steps = fitted_steps(engine, scene, still, 1e-3)
     assert np.abs(steps.pose - scene.at_rest.ravel()).max() < 1e-12
     assert len(steps.t) < 2000
