@@ -143,7 +143,7 @@ def test_rates_of_lines_are_those_of_the_engine():
     flat = np.zeros(9)
     mine = {}
     for i in range(len(scene.k)):
-        columns_ = [gap(scene._points, i, frames_of(flat), one, flat)[1] for one in np.eye(9)]
+        columns_ = [gap(scene.places, i, frames_of(flat), one, flat).rate for one in np.eye(9)]
         mine[scene.group[i], *np.round(scene.rest[scene.point_body[i]] + scene.point[i], 9)] = columns_
     for row, joint, at in zip(
         rates(masonry.blocks, masonry.lines, masonry.lines.normal), masonry.lines.joint, masonry.lines.at, strict=True
