@@ -1,38 +1,56 @@
-"""Levers give the rates that the kinematics give, and a force along a face the work that its slip takes."""
+"""Where two bodies meet gives the rates that the kinematics give, and a force there the work that its way takes."""
 
 import numpy as np
 import pytest
-from mjrock.engine.levers import levers_of, opening, rub, slipping
 from scenes import two_blocks
 
 import mjrock as mr
+from mjrock.engine.sliding import slipping
 from mjrock.geometry.frames import frames_of
-from mjrock.geometry.kinematics import along, gap
+from mjrock.geometry.kinematics import along, depth, gap, meeting, over_face, push_apart, where_friction_acts
+from mjrock.geometry.vectors import dot, scaled, tangent
 
 ARCH = mr.masonry_scene(mr.MasonryCase(mr.Masonry.arch(5.0, 0.75, voussoirs=5), 1.0))
 
 
 @pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
 def test_rates_are_those_of_the_kinematics(scene):
-    rng = np.random.default_rng(1)
+    """Of the gap at the arms to the place of friction too: along the normal a body moves there as at the point."""
+    rng, places = np.random.default_rng(1), scene.places
     for _ in range(20):
         pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.masses.shape)
-        velocity, frame = rng.normal(size=pose.shape), frames_of(pose)
+        velocity, frames = rng.normal(size=pose.shape), frames_of(pose)
         for i in range(len(scene.k)):
-            levers = levers_of(scene.points, i, frame)
-            between, rate, _, _ = gap(scene.places, i, frame, velocity, velocity)
-            assert levers.gap == pytest.approx(between, abs=1e-14)
-            assert opening(scene.points, i, levers, velocity) == pytest.approx(rate, abs=1e-13)
-            slip = along(scene.places, i, frame, velocity)[2]
-            assert slipping(scene.points, i, levers, velocity) == pytest.approx(slip, abs=1e-13)
+            meets = where_friction_acts(places, meeting(places, i, frames))
+            between = gap(places, i, frames, velocity, velocity)
+            assert meets.gap == pytest.approx(between.value, abs=1e-14)
+            assert meets.gap == pytest.approx(-depth(places, i, frames), abs=1e-14)
+            opening = dot(meets.normal, over_face(places, i, meets, frames, velocity))
+            assert opening == pytest.approx(between.rate, abs=1e-13)
+            slip = along(places, i, frames, velocity).bodies
+            assert slipping(places, i, meets, frames, velocity) == pytest.approx(slip, abs=1e-13)
 
 
 @pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
 def test_the_power_of_a_force_along_a_face_is_force_times_slip(scene):
-    rng = np.random.default_rng(2)
+    rng, places = np.random.default_rng(2), scene.places
     pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.masses.shape)
-    velocity, frame = rng.normal(size=pose.shape), frames_of(pose)
+    velocity, frames = rng.normal(size=pose.shape), frames_of(pose)
     for i in range(len(scene.k)):
-        levers, applied = levers_of(scene.points, i, frame), np.zeros_like(pose)
-        rub(scene.points, i, levers, -3.0, applied)
-        assert applied @ velocity == pytest.approx(-3.0 * slipping(scene.points, i, levers, velocity), rel=1e-12)
+        meets, applied = where_friction_acts(places, meeting(places, i, frames)), np.zeros_like(pose)
+        push_apart(places, i, meets, frames, scaled(-3.0, tangent(meets.normal)), applied)
+        power = -3.0 * slipping(places, i, meets, frames, velocity)
+        assert applied @ velocity == pytest.approx(power, rel=1e-12)
+        assert power == pytest.approx(-3.0 * along(places, i, frames, velocity).bodies, rel=1e-12)
+
+
+@pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
+def test_the_power_of_a_force_out_of_a_face_is_force_times_rate(scene):
+    rng, places = np.random.default_rng(3), scene.places
+    pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.masses.shape)
+    velocity, frames = rng.normal(size=pose.shape), frames_of(pose)
+    for i in range(len(scene.k)):
+        meets, applied = meeting(places, i, frames), np.zeros_like(pose)
+        push_apart(places, i, meets, frames, scaled(5.0, meets.normal), applied)
+        rate = gap(places, i, frames, velocity, velocity).rate
+        assert applied @ velocity == pytest.approx(5.0 * rate, rel=1e-12)
