@@ -70,7 +70,9 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
     t = 1e-4
     for q, v, a in zip(*poses(rng, 20, 2), strict=True):
         for i in range(len(scene.k)):
-            before, after = (gap(scene.places, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t))
+            before, after = (
+                gap(scene.places, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t)
+            )
             now = gap(scene.places, i, frames_of(q), v, a)
             assert (after.value - before.value) / (2 * t) == pytest.approx(now.rate, abs=1e-6)
             assert (after.rate - before.rate) / (2 * t) == pytest.approx(now.linear + now.swept, abs=1e-5)
@@ -144,7 +146,9 @@ def test_a_place_along_a_face_moves_with_its_rate():
         for i in range(len(scene.k)):
             before, after = (along(scene.places, i, frames_of(q + s * v), v).place for s in (-t, t))
             assert (after - before) / (2 * t) == pytest.approx(along(scene.places, i, frames_of(q), v).rate, abs=1e-7)
-            assert depth(scene.places, i, frames_of(q)) == pytest.approx(-gap(scene.places, i, frames_of(q), v, v).value)
+            assert depth(scene.places, i, frames_of(q)) == pytest.approx(
+                -gap(scene.places, i, frames_of(q), v, v).value
+            )
     still = np.zeros(6)
     for i, place in enumerate((-0.3, 0.3, -0.3, 0.3)):
         assert along(scene.places, i, frames_of(still), still).place == pytest.approx(place)
