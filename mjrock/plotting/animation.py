@@ -98,9 +98,7 @@ def animate_bodies(
 
     Returns, Raises: as `animate`.
     """
-    given = [tuple(np.asarray(one, dtype=float) for one in several) for several in (outlines, fixed)]
-    arrays = [np.asarray(one, dtype=float) for one in (t, rests, poses)]
-    bodies = Bodies(arrays[0], given[0], arrays[1], arrays[2], magnify, given[1])
+    bodies = Bodies(t, outlines, rests, poses, magnify, fixed)  # type: ignore[arg-type]
     return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
 
 
@@ -118,8 +116,9 @@ def _film(
     """Check, draw frame by frame, and write the file."""
     path = Path(path)
     writer, interval = writer_for(path, require_within("fps", fps, 1.0, 120.0, "1/s"))
-    times = frame_times(bodies.t, require_within("speed", speed, 1e-3, 1e3) * interval)
-    require_within("dpi", dpi, 20.0, 600.0)
+    speed = require_within("speed", speed, 1e-3, 1e3)
+    times = frame_times(bodies.t, speed * interval)
+    dpi = require_within("dpi", dpi, 20.0, 600.0)
     require_kind("title", title, str)
     figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title)
     with replacing(path) as partial:

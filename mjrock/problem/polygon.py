@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import Array, require_flag, require_kind, require_within, shown
+from .quantities import Array, keep, require_flag, require_kind, require_reals, require_within, shown
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -53,20 +53,17 @@ class Polygon:
         fixed: bool = False,
         name: str | None = None,
     ) -> None:
-        require_within("density", density, 100.0, 3e4, "kg/m3")
-        require_within("length", length, 1e-3, 1e3, "m")
-        require_flag("fixed", fixed)
         require_kind("name", name, str, type(None))
         if name is not None and (not name or "|" in name or name == "world"):
             raise ValueError(f"name = {shown(name)} is empty, is world, or holds a |")
-        for key, value in (
-            ("vertices", checked_corners(vertices)),
-            ("density", float(density)),
-            ("length", float(length)),
-            ("fixed", bool(fixed)),
-            ("name", name),
-        ):
-            object.__setattr__(self, key, value)
+        keep(
+            self,
+            name=name,
+            vertices=checked_corners(vertices),
+            density=require_within("density", density, 100.0, 3e4, "kg/m3"),
+            length=require_within("length", length, 1e-3, 1e3, "m"),
+            fixed=require_flag("fixed", fixed),
+        )
 
     @cached_property
     def corners(self) -> Array:
@@ -126,12 +123,9 @@ class Polygon:
         return float(np.hypot(*(self.corners - self.centroid).T).max())
 
 
-def checked_corners(vertices: object) -> Corners:
+def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     """Vertices as pairs of numbers, counterclockwise; a TypeError or ValueError names what is wrong with them."""
-    try:
-        made = np.array(vertices, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"vertices = {shown(vertices)} is no array of real numbers") from None
+    made = require_reals("vertices", vertices, f"an array of real numbers of the shape (3 to {MOST_VERTICES}, 2)")
     if made.ndim != 2 or made.shape[1] != 2 or not 3 <= len(made) <= MOST_VERTICES:
         raise ValueError(f"vertices has the shape {made.shape}; (3 to {MOST_VERTICES}, 2) is needed")
     if not (np.abs(made) <= FARTHEST).all():  # a NaN is not

@@ -7,7 +7,7 @@ from numbers import Real as RealNumber
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2], in every solver and in the generated model."""
@@ -25,9 +25,28 @@ MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 
 
+def keep(made: object, **checked: object) -> None:
+    """Set fields of a frozen dataclass that is being made to what their checks returned.
+
+    A check takes any real number and returns a float. The number given is not kept: NumPy computes with its small
+    numbers in their own few bits, in which 200 * 2 is 144.
+    """
+    for name, value in checked.items():
+        object.__setattr__(made, name, value)
+
+
+def spelt(value: object) -> str:
+    """A value as `repr` spells it, in text that UTF-8 can hold; its type where `repr` fails."""
+    try:
+        text = repr(value)
+    except Exception:
+        text = f"a {type(value).__name__}"
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
 def shown(value: object) -> str:
     """A value and its type, short enough for a message."""
-    text = repr(value)
+    text = spelt(value)
     return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
 
 
@@ -43,7 +62,7 @@ def require_real(name: str, value: object) -> float:
     try:
         return float(value)
     except OverflowError:
-        raise ValueError(f"{name} is an integer of {value.bit_length()} bits, beyond any valid range") from None  # type: ignore[attr-defined]
+        raise ValueError(f"{name} is a number too large for a float, beyond any valid range") from None
 
 
 def require_within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
@@ -85,10 +104,11 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
 
 
-def require_flag(name: str, value: object) -> None:
-    """Raise a TypeError unless the value is True or False."""
+def require_flag(name: str, value: object) -> bool:
+    """Return `value` as a bool, or raise a TypeError unless it is True or False."""
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} = {shown(value)} is neither True nor False")
+    return bool(value)
 
 
 def require_size(what: str, count: float, remedy: str) -> None:
@@ -97,19 +117,63 @@ def require_size(what: str, count: float, remedy: str) -> None:
         raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
 
 
+def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
+    """`values` as an array of floats.
+
+    Raises:
+        TypeError: with the name and what it takes, unless they are real numbers. True and False are none.
+        ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
+    """
+    try:
+        given = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
+    if given.dtype.kind not in "iuf":
+        raise TypeError(f"{name} = {shown(values)} does not hold real numbers alone; it takes {takes}")
+    if _is_masked(values):
+        raise ValueError(f"{name} has masked values; it takes {takes}")
+    require_size(f"the size of {name}", given.size, "give fewer values")
+    return np.asarray(given, dtype=float)
+
+
+def require_row(name: str, values: ArrayLike, one: str) -> Array:
+    """Return a copy of `values` as a row of finite numbers, shape (n,).
+
+    Args:
+        name: what it is called.
+        values: the numbers.
+        one: what each of them is.
+
+    Raises:
+        TypeError: unless they are real numbers.
+        ValueError: if they are ragged or masked, no row, none at all, or not finite.
+    """
+    made = np.array(require_reals(name, values, f"a row of at least one {one}"))
+    if made.ndim != 1 or not made.size:
+        raise ValueError(f"{name} has the shape {made.shape}; a row of at least one {one} is needed")
+    return _finite(name, made)
+
+
+def _is_masked(values: ArrayLike) -> bool:
+    """Whether an array, or one of a list of arrays, has masked values."""
+    rows = values if isinstance(values, list | tuple) else [values]
+    return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
+
+
 def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """Return `value` as an array of finite numbers.
+    """Return a copy of `value` as an array of finite numbers.
 
     Raises:
         TypeError: if it is no array of real numbers.
-        ValueError: if it has another shape, or a value that is not finite.
+        ValueError: if it is ragged or masked, has another shape, or a value that is not finite.
     """
-    try:
-        made = np.array(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{name} = {shown(value)} is no array of real numbers") from None
+    made = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
     if made.shape != shape:
         raise ValueError(f"{name} has the shape {made.shape}; {shape} is needed")
+    return _finite(name, made)
+
+
+def _finite(name: str, made: Array) -> Array:
     if not np.isfinite(made).all():
         raise ValueError(f"{name} holds a value that is not finite")
     return made

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import GRAVITY, Array, require_kind, require_size, require_within, shown
+from .quantities import GRAVITY, Array, require_kind, require_reals, require_within
 
 Record = tuple[Array, float]
 
@@ -29,7 +29,7 @@ UNEVEN = 0.01
 
 AS_ASCII = re.ASCII | re.IGNORECASE
 EXPONENT = r"(?:[ed][-+]?\d+)?"
-COUNT, STEP = r"(\d{1,9})", rf"((?:\d+\.?\d*|\.\d+){EXPONENT})"
+COUNT, STEP = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
 NUMBER = re.compile(rf"[-+]?{STEP}", AS_ASCII)
 POINTED = rf"[-+]?(?:\d+\.\d*|\.\d+){EXPONENT}"
 GLUED = re.compile(rf"{POINTED}(?:(?=[-+]){POINTED})+", AS_ASCII)
@@ -51,25 +51,6 @@ DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
-def reals(name: str, values: ArrayLike, takes: str) -> Array:
-    """`values` as an array of floats.
-
-    Raises:
-        TypeError: with the name and what it takes, unless they are real numbers. True and False are none.
-        ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
-    """
-    try:
-        given = np.asarray(values)
-    except ValueError:
-        raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
-    if given.dtype.kind not in "iuf":
-        raise TypeError(f"{name} = {shown(values)} does not hold real numbers alone; it takes {takes}")
-    if np.ma.is_masked(values):
-        raise ValueError(f"{name} has masked values; it takes {takes}")
-    require_size(f"the size of {name}", given.size, "give fewer values")
-    return np.asarray(given, dtype=float)
-
-
 def checked(accel: ArrayLike, dt: float) -> Record:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
@@ -77,7 +58,7 @@ def checked(accel: ArrayLike, dt: float) -> Record:
         TypeError: for what are no real numbers.
         ValueError: unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
     """
-    values = np.array(reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
+    values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
         raise ValueError(f"accel has the shape {values.shape}; one row of at least 2 accelerations [m/s2] is needed")
     bad = np.flatnonzero(~np.isfinite(values))
