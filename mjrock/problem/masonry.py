@@ -27,6 +27,11 @@ OF_JOINTS = {"k_n": (1e4, 1e14, "N/m3"), "friction": (0.0, 10.0, ""), "xi": (0.0
 """Lowest and highest value of the properties of a joint, and their unit."""
 
 
+def required(name: str, given: OfJoint) -> OfJoint:
+    """A property of joints, a number as a float within its range, or a function as it is."""
+    return given if callable(given) else require_within(name, given, *OF_JOINTS[name])
+
+
 @dataclass(frozen=True)
 class Masonry:
     """Rigid convex blocks on compliant joints.
@@ -97,9 +102,7 @@ class Masonry:
         )
         if self.frequency is not None:
             keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
-        for name, valid in OF_JOINTS.items():
-            if not callable(given := getattr(self, name)):
-                keep(self, **{name: require_within(name, given, *valid)})
+        keep(self, **{name: required(name, getattr(self, name)) for name in OF_JOINTS})
         if isinstance(self.law, str):
             keep(self, law=law_named(self.law))
         elif self.law is not None and not callable(self.law):
@@ -155,7 +158,8 @@ class Masonry:
         if options.get("law") is None and options.get("frequency") is None:
             bare = cls(tuple(made), k_n=k_n, **options)
             options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-        options["friction"] = ByKind(options.get("friction", cls.friction), side_friction)
+        k_n = required("k_n", k_n)
+        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
         return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
 
     @classmethod
