@@ -117,23 +117,35 @@ def require_size(what: str, count: float, remedy: str) -> None:
         raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
 
 
-def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
-    """`values` as an array of floats.
+def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArray[Any]:
+    """`values` as an array of certain kinds.
+
+    Args:
+        name: what it is called.
+        values: the values.
+        takes: what the values have to be, in words.
+        kinds: characters of the kinds, those of `numpy.dtype.kind`.
 
     Raises:
-        TypeError: with the name and what it takes, unless they are real numbers. True and False are none.
+        TypeError: with the name and what it takes, for values of another kind.
         ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
     """
     try:
         given = np.asarray(values)
     except ValueError:
         raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
-    if given.dtype.kind not in "iuf":
-        raise TypeError(f"{name} = {shown(values)} does not hold real numbers alone; it takes {takes}")
+    if given.dtype.kind not in kinds:
+        held = "values of these kinds" if "b" in kinds else "real numbers"
+        raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")
     if _is_masked(values):
         raise ValueError(f"{name} has masked values; it takes {takes}")
     require_size(f"the size of {name}", given.size, "give fewer values")
-    return np.asarray(given, dtype=float)
+    return given
+
+
+def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
+    """`values` as an array of floats, see `require_plain`. True and False are no real numbers."""
+    return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
 
 
 def require_row(name: str, values: ArrayLike, one: str) -> Array:
