@@ -30,14 +30,15 @@ UNEVEN = 0.01
 AS_ASCII = re.ASCII | re.IGNORECASE
 EXPONENT = r"(?:[ed][-+]?\d+)?"
 COUNT, STEP = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
+"""No run of digits or blanks can be parted in two ways, so that the time of a search goes with the length of a line."""
 NUMBER = re.compile(rf"[-+]?{STEP}", AS_ASCII)
 POINTED = rf"[-+]?(?:\d+\.\d*|\.\d+){EXPONENT}"
 GLUED = re.compile(rf"{POINTED}(?:(?=[-+]){POINTED})+", AS_ASCII)
 """Columns of fixed width that a sign sets apart. Each has its decimal point: 1.5-102 is an exponent in Fortran."""
 AT2_UNIT = re.compile(
-    r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g\s*[.,;]?\s*(filter\s+points\b.*)?", AS_ASCII
+    r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
 )
-AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}\s*(s|sec|seconds)?[\s.,]*", AS_ASCII)
+AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}(\s*(s|sec|seconds))?[\s.,]*", AS_ASCII)
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
 SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
 BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
