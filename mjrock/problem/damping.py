@@ -14,7 +14,7 @@ from typing import Any, Self
 from ..files import write_text
 from .block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
-from .quantities import keep, require_array, require_kind, require_stiffness, require_within
+from .quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within
 from .restitution import Restitution
 
 LEAST, HIGHEST = 1e-3, 0.3
@@ -203,7 +203,7 @@ class DampingLaw:
                 lines.append(f"{key} = {_toml(value)}{note}")
             if errors:
                 lines += ["", f"[errors.{part}]", *(f"{key} = {_toml(value)}" for key, value in errors.items())]
-        return write_text(path, "\n".join(lines) + "\n")
+        return write_text(require_path("path", path), "\n".join(lines) + "\n")
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -213,8 +213,9 @@ class DampingLaw:
             OSError: if the file cannot be read.
             ValueError: if it is no law: not TOML, a formula that there is not, or a coefficient missing or too many.
         """
+        path = require_path("path", path)
         try:
-            text = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            text = tomllib.loads(path.read_text(encoding="utf-8"))
             made: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
             for part in ("base", "side"):
                 given = dict(text[part])

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import Array, keep, require_flag, require_kind, require_reals, require_within, shown
+from .quantities import Array, keep, require_flag, require_reals, require_text, require_within, shown
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -32,7 +32,7 @@ class Polygon:
         density: mass density [kg/m3], 100 to 30000.
         length: length out of the plane [m], 1e-3 to 1000.
         fixed: whether the block belongs to the ground, as an abutment does.
-        name: what it is called in results and in the model, without "|"; None numbers it.
+        name: what it is called in results and in the model, at most 1000 characters, without "|"; None numbers it.
 
     Raises:
         ValueError: for fewer than three vertices, two that coincide, edges that cross, a corner that points inwards, or
@@ -53,8 +53,7 @@ class Polygon:
         fixed: bool = False,
         name: str | None = None,
     ) -> None:
-        require_kind("name", name, str, type(None))
-        if name is not None and (not name or "|" in name or name == "world"):
+        if name is not None and (not require_text("name", name) or "|" in name or name == "world"):
             raise ValueError(f"name = {shown(name)} is empty, is world, or holds a |")
         keep(
             self,

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 from numbers import Real as RealNumber
+from os import PathLike
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -45,8 +48,8 @@ def spelt(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """A value and its type, short enough for a message."""
-    text = spelt(value)
+    """A value and its type on one line, short enough for a message."""
+    text = " ".join(spelt(value).split())
     return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
 
 
@@ -109,6 +112,41 @@ def require_flag(name: str, value: object) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} = {shown(value)} is neither True nor False")
     return bool(value)
+
+
+def require_text(name: str, value: object, longest: int = 1000) -> str:
+    """Return `value`, a text that a model, a page and a table can hold.
+
+    Raises:
+        TypeError: unless it is a text.
+        ValueError: if it has a NUL, half of a surrogate pair, or more characters than `longest`.
+    """
+    require_kind(name, value, str)
+    text = str(value)
+    if len(text) > longest:
+        raise ValueError(f"{name} = {shown(text)} has {len(text)} characters; the valid range is 0 to {longest}")
+    if "\0" in text or text.encode("utf-8", "ignore").decode() != text:
+        raise ValueError(f"{name} = {shown(text)} has a NUL or half of a surrogate pair, which no file can hold")
+    return text
+
+
+def require_path(name: str, path: object) -> Path:
+    """Return `path` as a Path.
+
+    Raises:
+        TypeError: unless it is a text or a path.
+        ValueError: if it is empty, or no name that a file can have.
+    """
+    require_kind(name, path, str, PathLike)
+    text = os.fspath(path)  # type: ignore[call-overload]
+    require_kind(name, text, str)
+    try:
+        encoded = os.fsencode(text)
+    except UnicodeError:
+        encoded = b"\0"
+    if not encoded or b"\0" in encoded:
+        raise ValueError(f"{name} = {shown(path)} is empty, or holds characters that no path has")
+    return Path(text)
 
 
 def require_size(what: str, count: float, remedy: str) -> None:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import GRAVITY, Array, require_kind, require_reals, require_within
+from .quantities import GRAVITY, Array, require_path, require_reals, require_within, shown
 
 Record = tuple[Array, float]
 
@@ -77,21 +77,21 @@ def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Rec
         TypeError: if the path is none.
         ValueError: with the name of the file, if it is not one of the format.
     """
-    require_kind("path", path, str, PathLike)
+    path = require_path("path", path)
     try:
         return checked(*parse(text_lines(path)))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 
 
-def text_lines(path: str | PathLike[str]) -> list[str]:
+def text_lines(path: Path) -> list[str]:
     """The lines of a text file in UTF-8 or Latin-1. Only CR, LF and CR LF end a line. A last ^Z of DOS is dropped.
 
     Raises:
         OSError: if the file cannot be read.
         ValueError: if it is binary or empty.
     """
-    data = Path(path).read_bytes()
+    data = path.read_bytes()
     if b"\0" in data:
         raise ValueError("a binary file or one in UTF-16; a text of accelerations in UTF-8 or Latin-1 is needed")
     try:
@@ -193,7 +193,7 @@ def _even_step(time: Array, places: Sequence[int]) -> float:
 
 def _factor(name: str, unit: str, units: dict[str, float]) -> float:
     if not isinstance(unit, str) or unit not in units:
-        raise ValueError(f"{name} = {unit!r} is not one of {', '.join(units)}")
+        raise ValueError(f"{name} = {shown(unit)} is not one of {', '.join(units)}")
     return units[unit]
 
 

@@ -83,7 +83,7 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     whole = len(made) > 1 and made[0][0] == 0 and abs(made[-1][0] - height) <= 1e-9 * height
     if not whole or abs(made[0][1] / thickness - 1) > 1e-9:
         raise ValueError(
-            f"profile = {profile!r} is outside the valid range: it starts at height 0 with the thickness "
+            f"profile = {shown(profile)} is outside the valid range: it starts at height 0 with the thickness "
             f"{thickness:g} m and ends at the height {height:g} m"
         )
     return tuple(made)
