@@ -117,7 +117,7 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
             lambda: mr.simulate(CASE, contacts(), start=(np.ma.masked_equal(np.zeros((1, 3)), 0), np.zeros((1, 3)))),
             "start, pose has masked values",
         ),
-        (lambda: mr.Analysis(CASE, np.array([1])), r"solver = array\(\[1\]\) of type ndarray is none of"),
+        (lambda: mr.Analysis(CASE, np.array([1])), r"solver = array\(\[1\]\) is none of"),
         (lambda: mr.Analysis(CASE, Unspeakable()), "solver = a Unspeakable"),
         (lambda: contacts(side_friction=11.0), "^side_friction = 11 is outside"),
         (lambda: contacts(friction=11.0), "^friction = 11 is outside"),

@@ -68,7 +68,7 @@ def campaign(
     if time_limit is not None:
         time_limit = require_real("time_limit", time_limit)
         if not time_limit > 0:
-            raise ValueError(f"time_limit = {time_limit:g} s is outside the valid range, which is above 0")
+            raise ValueError(f"time_limit = {time_limit} s is outside the valid range, which is above 0")
     retry = require_flag("retry", retry)
     if time_limit is not None and executor is not None:
         raise ValueError(f"time_limit = {time_limit} s needs processes of this machine, and executor gives others")

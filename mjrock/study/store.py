@@ -11,7 +11,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from ..problem.quantities import require_path
+from ..problem.quantities import require_path, spelt
 from ..result.table import guarded
 from .lock import Lock
 from .values import checksum, plain, shown
@@ -187,7 +187,7 @@ class Store:
         seen: set[str] = set()
         for name in names:
             if not isinstance(name, str) or not name or '"' in name or "\0" in name or name.lower() in reserved:
-                raise ValueError(f"{shown(name)} cannot name a column; reserved are {', '.join(reserved)}")
+                raise ValueError(f"{spelt(name)} cannot name a column; reserved are {', '.join(reserved)}")
             plain(name)
             if name.lower() in seen or known.get(name.lower(), name) != name:
                 other = known.get(name.lower(), name)
