@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,12 +23,14 @@ Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
+    asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        xi_base, xi_side = law(wall, e, k_base)
+        found = law(wall, e, k_base)
     except TypeError as error:
-        raise TypeError(
-            f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers: {error}"
-        ) from None
+        raise TypeError(f"{asked}: {error}") from None
+    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str) or np.shape(found)[:1] != (2,):
+        raise TypeError(f"{asked}: it gives {shown(found)}")
+    xi_base, xi_side = found
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 

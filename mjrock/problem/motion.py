@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import pulses
-from .quantities import GRAVITY, Array, keep, require_kind, require_reals, require_within
+from .quantities import GRAVITY, Array, keep, require_kind, require_reals, require_within, spelt
 from .records import COARSEST, FINEST, Record, checked, doubts, parse_at2, parse_columns, parse_sac, read
 from .resampling import resample
 
@@ -143,7 +143,9 @@ class GroundMotion:
             ValueError: for a value outside its range, both or neither, or a peak of a motion that has none.
         """
         if (factor is None) == (peak is None):
-            raise ValueError(f"scaled takes either a factor or a peak [m/s2]; factor = {factor}, peak = {peak}")
+            raise ValueError(
+                f"scaled takes either a factor or a peak [m/s2]; factor = {spelt(factor)}, peak = {spelt(peak)}"
+            )
         if peak is None:
             made = require_within("factor", factor, -1e6, 1e6)
             return GroundMotion(made * self.accel, self.dt, f"{self.name} x {made:g}")
