@@ -17,6 +17,7 @@ WALL = mr.Block(0.3, 2.1)
 E = mr.Restitution.from_geometry(WALL)
 CASE = mr.Case(WALL, 0.05, 0.05)
 ANSWER = mr.solve_analytical(CASE, E)
+SHAKE = mr.GroundMotion([0.0, 1.0], 0.1)
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 
 
@@ -121,7 +122,17 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: mr.Analysis(CASE, Unspeakable()), "solver = a Unspeakable"),
         (lambda: contacts(side_friction=11.0), "^side_friction = 11 is outside"),
         (lambda: contacts(friction=11.0), "^friction = 11 is outside"),
-        (lambda: mr.GroundMotion.from_csv("x.csv", Unspeakable()), "x.csv"),
+        (
+            lambda: mr.Contacts.from_damping(WALL, k_base=5e8, xi_base=0.05, law="a\0b"),
+            r"law = 'a\\x00b' of type str has a NUL",
+        ),
+        (lambda: contacts(law=lambda wall, e, k_base: "x"), "law = .* to give two numbers: it gives 'x' of type str"),
+        (lambda: contacts(law=lambda wall, e, k_base: 0.05), "law = .* to give two numbers: it gives 0.05"),
+        (lambda: mr.contact_for(None, 0, 1, k=1.0, c=Unspeakable(), xi=0.1), "model = None"),
+        (
+            lambda: mr.GroundMotion([0.0, 1.0], 0.1).scaled(Unspeakable(), peak=1.0),
+            "factor = a Unspeakable, peak = 1.0",
+        ),
         (lambda: plotting.animate(ANSWER, "a.gif", title="\ud800"), "title = .* half of a surrogate pair"),
         (lambda: plotting.animate(ANSWER, "a.gif", title="x" * 1001), "title = .* has 1001 characters"),
         (lambda: filmed(outlines=[[(0, 0), (1,)]]), r"outlines\[0\] = .* has rows of different lengths"),

@@ -13,7 +13,7 @@ import numpy as np
 from .block import Block
 from .damping import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
 from .interface import Interface, reference_frequency, require_points
-from .quantities import require_kind, require_real, require_stiffness, require_within, shown
+from .quantities import require_kind, require_real, require_stiffness, require_text, require_within, shown
 from .restitution import Restitution
 
 HOLDS = 10.0
@@ -65,7 +65,7 @@ class Contacts:
     def __post_init__(self) -> None:
         require_kind("base", self.base, Interface)
         require_kind("side", self.side, Interface, type(None))
-        require_kind("law", self.law, str)
+        require_text("law", self.law)
 
     def __repr__(self) -> str:
         faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from ..problem.quantities import require_flag, require_path, require_real, require_whole, shown
 from .dispatch import Dispatch
@@ -94,9 +94,10 @@ def campaign(
 
 def required_tasks(tasks: object) -> Iterable[Task]:
     """Tasks as something that can be gone through; TypeError unless they are, and for a text."""
-    if isinstance(tasks, str | bytes) or not isinstance(tasks, Iterable):
+    gone_through = isinstance(tasks, Iterable) or hasattr(type(tasks), "__getitem__")
+    if isinstance(tasks, str | bytes) or not gone_through:
         raise TypeError(f"tasks = {shown(tasks)} are no tasks that can be gone through")
-    return tasks
+    return cast(Iterable[Task], tasks)
 
 
 def _carry_out(
