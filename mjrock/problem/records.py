@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import GRAVITY, Array, require_path, require_reals, require_within, shown
+from .quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
 
 Record = tuple[Array, float]
 
@@ -193,7 +193,7 @@ def _even_step(time: Array, places: Sequence[int]) -> float:
 
 def _factor(name: str, unit: str, units: dict[str, float]) -> float:
     if not isinstance(unit, str) or unit not in units:
-        raise ValueError(f"{name} = {shown(unit)} is not one of {', '.join(units)}")
+        raise ValueError(f"{name} = {spelt(unit)} is not one of {', '.join(units)}")
     return units[unit]
 
 
