@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from ..problem.quantities import Array, require_whole, require_within, shown
+from ..problem.quantities import Array, require_whole, require_within, shown, spelt
 from ..problem.rebound import rebound_damping
 from .contact import WITHIN, inertia_of, longest_step, pair_values, row
 from .geompair import GeomPair, compiled
@@ -132,7 +132,7 @@ def _dashpot(k: float, mass: float, c: float | None, restitution: float | None, 
     """The dashpot of a contact point [N s/m], from the one of the three that is given."""
     given = {name: value for name, value in (("c", c), ("restitution", restitution), ("xi", xi)) if value is not None}
     if len(given) != 1:
-        found = " and ".join(given) or "none"
+        found = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
         raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {found}")
     if c is not None:
         return require_within("damping c", c, 0.0, 1e30, "N s/m")
