@@ -97,8 +97,8 @@ def test_a_row_says_infinity_for_a_wall_that_overturned(pulse):
         ([-0.1, 0.2], "scales = .* has to increase"),
         ([0.1, math.nan], "scales holds a value that is not finite"),
         ([0.1, math.inf], "scales holds a value that is not finite"),
-        (["a"], "scales = .* is no array of real numbers"),
-        ([[0.1], [0.2, 0.3]], "scales = .* is no array of real numbers"),
+        (["a"], "scales = .* does not hold real numbers alone"),
+        ([[0.1], [0.2, 0.3]], "scales = .* has rows of different lengths"),
     ],
 )
 def test_scales_that_cannot_be(scales, complaint, tmp_path, pulse):

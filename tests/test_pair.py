@@ -175,7 +175,10 @@ def _write(owner, name, value):
     ("asked", "complaint"),
     [
         ({}, "exactly one of c, restitution and xi has to be given; given are none"),
-        ({"restitution": 0.5, "xi": 0.1}, "exactly one of c, restitution and xi .*'restitution': 0.5, 'xi': 0.1"),
+        (
+            {"restitution": 0.5, "xi": 0.1},
+            "exactly one of c, restitution and xi .* given are restitution = 0.5, xi = 0.1",
+        ),
         ({"restitution": 1.5}, "restitution = 1.5 is outside the valid range 0 to 1"),
         ({"xi": -0.1}, "damping ratio xi = -0.1"),
         ({"c": -1.0}, "damping c = -1 N s/m"),

@@ -56,7 +56,7 @@ def test_either_orientation_and_corners_on_an_edge():
         ([(0, 0), (0, 0), (1, 0), (1, 1)], r"vertices 0 and 1 coincide at \[0.0, 0.0\] m"),
         ([(0, 0), (1, 0), (1, math.nan)], "outside the valid range -10000 to 10000 m"),
         ([(0, 0), (1, 0), (1, 2e4)], "outside the valid range -10000 to 10000 m"),
-        ("no", "vertices = 'no' of type str is no array of real numbers"),
+        ("no", "vertices = 'no' of type str does not hold real numbers alone"),
     ],
 )
 def test_outlines_that_cannot_be(vertices, complaint):

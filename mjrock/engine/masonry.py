@@ -51,8 +51,8 @@ def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.
     Raises:
         ValueError: if the masonry does not stand, or for a value outside its range.
     """
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     return released_mjcf(masonry_scene(case), timestep, newmark_beta)
 
 

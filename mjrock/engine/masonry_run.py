@@ -171,12 +171,12 @@ def simulate_masonry(
 ) -> MasonryResponse:
     """What `simulate` does with masonry; the arguments are its."""
     begun = time.perf_counter()
-    require_within("accuracy", accuracy, 1e-8, 0.1)
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_flag("ledger", want_ledger)
     require_coulomb(coulomb)
     if output_step is not None:
-        require_within("output_step", output_step, 1e-9, case.duration, "s")
+        output_step = require_within("output_step", output_step, 1e-9, case.duration, "s")
     bodies, scene = len(case.masonry.free), masonry_scene(case)
     begin = scene.started if start is None else _required_state(start, bodies, case)
 
@@ -189,7 +189,7 @@ def simulate_masonry(
         run, settings = fitted(scene, begin, accuracy, coulomb, judge)
         made = run.response(spacing, 1, want_ledger, settings)
     else:
-        require_within("timestep", timestep, 1e-9, 1.0, "s")
+        timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
         require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
         warn_if_coarse(scene, timestep)
         rows = pair_rows(scene, timestep, newmark_beta)

@@ -196,6 +196,6 @@ def wall_mjcf(case: Case, contacts: Contacts, timestep: float, *, newmark_beta: 
     """
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts)
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     return released_mjcf(wall_scene(case, contacts), timestep, newmark_beta)

@@ -120,9 +120,9 @@ def simulate(
         if contacts is not None:
             raise TypeError(f"contacts = {shown(contacts)}: masonry has its joints; call simulate(case)")
         return simulate_masonry(case, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, start)
-    _require_asked(case, contacts, output_step, ledger)
+    output_step = _required_spacing(case, contacts, output_step, ledger)
     assert contacts is not None
-    require_within("accuracy", accuracy, 1e-8, 0.1)
+    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
     start = None if start is None else _required_state(start, case)
     if timestep is not None:
         (answer,) = _simulate_fixed([case], contacts, timestep, newmark_beta, coulomb, output_step, ledger, start)
@@ -160,7 +160,7 @@ def simulate_batch(
         raise TypeError(f"cases = {shown(cases)} is not a list of cases")
     for i, case in enumerate(cases):
         require_kind(f"cases[{i}]", case, Case)
-        _require_asked(case, contacts, output_step, ledger)
+        output_step = _required_spacing(case, contacts, output_step, ledger)
     if not cases:
         return []
     first = cases[0]
@@ -181,7 +181,7 @@ def _simulate_fitted(
     start: State | None,
 ) -> Response:
     """A run with steps that fit the motion, repeated with finer ones where energy appears from nowhere."""
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_coulomb(coulomb)
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     started = time.perf_counter()
@@ -209,8 +209,8 @@ def _simulate_fixed(
     start: State | None,
 ) -> list[Response | SimulationError]:
     """Runs of one geometry at one fixed step, or how each broke down."""
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_coulomb(coulomb)
     longest = max(case.duration for case in cases)
     require_size("the steps of this run", longest / timestep, "take a longer timestep, or steps that fit the motion")
@@ -245,16 +245,15 @@ def _simulate_fixed(
         return list(pool.map(one, cases, scenes))
 
 
-def _require_asked(case: object, contacts: object, output_step: object, ledger: object) -> None:
-    """Raise TypeError or ValueError for arguments of a run that cannot be."""
+def _required_spacing(case: object, contacts: object, output_step: object, ledger: object) -> float | None:
+    """The spacing of samples as a float [s]; TypeError or ValueError for arguments of a run that cannot be."""
     if isinstance(case, Contacts) and isinstance(contacts, Case):
         raise TypeError("case and contacts are swapped: simulate(case, contacts)")
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts)
     require_flag("ledger", ledger)
     assert isinstance(case, Case)
-    if output_step is not None:
-        require_within("output_step", output_step, 1e-9, case.duration, "s")
+    return None if output_step is None else require_within("output_step", output_step, 1e-9, case.duration, "s")
 
 
 def _required_state(start: object, case: Case) -> State:

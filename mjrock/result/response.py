@@ -14,7 +14,7 @@ import numpy as np
 
 from ..files import write_text
 from ..problem.case import Case
-from ..problem.quantities import Array
+from ..problem.quantities import Array, require_path
 from .history import Impact, peak_energies, restitution_of
 from .ledger import Ledger
 from .table import csv_text
@@ -169,7 +169,7 @@ class Response:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
         if path is not None:
-            write_text(path, text)
+            write_text(require_path("path", path), text)
         return text
 
     def __eq__(self, other: object) -> bool:

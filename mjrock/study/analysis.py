@@ -12,6 +12,7 @@ from ..engine.simulation import simulate
 from ..files import write_arrays
 from ..problem.case import Case
 from ..problem.contacts import Contacts
+from ..problem.quantities import keep, spelt
 from ..problem.restitution import Restitution
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
@@ -73,14 +74,14 @@ class Analysis:
         for name, kind in (("case", Case), ("e", Restitution), ("contacts", Contacts)):
             value = getattr(self, name)
             if not isinstance(value, kind) and (value is not None or name == "case"):
-                raise TypeError(f"{name} = {value!r} is no {kind.__name__}")
+                raise TypeError(f"{name} = {spelt(value)} is no {kind.__name__}")
         for name in ("options", "labels"):
             value = getattr(self, name)
             if not isinstance(value, Mapping):
-                raise TypeError(f"{name} = {value!r} is no mapping of names to values")
-            object.__setattr__(self, name, dict(value))
-        if self.solver not in SOLVERS:
-            raise ValueError(f"solver = {self.solver!r} is none of {', '.join(SOLVERS)}")
+                raise TypeError(f"{name} = {spelt(value)} is no mapping of names to values")
+            keep(self, **{name: dict(value)})
+        if not isinstance(self.solver, str) or self.solver not in SOLVERS:
+            raise ValueError(f"solver = {spelt(self.solver)} is none of {', '.join(SOLVERS)}")
         needed = "e" if self.solver == "analytical" else "contacts"
         if getattr(self, needed) is None:
             raise ValueError(f"the solver {self.solver} needs {needed}")

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from ..engine.simulation import simulate
 from ..files import write_arrays
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import require_kind, shown
+from ..problem.quantities import keep, require_kind, shown
 from ..result.masonry import MasonryResponse
 from .task import Row
 
@@ -60,7 +60,7 @@ class MasonryAnalysis:
             value = getattr(self, name)
             if not isinstance(value, Mapping):
                 raise TypeError(f"{name} = {shown(value)} is no mapping of names to values")
-            object.__setattr__(self, name, dict(value))
+            keep(self, **{name: dict(value)})
         unknown = self.options.keys() - set(OPTIONS)
         if unknown:
             raise ValueError(
