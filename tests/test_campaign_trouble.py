@@ -37,6 +37,28 @@ def test_whatever_a_task_raises_is_a_row(tmp_path, where):
     assert [row["status"] for row in rows] == ["done" if error is None else "failed" for error in ERRORS]
 
 
+DEATHS = {
+    "_exit": "ended with exit status 3",
+    "libc": "ended with exit status 1, as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold",
+    "kill": "was killed by SIGKILL, 3 times in all",
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals, and the library of C, are those of POSIX")
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
+    """Each of three, among others that run on. The next call leaves them alone."""
+    tasks = [Misbehave(kind) for kind in ("first", "_exit", "second", "libc", "kill", "last")]
+    path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=workers)
+    rows = mr.results(tasks, path)
+    errors = [DEATHS.get(task.kind) for task in tasks]
+    expected = [how and f"RuntimeError: its worker process {how}" for how in errors]
+    assert [row["error"] for row in rows] == expected
+    assert [row["answer"] for row in rows] == [None if how else 42 for how in errors]
+    mr.campaign(tasks, path, workers=workers)
+    assert mr.results(tasks, path) == rows
+
+
 def nothing():
     """Something that has no content to hash."""
 
