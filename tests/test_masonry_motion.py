@@ -57,6 +57,16 @@ def test_an_arch_against_an_explicit_integration():
     assert path < 1e-2
 
 
+@pytest.mark.parametrize("timestep", [None, 1e-4])
+def test_the_end_holds_every_block(timestep):
+    """Of two blocks: pose and velocity at the end of the run, each in its place."""
+    released = [[0.0, 0.0, 0.01], [0.02, 0.0, 0.03]]
+    run = mr.simulate(mr.MasonryCase(columns(2, xi=0.05), 0.02, velocity=released), timestep=timestep)
+    for end, samples in zip(run.end, (run.pose, run.velocity), strict=True):
+        np.testing.assert_array_equal(end, samples[-1])
+    assert np.abs(run.end[1][1] - run.end[1][0])[[0, 2]].min() > 1e-3
+
+
 def test_one_block_is_the_single_wall():
     wall = mr.Block(0.3, 2.1)
     contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, friction=0.7)

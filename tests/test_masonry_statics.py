@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 
 import mjrock as mr
-from mjrock.engine.masonry import require_standing, standing_masonry
+from mjrock.engine.masonry import applied, require_standing, standing_masonry
 from mjrock.problem.statics import falling
 
 
@@ -69,6 +69,16 @@ def test_blocks_that_fall_are_named():
     with pytest.raises(ValueError, match="the masonry cannot stand: cap, tile would fall under the weight"):
         mr.simulate(mr.MasonryCase(mr.Masonry(blocks), 1.0))
     assert falling(mr.Masonry([GROUND, post])) == ()
+
+
+def test_the_weight_of_an_added_mass_holds_a_block_down():
+    """A cap of 1040 kg turns about the edge of its post by a lever of 0.05 m; what is on its tail has 0.6 m."""
+    blocks = [GROUND, box(-0.3, 0.3, 0, 1, name="post"), box(-0.3, 1.0, 1, 1.4, name="cap")]
+    masonry, enough = mr.Masonry(blocks), 1040 * 0.05 / 0.6
+    assert falling(masonry) == ("cap",)
+    for share, falls in ((0.95, ("cap",)), (1.05, ())):
+        tail = mr.AddedMass(share * enough, 1.4, -0.65, block=2)
+        assert falling(masonry, applied(masonry, (tail,))) == falls
 
 
 def test_springs_too_soft_to_stand_on():
