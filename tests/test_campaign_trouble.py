@@ -1,5 +1,6 @@
 """Campaigns in trouble: tasks that misbehave, points that cannot be built, Ctrl-C, and cases that take too long."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -16,6 +17,7 @@ from test_campaign import ENVIRONMENT, children, gone
 import cli
 import mjrock as mr
 from mjrock.study import progress
+from mjrock.study.workers import serve
 
 KINDS = ["", "exit", "interrupt", "generator", "columns", "list", "last"]
 ERRORS = [
@@ -57,6 +59,14 @@ def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
     assert [row["answer"] for row in rows] == [None if how else 42 for how in errors]
     mr.campaign(tasks, path, workers=workers)
     assert mr.results(tasks, path) == rows
+
+
+def test_a_process_that_starts_when_all_is_done_ends_in_silence(monkeypatch):
+    """The others were quicker, and the campaign has closed its connection."""
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    ours, theirs = multiprocessing.Pipe()
+    ours.close()
+    serve(theirs, [0.0, np.inf])
 
 
 def nothing():

@@ -138,8 +138,13 @@ def _unscripted() -> Iterator[None]:
 
 
 def serve(connection: Connection, progress: Any) -> None:
-    """What a worker process does: carry out lists of tasks until the connection is closed."""
+    """What a worker process does: carry out lists of tasks until the connection is closed, maybe while it starts."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(EOFError, OSError):  # what a task raises is in its row
+        _serve(connection, progress)
+
+
+def _serve(connection: Connection, progress: Any) -> None:
     rows: list[Row] = []
     lock = threading.Lock()
 
@@ -152,10 +157,7 @@ def serve(connection: Connection, progress: Any) -> None:
     connection.send(None)
     threading.Thread(target=_accompany, args=(hand_over,), daemon=True).start()
     while True:
-        try:
-            content = connection.recv_bytes()
-        except EOFError:
-            return
+        content = connection.recv_bytes()
         try:
             tasks = pickle.loads(content)
         except BaseException as error:
