@@ -38,7 +38,8 @@ def campaign(
         store: the SQLite file.
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
             None stands for processes of this machine, which are replaced if they die. Fixed-step runs of one geometry
-            go to threads of this process instead, if a measured first batch says that this is faster.
+            go to threads of this process instead, if a measured first batch says that this is faster and there is
+            no time limit; a fatal error of MuJoCo in one of these ends the campaign.
         workers: how many processes, one for each processor by default. They import the script that calls the campaign,
             which needs `if __name__ == "__main__":`. The one process of workers=1 does not, unless there is a time
             limit; tasks of types that the script or a notebook defines then run in this process, and a line says so.
