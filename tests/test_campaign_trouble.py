@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from campaign_tasks import Misbehave, Square
 from test_campaign import ENVIRONMENT, children, gone
+from tqdm import tqdm
 
 import cli
 import mjrock as mr
@@ -64,6 +65,7 @@ def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
 def test_a_process_that_starts_when_all_is_done_ends_in_silence(monkeypatch):
     """The others were quicker, and the campaign has closed its connection."""
     monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.setattr(tqdm, "set_lock", lambda _: None)
     ours, theirs = multiprocessing.Pipe()
     ours.close()
     serve(theirs, [0.0, np.inf])
@@ -152,7 +154,10 @@ import cli
 import mjrock as mr
 from campaign_tasks import Misbehave
 def main(argv):
-    mr.campaign([Misbehave(""), Misbehave("again"), Misbehave("sleep")], sys.argv[1], workers=int(sys.argv[2]))
+    wall = mr.Block.from_size(0.6, 4.2)
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.01)
+    run = mr.Analysis(mr.Case(wall, 0.01, 0.1), contacts=contacts)
+    mr.campaign([run, Misbehave("again"), Misbehave("sleep")], sys.argv[1], workers=int(sys.argv[2]))
 if __name__ == "__main__":
     sys.exit(cli.run(main))
 """

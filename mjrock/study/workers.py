@@ -18,6 +18,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from tqdm import tqdm
+
 from .task import Row, Task, carry_out, failed_row
 
 FLUSH = 0.1
@@ -140,6 +142,7 @@ def _unscripted() -> Iterator[None]:
 def serve(connection: Connection, progress: Any) -> None:
     """What a worker process does: carry out lists of tasks until the connection is closed, maybe while it starts."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tqdm.set_lock(threading.RLock())  # its own is a semaphore, which a process that is killed would leave behind
     with contextlib.suppress(EOFError, OSError):  # what a task raises is in its row
         _serve(connection, progress)
 
