@@ -45,6 +45,16 @@ def test_a_compiled_model_without_a_pair_can_have_it_on_its_geoms():
     assert abs(rebound(contact, model, slide=1.0)[0] - 0.5) > 0.03
 
 
+@pytest.mark.parametrize("unnamed", ["floor", "ball"])
+def test_a_geom_without_a_name_is_found_by_its_number(unnamed):
+    """It may be the first of the model and the first of the contact, or the last of both."""
+    model = mujoco.MjModel.from_xml_string(ON_A_PLANE.replace(f'<geom name="{unnamed}"', "<geom"))
+    contact = mr.contact_for(model, 0, 1, k=1e6, restitution=0.5)
+    contact.apply(model, on_geoms=True)
+    assert contact.ids == (0, 1)
+    assert (model.geom_solref == contact.solref).all()
+
+
 def test_a_specification_keeps_one_pair():
     spec = mujoco.MjSpec.from_string(ON_A_PLANE)
     mr.contact_for(spec, "ball", "floor", k=1e5, restitution=0.2).apply(spec)

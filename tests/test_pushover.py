@@ -249,6 +249,13 @@ def test_mujoco_driven_slowly_follows_the_curve(effects, points):
     )
 
 
+@pytest.mark.parametrize("points", [40, 400])
+def test_a_curve_has_about_as_many_points_as_asked(points):
+    case = problem("full", "none")
+    for contacts in (None, on(case, SOFT)):
+        assert len(mr.pushover(case, contacts, points=points).rotation) == pytest.approx(points, rel=0.16)
+
+
 def test_it_can_be_read():
     case = problem("full", "none")
     assert "rigid" in repr(mr.pushover(case))

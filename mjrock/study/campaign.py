@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from multiprocessing import current_process
 from pathlib import Path
 from typing import Any, cast
 
@@ -33,7 +34,7 @@ def campaign(
 
     Killing a campaign loses only the cases in progress, and the rows of about the last half second. The same call
     carries on from there and does nothing twice that has a row. A task that fails becomes a row with its error, and so
-    does one that calls `sys.exit`, kills its worker, or cannot be built, pickled or labelled. The rows do not depend on
+    does one that calls `sys.exit`, ends its process, or cannot be built, pickled or labelled. The rows do not depend on
     the order in which tasks finish. Without a terminal a line every 30 s says how far the campaign is.
 
     Args:
@@ -41,12 +42,16 @@ def campaign(
         store: the SQLite file.
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
             None stands for processes of this machine, which are replaced if they die. Fixed-step runs of one geometry
-            go to threads of this process instead, if a measured first batch says that this is faster.
-        workers: how many processes, 1 to 10000, one for each processor by default; 1 runs in a thread of this process.
+            go to threads of this process instead, if a measured first batch says that this is faster and there is
+            no time limit; a fatal error of MuJoCo in one of these ends the campaign.
+        workers: how many processes, 1 to 10000, one for each processor by default. They import the script that calls
+            the campaign, which needs `if __name__ == "__main__":`. The one process of workers=1 does not, unless there
+            is a time limit; tasks of types that the script or a notebook defines then run in this process, and a line
+            says so.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.
         time_limit: how long a case may take [s]; one that takes longer is ended and becomes a failed row that says so.
-            It is for processes of this machine, which it uses also for workers=1.
+            It is for processes of this machine.
 
     Returns:
         The path of the store, for `Store(path)`.
@@ -113,11 +118,14 @@ def _carry_out(
     if executor is not None:
         run.across(pending, executor, getattr(executor, "_max_workers", count))
     elif limit is not None:
-        Dispatch(run, pending, count, limit).go()
+        Dispatch(run, pending, count, limit, script=True).go()
+    elif count == 1 and current_process().daemon:
+        for job in pending:
+            run.here(job, "this process may not start others")
     elif count == 1:
-        run.here(pending)
+        Dispatch(run, pending, 1, None, script=False).go()
     else:
-        Dispatch(run, run.by_threads(pending, count, total), count, None).go()
+        Dispatch(run, run.by_threads(pending, count, total), count, None, script=True).go()
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
