@@ -6,7 +6,7 @@
 The modules are those that hold compiled functions, which are searched for, and those that are named below. The package,
 the tests and the scripts are copied to a temporary folder. One mutant after the other is written there, and the tests
 run on it until the first fails. The tests of its module come first, where some are named. The others run in two rounds.
-The first is of plain Python: the compiled loops would take some six seconds to compile for each mutant, and most
+The first is of plain Python: the compiled loops would take half a minute to compile for each mutant, and most
 mutants fail within two. What survives runs the tests that make many steps with the loops compiled, which takes some
 twenty seconds. The exit code is 1 if a mutant survives that is not in EQUIVALENT.
 """
