@@ -1,10 +1,10 @@
 """Compilation of the inner loops by numba, and what happens where numba cannot compile or cannot store its result.
 
-`compiled` marks a loop for compilation at its first call. The result is stored beside the module, or in the user's
-cache folder where the package lies on a read-only disk. Where neither can be written, each process compiles anew.
-`jitable` marks a small function that compiled loops call, and `inlined` one whose call would take longer than its
-arithmetic; called from Python they run as Python. With
-NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
+`compiled` marks a loop for compilation at its first call. The result is stored in the folder that the environment
+variable NUMBA_CACHE_DIR names, or in `__pycache__` beside the module, or in the user's cache folder where the package
+lies on a read-only disk. Where none of them can be written, each process compiles anew. `jitable` marks a small function
+that compiled loops call, and `inlined` one whose call would take longer than its arithmetic; called from Python they run
+as Python. With NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
 """
 
 from __future__ import annotations
@@ -15,6 +15,10 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
+
+COST = "about half a minute"
+"""Time that compiling takes in the first run, on one core that has nothing else to do."""
+NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -77,16 +81,19 @@ else:
                 super().save_overload(*key)
 
     class _FirstCompilation(event.Listener):  # type: ignore[misc]
-        """Says once that the loops are being compiled."""
+        """Says once that the loops are being compiled, and where they are stored."""
 
         said = False
 
         def on_start(self, event: Any) -> None:
             """Tell the user why nothing seems to happen."""
-            own = getattr(event.data.get("dispatcher"), "py_func", None)
+            dispatcher = event.data.get("dispatcher")
+            own = getattr(dispatcher, "py_func", None)
             if not self.said and own is not None and own.__module__.startswith("mjrock."):
                 _FirstCompilation.said = True
-                _notice("compiling the loops, which takes some seconds and happens once")
+                folder = dispatcher._cache.cache_path
+                stored = f"once; they are stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
+                _notice(f"compiling the loops, which takes {COST}, {stored}")
 
         def on_end(self, event: Any) -> None:
             """Nothing to say."""

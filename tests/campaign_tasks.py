@@ -1,5 +1,6 @@
 """Tasks that workers of the campaign tests import."""
 
+import ctypes
 import os
 import signal
 import sys
@@ -57,6 +58,12 @@ class Misbehave:
             return {"answer": 1, "other": 2}
         if self.kind == "list":
             return {"answer": [1, 2]}
+        if self.kind == "_exit":
+            os._exit(3)
+        if self.kind == "libc":
+            ctypes.CDLL(None).exit(1)
+        if self.kind == "kill":
+            os.kill(os.getpid(), signal.SIGKILL)
         if self.kind == "sleep":
             Path(f"{history}.{os.getpid()}.partial").write_text("half") if history else None
             time.sleep(20)

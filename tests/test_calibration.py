@@ -1,6 +1,7 @@
 import dataclasses
 import math
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -142,7 +143,7 @@ def test_a_second_run_carries_on_from_the_store(tmp_path, monkeypatch):
     asked = []
     original = match.simulate
     monkeypatch.setattr(match, "simulate", lambda case, *args, **kw: asked.append(case) or original(case, *args, **kw))
-    again = completed(tasks, tmp_path / "a.sqlite", workers=1)
+    again = completed(tasks, tmp_path / "a.sqlite", executor=ThreadPoolExecutor(1))
     assert again[:2] == first
     assert {case.block for case in asked} == {tasks[2].combination.wall}
 

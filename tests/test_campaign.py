@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
+from multiprocessing import current_process
 from pathlib import Path
 
 import numpy as np
@@ -135,9 +136,10 @@ def test_tasks_may_have_other_labels_than_the_first(tmp_path):
 def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):
     path = mr.campaign([Square(-1)], tmp_path / "c.sqlite", workers=1)
     monkeypatch.setattr(Square, "__call__", lambda self, history=None: {"square": 1})
-    mr.campaign([Square(-1)], path, workers=1)
+    here = ThreadPoolExecutor(1)
+    mr.campaign([Square(-1)], path, executor=here)
     assert ",failed," in table(path)
-    mr.campaign([Square(-1)], path, workers=1, retry=True)
+    mr.campaign([Square(-1)], path, executor=here, retry=True)
     assert ",failed," not in table(path)
 
 
@@ -299,6 +301,42 @@ def test_a_point_that_cannot_be_built_is_a_row(tmp_path, wall, e):
     rows = mr.results(grid, mr.campaign(grid, tmp_path / "c.sqlite", workers=1))
     assert [row["status"] for row in rows] == ["done", "failed", "done"]
     assert "slenderness h/b = 0.5 is outside" in rows[1]["error"]
+
+
+UNGUARDED = """
+from dataclasses import dataclass
+from typing import ClassVar
+import mjrock as mr
+from campaign_tasks import Square
+@dataclass(frozen=True)
+class Double:
+    COLUMNS: ClassVar = ("square", "double")
+    labels: ClassVar = {}
+    number: int
+    def __call__(self, history=None):
+        return {"double": 2 * self.number}
+tasks = [Double(1), *map(Square, range(20)), Double(2)]
+print([row.get("square") or row.get("double") for row in mr.results(tasks, mr.campaign(tasks, "c.sqlite", workers=1))])
+"""
+
+
+def test_one_worker_needs_no_guard(tmp_path):
+    """Nor is the script imported again. Types that it defines are known to its own process only, as in a notebook."""
+    (tmp_path / "unguarded.py").write_text(UNGUARDED)
+    run = subprocess.run(
+        [sys.executable, "unguarded.py"], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False
+    )
+    assert run.stdout == f"{[2, None, *(i**2 for i in range(1, 20)), 4]}\n"
+    (line,) = run.stderr.splitlines()
+    assert line.startswith("campaign: tasks that no other process can take run in this one, which may die of them: ")
+    assert "Double" in line
+
+
+def test_in_a_process_that_may_start_no_other(tmp_path, monkeypatch, capsys):
+    """A worker of multiprocessing's Pool, or of Dask."""
+    monkeypatch.setitem(current_process()._config, "daemon", True)
+    assert len(table(mr.campaign(squares(tmp_path, 5), tmp_path / "c.sqlite", workers=1)).splitlines()) == 6
+    assert "this process may not start others" in capsys.readouterr().err
 
 
 def test_a_script_without_its_guard_is_told_so(tmp_path):

@@ -1,5 +1,6 @@
 """Campaigns in trouble: tasks that misbehave, points that cannot be built, Ctrl-C, and cases that take too long."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -12,10 +13,12 @@ import numpy as np
 import pytest
 from campaign_tasks import Misbehave, Square
 from test_campaign import ENVIRONMENT, children, gone
+from tqdm import tqdm
 
 import cli
 import mjrock as mr
 from mjrock.study import progress
+from mjrock.study.workers import serve
 
 KINDS = ["", "exit", "interrupt", "generator", "columns", "list", "last"]
 ERRORS = [
@@ -35,6 +38,37 @@ def test_whatever_a_task_raises_is_a_row(tmp_path, where):
     rows = mr.results(tasks, mr.campaign(tasks, tmp_path / "c.sqlite", **where))
     assert [row["error"] for row in rows] == ERRORS
     assert [row["status"] for row in rows] == ["done" if error is None else "failed" for error in ERRORS]
+
+
+DEATHS = {
+    "_exit": "ended with exit status 3",
+    "libc": "ended with exit status 1, as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold",
+    "kill": "was killed by SIGKILL, 3 times in all",
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals, and the library of C, are those of POSIX")
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
+    """Each of three, among others that run on. The next call leaves them alone."""
+    tasks = [Misbehave(kind) for kind in ("first", "_exit", "second", "libc", "kill", "last")]
+    path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=workers)
+    rows = mr.results(tasks, path)
+    errors = [DEATHS.get(task.kind) for task in tasks]
+    expected = [how and f"RuntimeError: its worker process {how}" for how in errors]
+    assert [row["error"] for row in rows] == expected
+    assert [row["answer"] for row in rows] == [None if how else 42 for how in errors]
+    mr.campaign(tasks, path, workers=workers)
+    assert mr.results(tasks, path) == rows
+
+
+def test_a_process_that_starts_when_all_is_done_ends_in_silence(monkeypatch):
+    """The others were quicker, and the campaign has closed its connection."""
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.setattr(tqdm, "set_lock", lambda _: None)
+    ours, theirs = multiprocessing.Pipe()
+    ours.close()
+    serve(theirs, [0.0, np.inf])
 
 
 def nothing():
@@ -120,7 +154,10 @@ import cli
 import mjrock as mr
 from campaign_tasks import Misbehave
 def main(argv):
-    mr.campaign([Misbehave(""), Misbehave("again"), Misbehave("sleep")], sys.argv[1], workers=int(sys.argv[2]))
+    wall = mr.Block.from_size(0.6, 4.2)
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.01)
+    run = mr.Analysis(mr.Case(wall, 0.01, 0.1), contacts=contacts)
+    mr.campaign([run, Misbehave("again"), Misbehave("sleep")], sys.argv[1], workers=int(sys.argv[2]))
 if __name__ == "__main__":
     sys.exit(cli.run(main))
 """

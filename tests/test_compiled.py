@@ -15,6 +15,8 @@ from mjrock import compiled
 
 PACKAGE = Path(mr.__file__).parent
 
+ANEW = "in every process: no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
+
 RUN = """
 import sys
 import numpy as np
@@ -79,7 +81,8 @@ def test_stored_once_and_made_anew_when_a_source_changes(tmp_path):
     """The first run says that it compiles, the second does not; a change in a file that the loop only calls is seen."""
     copy = tmp_path / "mjrock"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    line = "mjrock: compiling the loops, which takes some seconds and happens once"
+    stored = copy / "engine" / "__pycache__"
+    line = f"mjrock: compiling the loops, which takes about half a minute, once; they are stored in {stored}"
     assert run(tmp_path / "a.npz", home=tmp_path).splitlines() == [line]
     assert run(tmp_path / "b.npz", home=tmp_path) == ""
     same(tmp_path / "a.npz", tmp_path / "b.npz")
@@ -101,7 +104,8 @@ def test_a_read_only_installation_works(tmp_path):
     (tmp_path / "home").touch()
     nowhere = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": str(tmp_path / "home"), "PYTHONDONTWRITEBYTECODE": "1"}
     for name in ("a.npz", "b.npz"):
-        assert "compiling" in run(tmp_path / name, home=tmp_path / "site", **nowhere)
+        said = run(tmp_path / name, home=tmp_path / "site", **nowhere)
+        assert said.splitlines() == [f"mjrock: compiling the loops, which takes about half a minute, {ANEW}"]
     same(tmp_path / "a.npz", tmp_path / "b.npz")
 
 
@@ -120,6 +124,31 @@ def test_a_cache_that_cannot_be_read_or_written_is_none(monkeypatch):
     room = np.array([1.0, 2.0])
     double(room)
     assert list(room) == [2.0, 4.0]
+
+
+def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):
+    """Also of a read-only package whose user has no home: what to set is named, and nothing is promised."""
+    if not hasattr(compiled, "_Cache"):
+        pytest.skip("without numba nothing is stored")
+    from numba.core.caching import FunctionCache
+
+    monkeypatch.setattr(FunctionCache._impl_class, "_locator_classes", [])
+    monkeypatch.setattr(compiled._FirstCompilation, "said", False)
+    monkeypatch.setattr(PROBE, "__module__", "mjrock.probe")
+    compiled.compiled(PROBE)(np.ones(2))
+    assert capfd.readouterr().err == f"mjrock: compiling the loops, which takes about half a minute, {ANEW}\n"
+
+
+def test_the_folder_of_the_environment_comes_first(tmp_path):
+    script = "from mjrock.engine import loop; print(loop.fitted_loop._cache.cache_path)"
+    run = subprocess.run(
+        [sys.executable, "-c", script],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert Path(run.stdout.strip()).parent == tmp_path
 
 
 def PROBE(values):

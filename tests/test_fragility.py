@@ -1,4 +1,5 @@
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -162,3 +163,71 @@ def test_groups_that_cannot_be(groups, options, complaint):
 def test_what_cannot_be_fitted(intensity, overturned, complaint):
     with pytest.raises(ValueError, match=complaint):
         fit_fragility(intensity, overturned)
+
+
+MASKED = np.ma.array([0.1] * 10, mask=[True] + [False] * 9)
+
+
+@pytest.mark.parametrize(
+    ("given", "complaint"),
+    [
+        ({"overturned": [math.nan] + [True] * 99}, "overturned holds nan at 0; it takes whether each run overturned"),
+        ({"overturned": [None] + [True] * 99}, "overturned = .* does not hold"),
+        ({"overturned": ["False"] * 100}, "overturned = .* does not hold"),
+        ({"overturned": [0.5] * 100}, "overturned holds 0.5 at 0"),
+        ({"overturned": [1j] * 100}, "overturned = .* does not hold"),
+        ({"overturned": np.ma.array([True] * 100, mask=[True] + [False] * 99)}, "overturned has masked values"),
+        ({"overturned": [[True], [True, False]]}, "overturned = .* has rows of different lengths"),
+        ({"intensity": ["0.1"] * 100}, "intensity = .* does not hold real numbers alone"),
+        ({"intensity": [True] * 100}, "intensity = .* does not hold real numbers alone"),
+        ({"intensity": [1 + 1j] * 100}, "intensity = .* does not hold real numbers alone"),
+        ({"intensity": [[1.0], [1.0, 2.0]]}, "intensity = .* has rows of different lengths"),
+        ({"intensity": np.ma.array([0.1] * 100, mask=[True] + [False] * 99)}, "intensity has masked values"),
+        ({"intensity": None}, "intensity = None of type NoneType does not hold"),
+        ({"intensity": [math.nan] * 100}, r"intensity\[0\] = nan is outside the valid range"),
+        ({"groups": [math.nan] * 100}, "groups holds nan"),
+        ({"groups": [None] * 100}, "groups = .* does not hold"),
+        ({"groups": ["a", 1] * 50}, "groups = .* holds text and numbers"),
+        ({"groups": np.ma.array([1] * 100, mask=[True] + [False] * 99)}, "groups has masked values"),
+        ({"groups": [[1], [1, 2]]}, "groups = .* has rows of different lengths"),
+    ],
+)
+def test_a_run_without_a_result_is_refused(given, complaint):
+    x, fell = drawn(100)
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        fit_fragility(**({"intensity": x, "overturned": fell} | given))
+
+
+def test_ones_and_zeros_are_results():
+    x, fell = drawn(100)
+    fits = [fit_fragility(x, kind) for kind in (fell, fell.astype(int), fell.astype(float), fell.tolist())]
+    assert all(fit == fits[0] for fit in fits)
+
+
+@pytest.mark.parametrize("grouped", [False, True])
+@pytest.mark.parametrize("ask", ["probability", "band"])
+@pytest.mark.parametrize(
+    "intensity", [-1.0, [-1.0, math.nan], "x", [["a"]], object(), [[1.0], [1.0, 2.0]], MASKED, 1j, True, None]
+)
+def test_a_curve_is_asked_at_intensities(grouped, ask, intensity):
+    x, fell = drawn(100)
+    fit = fit_fragility(x, fell, np.arange(100) // 10 if grouped else None, resamples=20)
+    with pytest.raises((TypeError, ValueError), match=r"^intensity "):
+        getattr(fit, ask)(intensity)
+
+
+@pytest.mark.parametrize("grouped", [False, True])
+@pytest.mark.parametrize("confidence", [0.0, 0.9, 1.0])
+def test_the_ends_of_the_curve_are_certain(grouped, confidence):
+    """No motion overturns no wall, an infinite one every wall, and nothing warns of it."""
+    x, fell = drawn(100)
+    fit = fit_fragility(x, fell, np.arange(100) // 10 if grouped else None, resamples=20)
+    ends = [0.0, math.inf]
+    np.testing.assert_array_equal(fit.probability(ends), [0.0, 1.0])
+    np.testing.assert_array_equal(fit.band(ends, confidence), [[0.0, 1.0]] * 2)
+    assert np.isfinite(fit.band([1e-300, 0.4, 1e300], confidence)).all()
+
+
+def test_a_confidence_that_is_no_float():
+    fit = fit_fragility(*drawn(100))
+    assert fit.median_interval(Fraction(1, 2)) == fit.median_interval(0.5) == fit.median_interval(np.float16(0.5))

@@ -258,7 +258,7 @@ def test_a_joint_that_opens_everywhere_is_not_held():
         ([[0, 0, 1]], ValueError, r"velocity has the shape \(1, 3\); \(2, 3\) is needed"),
         (np.full((2, 3), np.nan), ValueError, "velocity holds a value that is not finite"),
         (np.zeros((2, 3)), ValueError, "velocity is zero everywhere; an impact needs a block that moves"),
-        ("fast", TypeError, "velocity = 'fast' of type str is no array of real numbers"),
+        ("fast", TypeError, "velocity = 'fast' of type str does not hold real numbers alone"),
     ],
 )
 def test_a_velocity_that_cannot_be_is_refused(velocity, error, complaint):

@@ -57,6 +57,55 @@ def test_an_arch_against_an_explicit_integration():
     assert path < 1e-2
 
 
+class Keystone:
+    """A wedge of 0.3 in 1 between two fixed faces. Depths are what it has moved down [m]."""
+
+    def __init__(self, friction, xi):
+        low, high = 0.5, 0.8
+        sides = [mr.Polygon([(s * low, 0), (s * high, 1), (s * 4, 1), (s * 4, 0)], fixed=True) for s in (-1, 1)]
+        key = mr.Polygon([(-low, 0), (low, 0), (high, 1), (-high, 1)])
+        self.masonry = mr.Masonry([*sides, key], k_n=1e9, friction=friction, xi=xi)
+        self.sine, self.cosine = math.sin(math.atan(0.3)), math.cos(math.atan(0.3))
+        self.smooth = key.mass * mr.GRAVITY / (self.masonry.lines.k.sum() * self.sine**2)
+
+    def carrying(self, friction):
+        """Depth at which friction carries the weight with this share of the pressure, downwards if negative."""
+        upwards = self.sine + friction * self.cosine
+        return self.smooth * self.sine / upwards if upwards > 0 else math.inf
+
+    def depth(self, duration, **options):
+        return -mr.simulate(mr.MasonryCase(self.masonry, duration), **options).pose[:, 0, 1]
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3, 0.9])
+def test_a_keystone_settles_between_inclined_faces_by_coulombs_law(friction):
+    """Released where nothing presses yet. Overdamped it only sinks, and friction ends up carrying all it can; lightly
+    damped it swings, and ends anywhere that friction can hold it. In either case it then stays."""
+    touching = np.zeros((1, 3)), np.zeros((1, 3))
+    overdamped, swinging = (Keystone(friction, xi).depth(1.0, start=touching) for xi in (3.0, 0.05))
+    stone = Keystone(friction, 0.05)
+    assert overdamped[-1] == pytest.approx(stone.carrying(friction), rel=4e-3)
+    assert 1.01 * stone.carrying(friction) < swinging[-1] < stone.carrying(-friction)
+    for depth in (overdamped, swinging):
+        np.testing.assert_allclose(depth[len(depth) // 2 :], depth[-1], rtol=1e-4)
+
+
+def test_a_keystone_begins_where_friction_carries_nothing():
+    """Coulomb's law holds it there, and it does not move."""
+    stone = Keystone(0.5, 0.05)
+    np.testing.assert_allclose(stone.depth(1.0), stone.smooth, rtol=1e-5)
+
+
+@pytest.mark.parametrize("timestep", [None, 1e-4])
+def test_the_end_holds_every_block(timestep):
+    """Of two blocks: pose and velocity at the end of the run, each in its place."""
+    released = [[0.0, 0.0, 0.01], [0.02, 0.0, 0.03]]
+    run = mr.simulate(mr.MasonryCase(columns(2, xi=0.05), 0.02, velocity=released), timestep=timestep)
+    for end, samples in zip(run.end, (run.pose, run.velocity), strict=True):
+        np.testing.assert_array_equal(end, samples[-1])
+    assert np.abs(run.end[1][1] - run.end[1][0])[[0, 2]].min() > 1e-3
+
+
 def test_one_block_is_the_single_wall():
     wall = mr.Block(0.3, 2.1)
     contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, friction=0.7)

@@ -1,14 +1,15 @@
 """Masonry that just stands: limits of equilibrium, of rigid blocks and of the compliant scene."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 
 import mjrock as mr
-from mjrock.problem.statics import falling
-from mjrock.scene.masonry import require_standing, standing_masonry
+from mjrock.problem.statics import falling, friction_lacking
+from mjrock.scene.masonry import applied, require_standing, standing_masonry
 
 
 def rigid(masonry):
@@ -71,10 +72,57 @@ def test_blocks_that_fall_are_named():
     assert falling(mr.Masonry([GROUND, post])) == ()
 
 
+def test_the_weight_of_an_added_mass_holds_a_block_down():
+    """A cap of 1040 kg turns about the edge of its post by a lever of 0.05 m; what is on its tail has 0.6 m."""
+    blocks = [GROUND, box(-0.3, 0.3, 0, 1, name="post"), box(-0.3, 1.0, 1, 1.4, name="cap")]
+    masonry, enough = mr.Masonry(blocks), 1040 * 0.05 / 0.6
+    assert falling(masonry) == ("cap",)
+    for share, falls in ((0.95, ("cap",)), (1.05, ())):
+        tail = mr.AddedMass(share * enough, 1.4, -0.65, block=2)
+        assert falling(masonry, applied(masonry, (tail,))) == falls
+
+
 def test_springs_too_soft_to_stand_on():
     """The weight's lever grows faster than the base resists: K_rot < W h."""
     with pytest.raises(ValueError, match="on joints of this stiffness block_0 would fall; raise k_n"):
         require_standing(columns(1, k_n=1e6))
+
+
+@pytest.mark.parametrize("k_n", [5e8, 1e10])
+def test_a_stack_without_friction_is_not_told_to_be_stiffer(k_n):
+    """Of two level joints one has friction: the upper block slides, and no stiffness keeps it."""
+    masonry = columns(2, k_n, friction=lambda joint: 0.7 if "ground" in joint.name else 0.0)
+    said = r"nothing keeps block_1 from sliding, however large k_n is; .* above 0: block_0\|block_1$"
+    with pytest.raises(ValueError, match=said):
+        require_standing(masonry)
+    require_standing(columns(2, k_n, friction=1e-3))
+
+
+def test_a_wall_beside_a_smooth_one_on_a_soft_base_is_told_to_be_stiffer():
+    """Joints without friction that nothing slides on are not to blame."""
+    wall = mr.Block.from_size(0.6, 4.2)
+    masonry = mr.Masonry.stack([wall], 1e6, side_stop=True, side_friction=0.0, friction=0.7, frequency=10.0)
+    with pytest.raises(ValueError, match="would fall; raise k_n"):
+        require_standing(masonry)
+
+
+def test_friction_that_is_lacking():
+    """A slope of 0.25, a block pushed by a fifth of its weight, and an arch whose springings alone are too smooth."""
+    flat = mr.Masonry([GROUND, box(-1, 1, 0, 0.4)], friction=0.1)
+    (name,) = (joint.name for joint in flat.joints)
+    assert friction_lacking(tilted(flat, math.atan(0.2502))) == (pytest.approx(0.251), (name,))
+    thrust = mr.Thrust(0.2, 0.2 * flat.blocks[1].mass * mr.GRAVITY, block=1)
+    with pytest.raises(
+        ValueError, match=rf"block_1 would fall under the weight; .* friction of 0\.2.*: {re.escape(name)}$"
+    ):
+        require_standing(flat, (thrust,))
+    smooth = mr.Masonry.arch(5.0, 0.75, friction=0.3)
+    least, names = friction_lacking(smooth)
+    assert names == ("left_abutment|voussoir_0", "right_abutment|voussoir_16")
+    assert falling(mr.Masonry.arch(5.0, 0.75, friction=least - 0.002))
+    assert falling(mr.Masonry.arch(5.0, 0.75, friction=least)) == ()
+    post = [GROUND, box(-0.3, 0.3, 0, 1), box(0.0, 1, 1, 1.4)]
+    assert friction_lacking(mr.Masonry(post)) is None
 
 
 def test_what_settles_is_in_equilibrium():

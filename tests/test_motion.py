@@ -300,3 +300,23 @@ def test_a_short_pulse_takes_a_coarser_step():
 
 def test_it_prints_short():
     assert repr(mr.GroundMotion([0.0, 2.0], 0.5, "x")) == "<GroundMotion 'x': 2 samples, dt = 0.5 s, peak 2 m/s2>"
+
+
+LONG = ("1" * 200_000 + "x", "1" * 200_000 + "." + "1" * 200_000 + "x", "1." * 100_000, " " * 200_000 + "x")
+
+
+@pytest.mark.parametrize("word", LONG, ids=["digits", "decimals", "points", "blanks"])
+def test_a_word_of_any_length_is_refused_at_once(word, tmp_path):
+    """The time that it takes goes with the length of a line, and not with its square."""
+    path = tmp_path / "bomb"
+    head = "\n\nACCELERATION TIME SERIES IN UNITS OF G\n"
+    for read, text in (
+        (mr.GroundMotion.from_at2, f"{head}NPTS= 2, DT= .01 SEC\n0.1 {word}\n"),
+        (mr.GroundMotion.from_at2, f"{head}NPTS= 2, DT= .01{word}\n0.1 0.2\n"),
+        (mr.GroundMotion.from_at2, f"\n\nACCELERATION TIME SERIES IN UNITS OF G{word}\n\n0.1 0.2\n"),
+        (mr.GroundMotion.from_sac, f"title\n2 {word}\n0.1 0.2\n"),
+        (lambda path: mr.GroundMotion.from_csv(path, "g"), f"0,1\n.01,{word}\n"),
+    ):
+        path.write_text(text)
+        with pytest.raises(ValueError, match=r"line|samples"):
+            read(path)

@@ -29,16 +29,16 @@ SCALARS = [
 def test_scalars_of_pulses_and_artificial_records(made, name, value):
     function = getattr(mr.GroundMotion, made)
     given = inspect.signature(function).bind(*MADE[made], **({"seed": 1} if made == "synthetic" else {})).arguments
-    with pytest.raises((TypeError, ValueError), match=rf"\b{name}( =| is an integer of \d+ bits)"):
+    with pytest.raises((TypeError, ValueError), match=rf"\b{name}( =| is a number too large for a float)"):
         function(**(given | {name: value}))
 
 
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: repr(value)[:12])
 def test_scalars_of_a_motion(value):
     for call in (lambda: mr.GroundMotion([0.0, 1.0], value), lambda: ROW.resampled(value)):
-        with pytest.raises((TypeError, ValueError), match=r"time step dt( =| is an integer of \d+ bits)"):
+        with pytest.raises((TypeError, ValueError), match=r"time step dt( =| is a number too large for a float)"):
             call()
-    with pytest.raises((TypeError, ValueError), match=r"factor( =| is an integer of \d+ bits)"):
+    with pytest.raises((TypeError, ValueError), match=r"factor( =| is a number too large for a float)"):
         ROW.scaled(value)
 
 

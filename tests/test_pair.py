@@ -45,6 +45,16 @@ def test_a_compiled_model_without_a_pair_can_have_it_on_its_geoms():
     assert abs(rebound(contact, model, slide=1.0)[0] - 0.5) > 0.03
 
 
+@pytest.mark.parametrize("unnamed", ["floor", "ball"])
+def test_a_geom_without_a_name_is_found_by_its_number(unnamed):
+    """It may be the first of the model and the first of the contact, or the last of both."""
+    model = mujoco.MjModel.from_xml_string(ON_A_PLANE.replace(f'<geom name="{unnamed}"', "<geom"))
+    contact = mr.contact_for(model, 0, 1, k=1e6, restitution=0.5)
+    contact.apply(model, on_geoms=True)
+    assert contact.ids == (0, 1)
+    assert (model.geom_solref == contact.solref).all()
+
+
 def test_a_specification_keeps_one_pair():
     spec = mujoco.MjSpec.from_string(ON_A_PLANE)
     mr.contact_for(spec, "ball", "floor", k=1e5, restitution=0.2).apply(spec)
@@ -175,7 +185,10 @@ def _write(owner, name, value):
     ("asked", "complaint"),
     [
         ({}, "exactly one of c, restitution and xi has to be given; given are none"),
-        ({"restitution": 0.5, "xi": 0.1}, "exactly one of c, restitution and xi .*'restitution': 0.5, 'xi': 0.1"),
+        (
+            {"restitution": 0.5, "xi": 0.1},
+            "exactly one of c, restitution and xi .* given are restitution = 0.5, xi = 0.1",
+        ),
         ({"restitution": 1.5}, "restitution = 1.5 is outside the valid range 0 to 1"),
         ({"xi": -0.1}, "damping ratio xi = -0.1"),
         ({"c": -1.0}, "damping c = -1 N s/m"),

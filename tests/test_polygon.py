@@ -19,6 +19,21 @@ def test_a_rectangle_is_the_block_of_its_size():
     assert made.size == pytest.approx(wall.R, rel=1e-12)
 
 
+def test_the_default_density():
+    assert mr.Polygon(SQUARE).mass == 2000.0
+
+
+def test_in_a_large_outline_vertices_coincide_that_are_a_micron_apart():
+    """Within 1e-9 of the extent, where that is more than 1e-7 m."""
+    for apart, coincide in ((0.9e-6, True), (1.1e-6, False)):
+        outline = [(0, 0), (1000, 0), (1000, 1000), (1000 - apart, 1000), (0, 1000)]
+        if coincide:
+            with pytest.raises(ValueError, match="vertices 2 and 3 coincide"):
+                mr.Polygon(outline)
+        else:
+            assert mr.Polygon(outline).area == pytest.approx(1e6)
+
+
 def test_a_right_triangle():
     """Base a, height h: area a h/2, centroid at h/3, polar second moment A (a^2 + h^2)/18."""
     a, h = 3.0, 2.0
@@ -56,7 +71,7 @@ def test_either_orientation_and_corners_on_an_edge():
         ([(0, 0), (0, 0), (1, 0), (1, 1)], r"vertices 0 and 1 coincide at \[0.0, 0.0\] m"),
         ([(0, 0), (1, 0), (1, math.nan)], "outside the valid range -10000 to 10000 m"),
         ([(0, 0), (1, 0), (1, 2e4)], "outside the valid range -10000 to 10000 m"),
-        ("no", "vertices = 'no' of type str is no array of real numbers"),
+        ("no", "vertices = 'no' of type str does not hold real numbers alone"),
     ],
 )
 def test_outlines_that_cannot_be(vertices, complaint):

@@ -249,6 +249,13 @@ def test_mujoco_driven_slowly_follows_the_curve(effects, points):
     )
 
 
+@pytest.mark.parametrize("points", [40, 400])
+def test_a_curve_has_about_as_many_points_as_asked(points):
+    case = problem("full", "none")
+    for contacts in (None, on(case, SOFT)):
+        assert len(mr.pushover(case, contacts, points=points).rotation) == pytest.approx(points, rel=0.16)
+
+
 def test_it_can_be_read():
     case = problem("full", "none")
     assert "rigid" in repr(mr.pushover(case))
@@ -265,7 +272,7 @@ def test_it_can_be_read():
         ({"rotations": [-0.1, 0.1]}, "rotations = .* has to increase"),
         ({"rotations": [0.1, 1.6]}, "rotations = .* has to increase"),
         ({"rotations": [0.1, math.nan]}, "rotations holds a value that is not finite"),
-        ({"rotations": ["a"]}, "rotations = .* is no array of real numbers"),
+        ({"rotations": ["a"]}, "rotations = .* does not hold real numbers alone"),
         ({"points": 3}, "points = 3 is outside the valid range 20 to 100000"),
         ({"contacts": 3}, "contacts = 3 of type int is not a Contacts or NoneType"),
         ({"case": None}, "case = None of type NoneType is not a Case"),

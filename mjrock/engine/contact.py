@@ -143,16 +143,13 @@ def contact_parameters(
     Raises:
         ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
     """
-    for name, value, low, high, unit in (
-        ("stiffness k", k, 1e-30, 1e30, "N/m"),
-        ("damping c", c, 0.0, 1e30, "N s/m"),
-        ("timestep", timestep, 1e-12, 1e3, "s"),
-        ("inverse_weight", inverse_weight, 1e-30, 1e30, "1/kg"),
-        ("newmark_beta", newmark_beta, 0.0, 1e6, ""),
-    ):
-        require_within(name, value, low, high, unit)
-    inertia = newmark_inertia(float(k), float(c), float(timestep), float(newmark_beta))
-    stiffness, damping, d = pair_values(float(k), float(c), inertia, float(inverse_weight))
+    k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
+    c = require_within("damping c", c, 0.0, 1e30, "N s/m")
+    timestep = require_within("timestep", timestep, 1e-12, 1e3, "s")
+    inverse_weight = require_within("inverse_weight", inverse_weight, 1e-30, 1e30, "1/kg")
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 1e6)
+    inertia = newmark_inertia(k, c, timestep, newmark_beta)
+    stiffness, damping, d = pair_values(k, c, inertia, inverse_weight)
     low, high = IMPEDANCE_RANGE
     if not low <= d <= high:
         remedy = "raise the timestep or newmark_beta" if d < low else "lower the timestep"
@@ -175,14 +172,18 @@ def contact_stiffness(
     for name, numbers in (("solref", solref), ("solimp", solimp)):
         if not isinstance(numbers, tuple | list | np.ndarray) or np.ndim(numbers) != 1 or len(numbers) < 2:
             raise TypeError(f"{name} = {shown(numbers)} has to be at least two numbers")
-        require_array(name, numbers, (len(numbers),))
-    if not 0 < require_real("inverse_weight", inverse_weight) < float("inf"):
+    direct, impedances = (
+        require_array(name, numbers, (len(numbers),)).tolist()
+        for name, numbers in (("solref", solref), ("solimp", solimp))
+    )
+    inverse_weight = require_real("inverse_weight", inverse_weight)
+    if not 0 < inverse_weight < math.inf:
         raise ValueError(f"inverse_weight = {inverse_weight:g} 1/kg is outside the valid range inverse_weight > 0")
-    d, d_width = solimp[0], solimp[1]
+    d, d_width = impedances[:2]
     low, high = IMPEDANCE_RANGE
-    if not (solref[0] < 0 and solref[1] <= 0):
+    if not (direct[0] < 0 and direct[1] <= 0):
         raise ValueError(f"solref = {tuple(solref)} is not in the direct format (-stiffness, -damping)")
     if d != d_width or not low <= d <= high:
         raise ValueError(f"solimp = {tuple(solimp)} is not a constant impedance in the valid range {low:g} to {high:g}")
     scale = (1 - d) * inverse_weight
-    return -solref[0] / scale, -solref[1] / scale
+    return -direct[0] / scale, -direct[1] / scale

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..problem.quantities import Array, require_array, require_kind, shown
+from ..problem.quantities import Array, require_array, require_kind, require_text, shown
 
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST = 1e10
@@ -55,6 +55,7 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
         ValueError: if there is no such geom, or the body has none or several.
     """
     if isinstance(value, str):
+        require_text(argument, value)
         number = mujoco.mj_name2id(model, GEOM, value)
         if number >= 0:
             return int(number)

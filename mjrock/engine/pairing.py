@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from ..method import METHOD
-from ..problem.quantities import Array, require_real, require_whole, require_within, shown
+from ..problem.quantities import Array, require_whole, require_within, shown, spelt
 from ..problem.rebound import rebound_damping
 from .contact import WITHIN, inertia_of, longest_step, pair_values, row
 from .geompair import GeomPair, compiled
@@ -133,7 +133,8 @@ def _dashpot(k: float, mass: float, c: float | None, restitution: float | None, 
     """The dashpot of a contact point [N s/m], from the one of the three that is given."""
     given = {name: value for name, value in (("c", c), ("restitution", restitution), ("xi", xi)) if value is not None}
     if len(given) != 1:
-        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {given or 'none'}")
+        found = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {found}")
     if c is not None:
         return require_within("damping c", c, 0.0, 1e30, "N s/m")
     if restitution is not None:
@@ -179,7 +180,5 @@ def _friction(pair: GeomPair, friction: float | None) -> tuple[tuple[float, floa
         mixed = Mixed.of(pair)
         first, second, torsional, rolling, last = mixed.friction
         return (first, second, torsional, rolling, last), mixed.condim
-    if not require_real("friction", friction) >= 0 or friction > 1e6:
-        raise ValueError(f"friction = {shown(friction)} is outside the valid range 0 to 1e+06")
-    sliding = float(friction)
+    sliding = require_within("friction", friction, 0.0, 1e6)
     return (sliding, sliding, *SPINNING), 3 if sliding > 0 else 1

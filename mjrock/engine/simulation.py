@@ -84,13 +84,13 @@ def simulate(
     begun = time.perf_counter()
     require_kind("method", method, Method)
     scene = scene_of(case, contacts, method)
-    require_within("accuracy", accuracy, 1e-8, 0.1)
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     require_flag("ledger", ledger)
     if coulomb is not None:
         require_flag("coulomb", coulomb)
     if output_step is not None:
-        require_within("output_step", output_step, 1e-9, case.duration, "s")
+        output_step = require_within("output_step", output_step, 1e-9, case.duration, "s")
     course = course_of(case, scene)
     if start is not None:
         pose, velocity = required_start(start, case, len(scene.names))
@@ -103,7 +103,7 @@ def simulate(
         response = run.response(spacing, 1, ledger, settings)
         advice = f"lower accuracy = {accuracy:g}"
     else:
-        require_within("timestep", timestep, 1e-9, 1.0, "s")
+        timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
         require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
         warn_if_coarse(scene, timestep)
         rows = pair_rows(scene, timestep, newmark_beta, method)

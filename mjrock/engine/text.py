@@ -31,8 +31,8 @@ def mjcf_of(case: Case | MasonryCase, contacts: Contacts | None, timestep: float
         ValueError: if the contacts do not fit the case, if the masonry does not stand, or for a value outside its
             range.
     """
-    require_within("timestep", timestep, 1e-9, 1.0, "s")
-    require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
+    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     scene = scene_of(case, contacts)
     return released_mjcf(scene, course_of(case, scene), timestep, newmark_beta)
 

@@ -15,7 +15,7 @@ from tqdm import tqdm
 
 from ..files import replacing
 from ..problem.case import Case
-from ..problem.quantities import Array, require_kind, require_within
+from ..problem.quantities import Array, require_path, require_text, require_within
 from ..result.response import Response
 from .bodies import Bodies
 from .histories import acceleration, rotation
@@ -55,7 +55,7 @@ def animate(
         fps: frames a second [1/s], 1 to 120. In a GIF a frame lasts a whole number of hundredths of a second, at least
             two; the motion keeps its speed.
         magnify: factor on all displacements [-], 0.01 to 10000; 1 is true to scale. The picture says it.
-        title: what stands above.
+        title: what stands above, at most 1000 characters.
         dpi: resolution [1/inch], 20 to 600; the picture is 8 inches wide.
 
     Returns:
@@ -97,9 +97,7 @@ def animate_bodies(
 
     Returns, Raises: as `animate`.
     """
-    given = [tuple(np.asarray(one, dtype=float) for one in several) for several in (outlines, fixed)]
-    arrays = [np.asarray(one, dtype=float) for one in (t, rests, poses)]
-    bodies = Bodies(arrays[0], given[0], arrays[1], arrays[2], magnify, given[1])
+    bodies = Bodies(t, outlines, rests, poses, magnify, fixed)  # type: ignore[arg-type]
     return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
 
 
@@ -115,11 +113,12 @@ def _film(
     dpi: float,
 ) -> Path:
     """Check, draw frame by frame, and write the file."""
-    path = Path(path)
+    path = require_path("path", path)
     writer, interval = writer_for(path, require_within("fps", fps, 1.0, 120.0, "1/s"))
-    times = frame_times(bodies.t, require_within("speed", speed, 1e-3, 1e3) * interval)
-    require_within("dpi", dpi, 20.0, 600.0)
-    require_kind("title", title, str)
+    speed = require_within("speed", speed, 1e-3, 1e3)
+    times = frame_times(bodies.t, speed * interval)
+    dpi = require_within("dpi", dpi, 20.0, 600.0)
+    require_text("title", title)
     figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title)
     with replacing(path) as partial:
         with writer.saving(figure, str(partial), dpi):
@@ -127,7 +126,8 @@ def _film(
                 update(frame)
                 writer.grab_frame()
         if path.suffix.lower() == ".html":
-            text = standalone(partial.read_text(encoding="utf-8"), title or path.stem)
+            stem = path.stem.encode("utf-8", "replace").decode()  # a name of a file may hold any bytes
+            text = standalone(partial.read_text(encoding="utf-8"), title or stem)
             partial.write_text(text, encoding="utf-8")
     return path
 

@@ -7,11 +7,32 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..problem.case import Case
-from ..problem.quantities import Array, require_array, require_kind, require_within
+from ..problem.quantities import (
+    Array,
+    keep,
+    require_array,
+    require_kind,
+    require_reals,
+    require_row,
+    require_within,
+    shown,
+)
 from ..result.response import Response
+
+
+def _outlines(name: str, given: object) -> tuple[Array, ...]:
+    """Outlines as arrays of shape (corners, 2)."""
+    if isinstance(given, np.ndarray) and given.ndim:
+        given = list(given)
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        raise TypeError(f"{name} = {shown(given)} is no sequence of outlines")
+    made = []
+    for i, one in enumerate(given):
+        corners = require_reals(f"{name}[{i}]", one, "corners x, z [m], shape (n, 2)")
+        made.append(require_array(f"{name}[{i}]", corners, (len(np.atleast_1d(corners)), 2)))
+    return tuple(made)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,20 +60,17 @@ class Bodies:
     fixed: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
-        require_within("magnify", self.magnify, 0.01, 1e4)
-        times = np.asarray(self.t, dtype=float)
-        if times.ndim != 1 or len(times) < 1 or not (np.diff(times) >= 0).all():
-            raise ValueError(f"t has the shape {times.shape}; one row of increasing times [s] is needed")
+        times = require_row("t", self.t, "time [s]")
+        if not (np.diff(times) >= 0).all():
+            raise ValueError(f"t = {shown(self.t)} decreases; one row of increasing times [s] is needed")
+        keep(self, outlines=_outlines("outlines", self.outlines), fixed=_outlines("fixed", self.fixed), t=times)
         count = len(self.outlines)
-        for name in ("outlines", "fixed"):
-            given: Sequence[ArrayLike] = getattr(self, name)
-            made = tuple(
-                require_array(f"{name}[{i}]", one, (len(np.atleast_1d(one)), 2)) for i, one in enumerate(given)
-            )
-            object.__setattr__(self, name, made)
-        object.__setattr__(self, "t", times)
-        object.__setattr__(self, "rests", require_array("rests", self.rests, (count, 2)))
-        object.__setattr__(self, "poses", require_array("poses", self.poses, (len(times), count, 3)))
+        keep(
+            self,
+            magnify=require_within("magnify", self.magnify, 0.01, 1e4),
+            rests=require_array("rests", self.rests, (count, 2)),
+            poses=require_array("poses", self.poses, (len(times), count, 3)),
+        )
 
     @classmethod
     def of(cls, response: Response, magnify: float = 1.0) -> Bodies:

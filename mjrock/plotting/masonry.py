@@ -39,7 +39,7 @@ def blocks(
         ValueError: for a pose of another shape, or a factor outside its range.
     """
     require_kind("masonry", masonry, Masonry)
-    require_within("magnified", magnified, 0.0, 1e6)
+    magnified = require_within("magnified", magnified, 0.0, 1e6)
     bodies = (len(masonry.free), 3)
     at = np.zeros(bodies) if pose is None else magnified * require_array("pose", pose, bodies)
     where = dict(zip(masonry.free, at, strict=True))

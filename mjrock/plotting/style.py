@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..problem.quantities import require_path
 from ..result.response import Response
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -37,7 +38,7 @@ def save(figure: Figure, path: str | Path) -> Path:
     Returns:
         The path that was written.
     """
-    path = Path(path)
+    path = require_path("path", path)
     path = path if path.suffix else path.with_suffix(".png")
     figure.savefig(path, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
     return path

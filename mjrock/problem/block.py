@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from .effects import AddedMass
-from .quantities import GRAVITY, Array, Real, require_kind, require_real, require_within, shown
+from .quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_within, shown
 from .restoring import Restoring, of_force, pose_of
 from .section import Moments, Opening, Profile, moments, require_openings, require_profile
 
@@ -47,12 +47,16 @@ class Block:
     masses: tuple[AddedMass, ...] = ()
 
     def __post_init__(self) -> None:
-        require_within("half thickness b", self.b, 1e-3, 10.0, "m")
-        require_within("half height h", self.h, 5e-3, 100.0, "m")
-        require_within("length", self.length, 1e-3, 1e3, "m")
-        require_within("density", self.density, 100.0, 3e4, "kg/m3")
+        keep(
+            self,
+            b=require_within("half thickness b", self.b, 1e-3, 10.0, "m"),
+            h=require_within("half height h", self.h, 5e-3, 100.0, "m"),
+            length=require_within("length", self.length, 1e-3, 1e3, "m"),
+            density=require_within("density", self.density, 100.0, 3e4, "kg/m3"),
+            inset=require_real("inset", self.inset),
+        )
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
-        if not 0 <= require_real("inset", self.inset) < self.b:
+        if not 0 <= self.inset < self.b:
             raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
         self._require_parts()
         if not abs(self.centroid_offset) < self.half_base:
@@ -70,10 +74,10 @@ class Block:
                 raise TypeError(f"{name} = {shown(parts)} is no sequence of {kind.__name__}")
             for i, one in enumerate(parts):
                 require_kind(f"{name}[{i}]", one, kind)
-            object.__setattr__(self, name, tuple(parts))
+            keep(self, **{name: tuple(parts)})
         require_openings(self.openings, self.length, 2 * self.h)
         if self.profile is not None:
-            object.__setattr__(self, "profile", require_profile(self.profile, 2 * self.b, 2 * self.h))
+            keep(self, profile=require_profile(self.profile, 2 * self.b, 2 * self.h))
         for i, mass in enumerate(self.masses):
             require_within(f"masses[{i}], height", mass.height, 0.0, 2 * self.h * (1 + 1e-12), "m")
             require_within(f"masses[{i}], offset", mass.offset, -self.b - 3, self.b + 3, "m")
@@ -91,18 +95,18 @@ class Block:
         masses: Sequence[AddedMass] = (),
     ) -> Block:
         """The wall of full sizes `thickness` 2b at the base, `height` 2h and `length` [m]; the rest as for `Block`."""
-        require_within("thickness", thickness, 2e-3, 20.0, "m")
-        require_within("height", height, max(1e-2, thickness), min(200.0, 200 * thickness), "m")
+        thickness = require_within("thickness", thickness, 2e-3, 20.0, "m")
+        height = require_within("height", height, max(1e-2, thickness), min(200.0, 200 * thickness), "m")
         parts = {"openings": openings, "profile": profile, "masses": masses}
         return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]
 
     @classmethod
     def from_slenderness(cls, slenderness: float, R: float, length: float = 1.0, density: float = 2000.0) -> Block:
         """The wall of a `slenderness` h/b [-] and a half diagonal `R` [m], as Table 1 of the paper lists walls."""
-        require_within("slenderness h/b", slenderness, 1.0, 200.0)
+        slenderness = require_within("slenderness h/b", slenderness, 1.0, 200.0)
         alpha = math.atan(1 / slenderness)
         most = min(10 / math.sin(alpha), 100 / math.cos(alpha))
-        require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")
+        R = require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")
         return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
 
     def __repr__(self) -> str:

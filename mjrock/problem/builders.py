@@ -81,11 +81,10 @@ def voussoirs_of(
     Raises:
         ValueError: for a value outside its range.
     """
-    require_within("radius", radius, 0.01, 1e3, "m")
-    ratio = require_real("thickness", thickness) / radius
-    if not 1e-3 <= ratio <= 1:
+    radius, thickness = require_within("radius", radius, 0.01, 1e3, "m"), require_real("thickness", thickness)
+    if not 1e-3 <= thickness / radius <= 1:
         raise ValueError(f"thickness = {thickness:g} m is outside the valid range {1e-3 * radius:g} to {radius:g} m")
-    require_within("span_angle", span_angle, 0.1, math.pi, "rad")
+    span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
     count = require_whole("voussoirs", voussoirs, 1, 1000)
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
     angles = 0.5 * math.pi + span_angle * (0.5 - np.arange(count + 1) / count)
@@ -116,9 +115,9 @@ def bonded(length: float, height: float, unit: tuple[float, float], thickness: f
         raise TypeError(f"unit = {shown(unit)} is not the length and the height of a unit")
     long = require_within("unit length", unit[0], 1e-2, 100.0, "m")
     high = require_within("unit height", unit[1], 1e-2, 100.0, "m")
-    require_within("wall length", length, long, 1e3, "m")
-    require_within("wall height", height, high, 1e3, "m")
-    require_within("wall thickness", thickness, 1e-3, 1e3, "m")
+    length = require_within("wall length", length, long, 1e3, "m")
+    height = require_within("wall height", height, high, 1e3, "m")
+    thickness = require_within("wall thickness", thickness, 1e-3, 1e3, "m")
     courses = round(height / high)
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")

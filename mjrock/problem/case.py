@@ -15,7 +15,7 @@ from .block import Block
 from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
 from .motion import GroundMotion
 from .pulling import Pull, stored, taken, yielded
-from .quantities import ON_ITS_FACE, Array, Flags, require_flag, require_kind, require_within, shown
+from .quantities import ON_ITS_FACE, Array, Flags, keep, require_flag, require_kind, require_within, shown
 from .restoring import Restoring, of_force
 
 Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass)
@@ -57,11 +57,14 @@ class Case:
             top = self.side_stop.top
             require_within("top of the side stop", top, 0.01, 2 * self.block.h * (1 + 1e-12), "m")
         else:
-            require_flag("side_stop", self.side_stop)
+            keep(self, side_stop=require_flag("side_stop", self.side_stop))
         lowest = 0.0 if self.side_stop else -ON_ITS_FACE
-        require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad")
-        require_within("duration", self.duration, 1e-6, 1e6, "s")
-        require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s")
+        keep(
+            self,
+            theta0=require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad"),
+            duration=require_within("duration", self.duration, 1e-6, 1e6, "s"),
+            omega0=require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s"),
+        )
         if abs(self.theta0) > 2 * self.block.alpha:
             warnings.warn(
                 f"theta0 = {self.theta0:g} rad is {abs(self.theta0) / self.block.alpha:.3g} alpha: "
@@ -79,7 +82,7 @@ class Case:
         given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
             raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load or AddedMass")
-        object.__setattr__(self, "effects", tuple(given))
+        keep(self, effects=tuple(given))
         if not self.effects:
             return
         top, b = 2 * self.block.h * (1 + 1e-12), self.block.b * (1 + 1e-12)

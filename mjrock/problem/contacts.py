@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from .block import Block
 from .damping import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
 from .interface import Interface, reference_frequency, require_points
-from .quantities import require_kind, require_real, require_stiffness, shown
+from .quantities import require_kind, require_real, require_stiffness, require_text, require_within, shown
 from .restitution import Restitution
 
 HOLDS = 10.0
@@ -23,13 +23,29 @@ Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
+    asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        xi_base, xi_side = law(wall, e, k_base)
+        found = law(wall, e, k_base)
     except TypeError as error:
-        raise TypeError(
-            f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers: {error}"
-        ) from None
+        raise TypeError(f"{asked}: {error}") from None
+    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str) or np.shape(found)[:1] != (2,):
+        raise TypeError(f"{asked}: it gives {shown(found)}")
+    xi_base, xi_side = found
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
+
+
+def required_layout(points: int, k_base: float, k_side: float | None) -> tuple[int, float, float | None]:
+    """Contact lines and stiffnesses [N/m3] as numbers that they can be."""
+    k_base = require_stiffness("base stiffness k_n", k_base)
+    k_side = None if k_side is None else require_stiffness("side stiffness k_n", k_side)
+    return require_points(points), k_base, k_side
+
+
+def required_frictions(friction: float | None, side_friction: float | None) -> tuple[float | None, float | None]:
+    """Coefficients of friction of base and side as numbers that they can be."""
+    given = {"friction": friction, "side_friction": side_friction}
+    base, side = (None if one is None else require_within(name, one, 0.0, 10.0) for name, one in given.items())
+    return base, side
 
 
 @dataclass(frozen=True)
@@ -49,7 +65,7 @@ class Contacts:
     def __post_init__(self) -> None:
         require_kind("base", self.base, Interface)
         require_kind("side", self.side, Interface, type(None))
-        require_kind("law", self.law, str)
+        require_text("law", self.law)
 
     def __repr__(self) -> str:
         faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])
@@ -81,11 +97,8 @@ class Contacts:
             ValueError: for a value outside its range, or a base too soft for the wall to stand on.
         """
         require_kind("wall", wall, Block)
-        require_points(points)
-        points = int(points)
-        require_stiffness("base stiffness k_n", k_base)
-        if k_side is not None:
-            require_stiffness("side stiffness k_n", k_side)
+        points, k_base, k_side = required_layout(points, k_base, k_side)
+        friction, side_friction = required_frictions(friction, side_friction)
         omega = reference_frequency(wall, k_base, points)
         base = Interface(k_base, xi_base, 2 * wall.half_base, wall.base_length, omega, points, friction)
         side = None
@@ -136,16 +149,14 @@ class Contacts:
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
-        require_points(points)
+        points, k_base, k_side = required_layout(points, k_base, k_side)
+        friction, side_friction = required_frictions(friction, side_friction)
         if law is None:
             law = CALIBRATED if points == 2 else CALIBRATED_BED
         elif isinstance(law, str):
             law = law_named(law)
         elif not callable(law):
             raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
-        for name, k in (("base", k_base), ("side", k_side)):
-            if name == "base" or k is not None:
-                require_stiffness(f"{name} stiffness k_n", k)
         if k_side is not None:
             e.require_rebound()
         if isinstance(law, DampingLaw):

@@ -7,14 +7,14 @@ import math
 import tomllib
 import warnings
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Self
 
 from ..files import write_text
 from .block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
-from .quantities import require_array, require_kind, require_stiffness, require_within
+from .quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within
 from .restitution import Restitution
 
 LEAST, HIGHEST = 1e-3, 0.3
@@ -69,14 +69,18 @@ class DampingLaw:
         for name in ("name", "source"):
             require_kind(name, getattr(self, name), str)
         for name in ("R_range", "slenderness_range", "k_n_range", "side_range"):
-            low, high = require_array(name, getattr(self, name), (2,))
+            low, high = require_array(name, getattr(self, name), (2,)).tolist()
             if not 0 <= low <= high:
                 raise ValueError(f"{name} = {low:g} to {high:g} is no range of positive numbers")
+            keep(self, **{name: (low, high)})
         for part, form in (("base", self.base), ("side", self.side)):
             require_kind(part, form, *FORMS.values())
-            for key, value in asdict(form).items():  # type: ignore[call-overload]
-                if key != "r_squared":
-                    require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE else -1e6, 1e6)
+            checked = {
+                key: require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE else -1e6, 1e6)
+                for key, value in asdict(form).items()  # type: ignore[call-overload]
+                if key != "r_squared"
+            }
+            keep(self, **{part: replace(form, **checked)})  # type: ignore[type-var]
 
     def __repr__(self) -> str:
         lines = "" if self.points is None else f", {self.points} lines a face"
@@ -100,11 +104,11 @@ class DampingLaw:
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
-        for symbol, k in (("k_n", k_n), ("k_side", k_n if k_side is None else k_side)):
-            require_stiffness(symbol, k)
+        k_n = require_stiffness("k_n", k_n)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
-        require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
+        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
         outside = self._outside(wall, e, k_n, k_side)
         if outside:
@@ -127,8 +131,8 @@ class DampingLaw:
         They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
         """
         require_kind("wall", wall, Block)
-        require_stiffness("k_n", k_n)
-        require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
+        k_n = require_stiffness("k_n", k_n)
+        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         loss = getattr(self.base, "loss", None)
         if loss is None:
             return 0.0, 1.0
@@ -150,9 +154,9 @@ class DampingLaw:
             amplitude: rotation over alpha that the wall comes from [-].
         """
         require_kind("e", e, Restitution)
-        if k_side is not None:
-            require_stiffness("k_side", k_side)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         low, high = self.reach(wall, k_n, amplitude)
+        k_n, amplitude = float(k_n), float(amplitude)
         margin = MARGIN * (high - low)
         groups = Groups.of(wall, e, k_n, k_side, amplitude)
         released = float(wall.potential_energy(amplitude * wall.alpha))
@@ -199,7 +203,7 @@ class DampingLaw:
                 lines.append(f"{key} = {_toml(value)}{note}")
             if errors:
                 lines += ["", f"[errors.{part}]", *(f"{key} = {_toml(value)}" for key, value in errors.items())]
-        return write_text(path, "\n".join(lines) + "\n")
+        return write_text(require_path("path", path), "\n".join(lines) + "\n")
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -209,8 +213,9 @@ class DampingLaw:
             OSError: if the file cannot be read.
             ValueError: if it is no law: not TOML, a formula that there is not, or a coefficient missing or too many.
         """
+        path = require_path("path", path)
         try:
-            text = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            text = tomllib.loads(path.read_text(encoding="utf-8"))
             made: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
             for part in ("base", "side"):
                 given = dict(text[part])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .quantities import require_real, require_whole, require_within
+from .quantities import keep, require_real, require_whole, require_within
 
 HIGHEST = 200.0
 """Largest height of a wall, and so of an effect [m]."""
@@ -46,17 +46,22 @@ class Tie:
     block: int = 0
 
     def __post_init__(self) -> None:
-        require_within("height of the tie", self.height, 0.0, HIGHEST, "m")
-        require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m")
-        require_within("slack of the tie", self.slack, 0.0, 10.0, "m")
-        if not require_real("strength of the tie", self.strength) > 0:
+        keep(
+            self,
+            height=require_within("height of the tie", self.height, 0.0, HIGHEST, "m"),
+            stiffness=require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m"),
+            slack=require_within("slack of the tie", self.slack, 0.0, 10.0, "m"),
+            strength=require_real("strength of the tie", self.strength),
+            length=require_within("length of the tie", self.length, 0.01, 1000.0, "m"),
+            block=require_whole("block of the tie", self.block, 0, BLOCKS),
+        )
+        if not self.strength > 0:
             raise ValueError(
                 f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
             )
-        require_within("length of the tie", self.length, 0.01, 1000.0, "m")
         if self.anchor_height is not None:
-            require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
-        require_whole("block of the tie", self.block, 0, BLOCKS)
+            anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
+            keep(self, anchor_height=anchored)
 
     @property
     def rise(self) -> float:
@@ -92,9 +97,12 @@ class Thrust:
     block: int = 0
 
     def __post_init__(self) -> None:
-        require_within("height of the thrust", self.height, 0.0, HIGHEST, "m")
-        require_within("force of the thrust", self.force, -1e9, 1e9, "N")
-        require_whole("block of the thrust", self.block, 0, BLOCKS)
+        keep(
+            self,
+            height=require_within("height of the thrust", self.height, 0.0, HIGHEST, "m"),
+            force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"),
+            block=require_whole("block of the thrust", self.block, 0, BLOCKS),
+        )
 
 
 @dataclass(frozen=True)
@@ -117,10 +125,13 @@ class Load:
     block: int = 0
 
     def __post_init__(self) -> None:
-        require_within("force of the load", self.force, 0.0, 1e9, "N")
-        require_within("height of the load", self.height, 0.0, HIGHEST, "m")
-        require_within("offset of the load", self.offset, -10.0, 10.0, "m")
-        require_whole("block of the load", self.block, 0, BLOCKS)
+        keep(
+            self,
+            force=require_within("force of the load", self.force, 0.0, 1e9, "N"),
+            height=require_within("height of the load", self.height, 0.0, HIGHEST, "m"),
+            offset=require_within("offset of the load", self.offset, -10.0, 10.0, "m"),
+            block=require_whole("block of the load", self.block, 0, BLOCKS),
+        )
 
 
 @dataclass(frozen=True)
@@ -143,10 +154,13 @@ class AddedMass:
     block: int = 0
 
     def __post_init__(self) -> None:
-        require_within("added mass", self.mass, 0.0, 1e8, "kg")
-        require_within("height of the added mass", self.height, 0.0, HIGHEST, "m")
-        require_within("offset of the added mass", self.offset, -13.0, 13.0, "m")
-        require_whole("block of the added mass", self.block, 0, BLOCKS)
+        keep(
+            self,
+            mass=require_within("added mass", self.mass, 0.0, 1e8, "kg"),
+            height=require_within("height of the added mass", self.height, 0.0, HIGHEST, "m"),
+            offset=require_within("offset of the added mass", self.offset, -13.0, 13.0, "m"),
+            block=require_whole("block of the added mass", self.block, 0, BLOCKS),
+        )
 
 
 @dataclass(frozen=True)
@@ -163,7 +177,7 @@ class SideStop:
     top: float
 
     def __post_init__(self) -> None:
-        require_within("top of the side stop", self.top, 0.01, HIGHEST, "m")
+        keep(self, top=require_within("top of the side stop", self.top, 0.01, HIGHEST, "m"))
 
 
 Effect = Tie | Thrust | Load | AddedMass

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from .block import Block
+from .quantities import keep, require_real
 from .restitution import Restitution
 
 
@@ -87,8 +88,12 @@ class PowerLaw:
     stiffness_exponent: float
     r_squared: float
 
+    def __post_init__(self) -> None:
+        keep(self, **{one.name: require_real(one.name, getattr(self, one.name)) for one in fields(self)})
+
     def __call__(self, slenderness: float, k_n: float, e: float) -> float:
         """The damping ratio [-]; `e` is the restitution of this law's own impact."""
+        slenderness, k_n, e = require_real("slenderness", slenderness), require_real("k_n", k_n), require_real("e", e)
         factor = slenderness**self.slenderness_exponent * k_n**self.stiffness_exponent
         return float(-self.coefficient * factor * math.log(abs(e)))
 

@@ -10,12 +10,12 @@ from functools import cached_property
 import numpy as np
 
 from .block import Block
-from .quantities import Array, require_kind, require_stiffness, require_whole, require_within
+from .quantities import Array, keep, require_kind, require_stiffness, require_whole, require_within
 
 
-def require_points(points: int) -> None:
-    """Raise an error unless `points` is a number of contact lines."""
-    require_whole("contact points", points, 2, 1000)
+def require_points(points: object) -> int:
+    """Return a number of contact lines as an integer; it is within 2 to 1000, see `require_whole`."""
+    return require_whole("contact points", points, 2, 1000)
 
 
 def contact_lines(face: float, points: int) -> tuple[Array, Array]:
@@ -44,9 +44,8 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     figures. A frequency of the side itself would damp some 26 times too little.
     """
     require_kind("wall", wall, Block)
-    require_stiffness("interface stiffness k_n", k_n)
-    require_points(points)
-    positions, widths = contact_lines(2 * wall.half_base, int(points))
+    k_n = require_stiffness("interface stiffness k_n", k_n)
+    positions, widths = contact_lines(2 * wall.half_base, require_points(points))
     K_rot = float(np.sum(k_n * widths * wall.base_length * positions**2))
     arm = math.hypot(wall.centroid_height, wall.centroid_offset)
     return math.sqrt(K_rot / (wall.inertia + wall.mass * arm**2))
@@ -79,16 +78,19 @@ class Interface:
     friction: float | None = None
 
     def __post_init__(self) -> None:
-        require_within("face", self.face, 1e-3, 1e3, "m")
-        require_within("length", self.length, 1e-3, 1e3, "m")
-        require_within("reference frequency", self.frequency, 1e-3, 1e9, "rad/s")
+        keep(
+            self,
+            face=require_within("face", self.face, 1e-3, 1e3, "m"),
+            length=require_within("length", self.length, 1e-3, 1e3, "m"),
+            frequency=require_within("reference frequency", self.frequency, 1e-3, 1e9, "rad/s"),
+            k_n=require_stiffness("interface stiffness k_n", self.k_n),
+            xi=require_within("damping ratio xi", self.xi, 0.0, 100.0),
+            points=require_points(self.points),
+        )
         if self.friction is not None:
-            require_within("friction", self.friction, 0.0, 10.0)
-        require_stiffness("interface stiffness k_n", self.k_n)
-        require_within("damping ratio xi", self.xi, 0.0, 100.0)
+            keep(self, friction=require_within("friction", self.friction, 0.0, 10.0))
         if self.xi > 1:
             warnings.warn(f"xi = {self.xi:g} is {self.xi:.0%} of critical; damping ratios are fractions", stacklevel=3)
-        require_points(self.points)
 
     def __repr__(self) -> str:
         held = "" if self.friction is None else f", friction {self.friction:.3g}"
@@ -97,7 +99,7 @@ class Interface:
 
     @cached_property
     def _lines(self) -> tuple[Array, Array]:
-        return contact_lines(self.face, int(self.points))
+        return contact_lines(self.face, self.points)
 
     @property
     def positions(self) -> Array:

@@ -21,7 +21,15 @@ from .joints import Joint, find_joints, names_of
 from .lines import Lines, lines_of, lowest_frequency
 from .of_joint import ByKind, OfJoint
 from .polygon import Polygon
-from .quantities import Array, require_kind, require_stiffness, require_whole, require_within, shown
+from .quantities import Array, keep, require_kind, require_stiffness, require_whole, require_within, shown
+
+OF_JOINTS = {"k_n": (1e4, 1e14, "N/m3"), "friction": (0.0, 10.0, ""), "xi": (0.0, 100.0, "")}
+"""Lowest and highest value of the properties of a joint, and their unit."""
+
+
+def required(name: str, given: OfJoint) -> OfJoint:
+    """A property of joints, a number as a float within its range, or a function as it is."""
+    return given if callable(given) else require_within(name, given, *OF_JOINTS[name])
 
 
 @dataclass(frozen=True)
@@ -76,7 +84,7 @@ class Masonry:
     def __post_init__(self) -> None:
         if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
             raise TypeError(f"blocks = {shown(self.blocks)} is not a list of blocks")
-        object.__setattr__(self, "blocks", tuple(self.blocks))
+        keep(self, blocks=tuple(self.blocks))
         for i, block in enumerate(self.blocks):
             require_kind(f"blocks[{i}]", block, Polygon)
         if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
@@ -87,19 +95,24 @@ class Masonry:
         for name, number in Counter(self.names).items():
             if number > 1:
                 raise ValueError(f"blocks: {number} of them have the name {name}")
-        require_whole("points", self.points, 2, 1000)
-        require_within("tolerance", self.tolerance, 1e-9, 0.1, "m")
+        keep(
+            self,
+            points=require_whole("points", self.points, 2, 1000),
+            tolerance=require_within("tolerance", self.tolerance, 1e-9, 0.1, "m"),
+        )
         if self.frequency is not None:
-            require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s")
+            keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
+        keep(self, **{name: required(name, getattr(self, name)) for name in OF_JOINTS})
         if isinstance(self.law, str):
-            object.__setattr__(self, "law", law_named(self.law))
+            keep(self, law=law_named(self.law))
         elif self.law is not None and not callable(self.law):
             raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
         if self.law is not None and self.frequency is not None:
             raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
         if not self.joints:
             raise ValueError("blocks: no two of them touch along an edge")
-        _ = self.joint_stiffness, self.joint_friction, self._of_joints("xi", 0.0, 100.0)
+        for name in OF_JOINTS:
+            self._of_joints(name)
         if self.law is not None:
             _ = self.retardation
 
@@ -136,9 +149,8 @@ class Masonry:
         """
         made = stacked(blocks, ground)
         side = side_of(made, side_stop)
-        require_within("side_friction", side_friction, 0.0, 10.0)
-        if k_side is not None:
-            require_stiffness("k_side", k_side)
+        side_friction = require_within("side_friction", side_friction, 0.0, 10.0)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
         if side is None:
             if k_side is not None or side_friction:
                 raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
@@ -146,7 +158,8 @@ class Masonry:
         if options.get("law") is None and options.get("frequency") is None:
             bare = cls(tuple(made), k_n=k_n, **options)
             options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-        options["friction"] = ByKind(options.get("friction", cls.friction), side_friction)
+        k_n = required("k_n", k_n)
+        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
         return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
 
     @classmethod
@@ -224,11 +237,11 @@ class Masonry:
         """The joints, in the order of the blocks."""
         return find_joints(self.blocks, self.tolerance)
 
-    def _of_joints(self, name: str, low: float, high: float, unit: str = "") -> Array:
+    def _of_joints(self, name: str) -> Array:
         """A property of each joint, shape (joints,)."""
         given = getattr(self, name)
         if not callable(given):
-            return np.full(len(self.joints), require_within(name, given, low, high, unit))
+            return np.full(len(self.joints), given)
         found = []
         for joint in self.joints:
             try:
@@ -236,29 +249,29 @@ class Masonry:
             except TypeError as error:
                 raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
         pairs = zip(self.joints, found, strict=True)
-        return np.array([require_within(f"{name} of {joint.name}", one, low, high, unit) for joint, one in pairs])
+        return np.array([require_within(f"{name} of {joint.name}", one, *OF_JOINTS[name]) for joint, one in pairs])
 
     @cached_property
     def joint_stiffness(self) -> Array:
         """k_n of each joint [N/m3], shape (joints,)."""
-        return self._of_joints("k_n", 1e4, 1e14, "N/m3")
+        return self._of_joints("k_n")
 
     @cached_property
     def joint_friction(self) -> Array:
         """Coefficient of friction of each joint [-], shape (joints,)."""
-        return self._of_joints("friction", 0.0, 10.0)
+        return self._of_joints("friction")
 
     @cached_property
     def lines(self) -> Lines:
         """The contact lines of all joints."""
-        return lines_of(self.blocks, self.joints, self.joint_stiffness, int(self.points))
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points)
 
     @cached_property
     def retardation(self) -> Array:
         """c/k of each joint [s], shape (joints,)."""
         if self.law is not None:
-            return retardations(self.blocks, self.joints, self.joint_stiffness, int(self.points), self.law)
-        xi = self._of_joints("xi", 0.0, 100.0)
+            return retardations(self.blocks, self.joints, self.joint_stiffness, self.points, self.law)
+        xi = self._of_joints("xi")
         if not xi.any():
             return np.zeros(len(xi))
         omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .effects import KINDS, Effect, Load
 from .masonry import Masonry
 from .motion import GroundMotion
-from .quantities import Array, require_array, require_kind, require_whole, require_within, shown
+from .quantities import Array, keep, require_array, require_kind, require_whole, require_within, shown
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
@@ -49,7 +49,7 @@ class MasonryCase:
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
-        require_within("duration", self.duration, 1e-6, 1e6, "s")
+        keep(self, duration=require_within("duration", self.duration, 1e-6, 1e6, "s"))
         for name in ("motion", "vertical"):
             require_kind(name, getattr(self, name), GroundMotion, type(None))
         if self.velocity is not None:
@@ -57,7 +57,7 @@ class MasonryCase:
             for value in velocity[np.abs(velocity) > FASTEST].tolist():
                 require_within("velocity", value, -FASTEST, FASTEST, "m/s or rad/s")
             velocity.setflags(write=False)
-            object.__setattr__(self, "velocity", velocity)
+            keep(self, velocity=velocity)
         self._require_effects()
 
     def _require_effects(self) -> None:
@@ -65,7 +65,7 @@ class MasonryCase:
         given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
             raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load or AddedMass")
-        object.__setattr__(self, "effects", tuple(given))
+        keep(self, effects=tuple(given))
         for i, one in enumerate(self.effects):
             require_kind(f"effects[{i}]", one, *KINDS)
             require_whole(f"effects[{i}], block", one.block, 0, len(self.masonry.blocks) - 1)

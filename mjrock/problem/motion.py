@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import pulses
-from .quantities import GRAVITY, Array, require_kind, require_within
-from .records import COARSEST, FINEST, Record, checked, doubts, parse_at2, parse_columns, parse_sac, read, reals
+from .quantities import GRAVITY, Array, keep, require_kind, require_reals, require_within, spelt
+from .records import COARSEST, FINEST, Record, checked, doubts, parse_at2, parse_columns, parse_sac, read
 from .resampling import resample
 
 SUSPICIOUS = 3 * GRAVITY
@@ -49,8 +49,8 @@ class GroundMotion:
 
     def __init__(self, accel: ArrayLike, dt: float, name: str = "ground motion") -> None:
         require_kind("name", name, str)
-        for field_name, value in zip(("accel", "dt", "name"), (*checked(accel, dt), name), strict=True):
-            object.__setattr__(self, field_name, value)
+        values, step = checked(accel, dt)
+        keep(self, accel=values, dt=step, name=name)
         if self.peak > SUSPICIOUS:
             warnings.warn(
                 f"{name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2",
@@ -143,11 +143,13 @@ class GroundMotion:
             ValueError: for a value outside its range, both or neither, or a peak of a motion that has none.
         """
         if (factor is None) == (peak is None):
-            raise ValueError(f"scaled takes either a factor or a peak [m/s2]; factor = {factor}, peak = {peak}")
+            raise ValueError(
+                f"scaled takes either a factor or a peak [m/s2]; factor = {spelt(factor)}, peak = {spelt(peak)}"
+            )
         if peak is None:
             made = require_within("factor", factor, -1e6, 1e6)
             return GroundMotion(made * self.accel, self.dt, f"{self.name} x {made:g}")
-        require_within("peak", peak, 0.0, 1e3, "m/s2")
+        peak = require_within("peak", peak, 0.0, 1e3, "m/s2")
         if self.peak == 0:
             raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")
         return GroundMotion(peak / self.peak * self.accel, self.dt, f"{self.name} to {peak:g} m/s2")
@@ -221,7 +223,7 @@ class GroundMotion:
         Raises:
             ValueError: for a period outside 0.01 to 100 s, cycles outside 0.5 to 1000, or steps outside 1e-5 to 1 s.
         """
-        return cls(*pulses.sine(amplitude, period, cycles, samples), f"sine {amplitude:g} m/s2, {period:g} s")
+        return cls(*pulses.sine(amplitude, period, cycles, samples))
 
     @classmethod
     def half_sine(cls, amplitude: float, duration: float, samples: int = 400) -> GroundMotion:
@@ -230,7 +232,7 @@ class GroundMotion:
         Raises:
             ValueError: for a duration outside 0.01 to 100 s, fewer than 2 samples, or steps outside 1e-5 to 1 s.
         """
-        return cls(*pulses.half_sine(amplitude, duration, samples), f"half sine {amplitude:g} m/s2, {duration:g} s")
+        return cls(*pulses.half_sine(amplitude, duration, samples))
 
     @classmethod
     def rectangular(cls, amplitude: float, duration: float) -> GroundMotion:
@@ -239,7 +241,7 @@ class GroundMotion:
         Raises:
             ValueError: for a duration outside 0.01 to 100 s.
         """
-        return cls(*pulses.rectangular(amplitude, duration), f"rectangular {amplitude:g} m/s2, {duration:g} s")
+        return cls(*pulses.rectangular(amplitude, duration))
 
     @classmethod
     def ricker(cls, amplitude: float, period: float, antisymmetric: bool = False, samples: int = 400) -> GroundMotion:
@@ -251,9 +253,7 @@ class GroundMotion:
         Raises:
             ValueError: for a period outside 0.01 to 100 s, fewer than 10 samples, or steps outside 1e-5 to 1 s.
         """
-        record = pulses.ricker(amplitude, period, antisymmetric, samples)
-        kind = "antisymmetric" if antisymmetric else "symmetric"
-        return cls(*record, f"{kind} Ricker {amplitude:g} m/s2, {period:g} s")
+        return cls(*pulses.ricker(amplitude, period, antisymmetric, samples))
 
     @classmethod
     def synthetic(
@@ -289,11 +289,11 @@ class GroundMotion:
         record = pulses.synthetic(
             peak, duration, seed, dt, ground_frequency, ground_damping, filter_frequency, filter_damping, rise, fall
         )
-        return cls(*record, f"synthetic {peak:g} m/s2, seed {seed}")
+        return cls(*record)
 
 
 def _instants(t: ArrayLike) -> Array:
-    times = reals("t", t, "one or more times [s]")
+    times = require_reals("t", t, "one or more times [s]")
     if np.isnan(times).any():
         raise ValueError("t holds nan; it takes one or more times [s]")
     return times

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import Array, require_flag, require_kind, require_within, shown
+from .quantities import Array, keep, require_flag, require_reals, require_text, require_within, shown
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -32,7 +32,7 @@ class Polygon:
         density: mass density [kg/m3], 100 to 30000.
         length: length out of the plane [m], 1e-3 to 1000.
         fixed: whether the block belongs to the ground, as an abutment does.
-        name: what it is called in results and in the model, without "|"; None numbers it.
+        name: what it is called in results and in the model, at most 1000 characters, without "|"; None numbers it.
 
     Raises:
         ValueError: for fewer than three vertices, two that coincide, edges that cross, a corner that points inwards, or
@@ -53,20 +53,16 @@ class Polygon:
         fixed: bool = False,
         name: str | None = None,
     ) -> None:
-        require_within("density", density, 100.0, 3e4, "kg/m3")
-        require_within("length", length, 1e-3, 1e3, "m")
-        require_flag("fixed", fixed)
-        require_kind("name", name, str, type(None))
-        if name is not None and (not name or "|" in name or name == "world"):
+        if name is not None and (not require_text("name", name) or "|" in name or name == "world"):
             raise ValueError(f"name = {shown(name)} is empty, is world, or holds a |")
-        for key, value in (
-            ("vertices", checked_corners(vertices)),
-            ("density", float(density)),
-            ("length", float(length)),
-            ("fixed", bool(fixed)),
-            ("name", name),
-        ):
-            object.__setattr__(self, key, value)
+        keep(
+            self,
+            name=name,
+            vertices=checked_corners(vertices),
+            density=require_within("density", density, 100.0, 3e4, "kg/m3"),
+            length=require_within("length", length, 1e-3, 1e3, "m"),
+            fixed=require_flag("fixed", fixed),
+        )
 
     @cached_property
     def corners(self) -> Array:
@@ -126,12 +122,9 @@ class Polygon:
         return float(np.hypot(*(self.corners - self.centroid).T).max())
 
 
-def checked_corners(vertices: object) -> Corners:
+def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     """Vertices as pairs of numbers, counterclockwise; a TypeError or ValueError names what is wrong with them."""
-    try:
-        made = np.array(vertices, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"vertices = {shown(vertices)} is no array of real numbers") from None
+    made = require_reals("vertices", vertices, f"an array of real numbers of the shape (3 to {MOST_VERTICES}, 2)")
     if made.ndim != 2 or made.shape[1] != 2 or not 3 <= len(made) <= MOST_VERTICES:
         raise ValueError(f"vertices has the shape {made.shape}; (3 to {MOST_VERTICES}, 2) is needed")
     if not (np.abs(made) <= FARTHEST).all():  # a NaN is not

@@ -1,7 +1,7 @@
 """Accelerations given by a formula: sine, half sine, rectangle, Ricker wavelets, and artificial records.
 
-Each function returns accelerations [m/s2], shape (n,), and their time step [s]. `GroundMotion` has a constructor for
-each of them.
+Each function returns accelerations [m/s2], shape (n,), their time step [s] and a name. `GroundMotion` has a constructor
+for each of them.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ import math
 
 import numpy as np
 
-from .quantities import require_flag, require_size, require_whole, require_within
-from .records import COARSEST, FINEST, Record
+from .quantities import Array, require_flag, require_size, require_whole, require_within
+from .records import COARSEST, FINEST
+
+Pulse = tuple[Array, float, str]
 
 LARGEST = 1e4
 """Bound of the amplitude of a pulse [m/s2]."""
@@ -30,31 +32,33 @@ def _samples(value: int, span: float, least: int) -> int:
     return require_whole("samples", value, max(least, math.ceil(span / COARSEST)), math.floor(span / FINEST))
 
 
-def sine(amplitude: float, period: float, cycles: float, samples: int) -> Record:
+def sine(amplitude: float, period: float, cycles: float, samples: int) -> Pulse:
     """A sine of `amplitude` [m/s2] and `period` [s] over a number of `cycles`, with `samples` to a cycle."""
     amplitude, period = _amplitude(amplitude), _span("period", period)
     cycles, samples = require_within("cycles", cycles, 0.5, 1e3), _samples(samples, period, 2)
     count = math.ceil(cycles * samples)
     require_size("the number of samples", count + 1, "choose fewer cycles or fewer samples to a cycle")
     t = cycles * period * np.arange(count + 1) / count
-    return amplitude * np.sin(2 * np.pi * t / period), cycles * period / count
+    accel = amplitude * np.sin(2 * np.pi * t / period)
+    return accel, cycles * period / count, f"sine {amplitude:g} m/s2, {period:g} s"
 
 
-def half_sine(amplitude: float, duration: float, samples: int) -> Record:
+def half_sine(amplitude: float, duration: float, samples: int) -> Pulse:
     """Half a sine of `amplitude` [m/s2] over `duration` [s], in `samples` steps."""
     amplitude, duration = _amplitude(amplitude), _span("duration", duration)
     samples = _samples(samples, duration, 2)
-    return amplitude * np.sin(np.pi * np.arange(samples + 1) / samples), duration / samples
+    accel = amplitude * np.sin(np.pi * np.arange(samples + 1) / samples)
+    return accel, duration / samples, f"half sine {amplitude:g} m/s2, {duration:g} s"
 
 
-def rectangular(amplitude: float, duration: float) -> Record:
+def rectangular(amplitude: float, duration: float) -> Pulse:
     """A constant `amplitude` [m/s2] from zero to `duration` [s]."""
     amplitude, duration = _amplitude(amplitude), _span("duration", duration)
     steps = math.ceil(duration)
-    return np.full(steps + 1, amplitude), duration / steps
+    return np.full(steps + 1, amplitude), duration / steps, f"rectangular {amplitude:g} m/s2, {duration:g} s"
 
 
-def ricker(amplitude: float, period: float, antisymmetric: bool, samples: int) -> Record:
+def ricker(amplitude: float, period: float, antisymmetric: bool, samples: int) -> Pulse:
     """A Ricker wavelet whose largest |acceleration| is `amplitude` [m/s2].
 
     With t from the middle of the wavelet and T the `period`, the reciprocal of the frequency at which its Fourier
@@ -68,12 +72,13 @@ def ricker(amplitude: float, period: float, antisymmetric: bool, samples: int) -
     """
     amplitude, period = _amplitude(amplitude), _span("period", period)
     samples = _samples(samples, period, 10)
-    require_flag("antisymmetric", antisymmetric)
+    kind = "antisymmetric" if require_flag("antisymmetric", antisymmetric) else "symmetric"
     half = math.ceil((1.75 if antisymmetric else 1.35) * samples)
     t = np.arange(-half, half + 1) / samples
     u, s = np.pi * t, 2 * np.pi / math.sqrt(3) * t
     shape = (s**2 - 3) * s * np.exp(-(s**2) / 2) if antisymmetric else (1 - 2 * u**2) * np.exp(-(u**2))
-    return amplitude * shape / np.abs(shape).max(), period / samples
+    accel = amplitude * shape / np.abs(shape).max()
+    return accel, period / samples, f"{kind} Ricker {amplitude:g} m/s2, {period:g} s"
 
 
 def synthetic(
@@ -87,7 +92,7 @@ def synthetic(
     filter_damping: float,
     rise: float,
     fall: float,
-) -> Record:
+) -> Pulse:
     """An artificial record with random phases under a stated spectrum and envelope.
 
     Cosines at the frequencies f_k = k / duration up to Nyquist are summed (Shinozuka). Their phases are drawn by
@@ -120,4 +125,4 @@ def synthetic(
     envelope = np.interp(np.arange(steps + 1) / steps, [0, rise, 1 - fall, 1], [0, 1, 1, 0])
     accel = envelope * np.append(stationary, stationary[0])
     accel -= envelope * accel.sum() / envelope.sum()
-    return peak / np.abs(accel).max() * accel, dt
+    return peak / np.abs(accel).max() * accel, dt, f"synthetic {peak:g} m/s2, seed {seed}"

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from numbers import Real as RealNumber
+from os import PathLike
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2], in every solver and in the generated model."""
@@ -26,9 +29,28 @@ MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 
 
+def keep(made: object, **checked: object) -> None:
+    """Set fields of a frozen dataclass that is being made to what their checks returned.
+
+    A check takes any real number and returns a float. The number given is not kept: NumPy computes with its small
+    numbers in their own few bits, in which 200 * 2 is 144.
+    """
+    for name, value in checked.items():
+        object.__setattr__(made, name, value)
+
+
+def spelt(value: object) -> str:
+    """A value as `repr` spells it, in text that UTF-8 can hold; its type where `repr` fails."""
+    try:
+        text = repr(value)
+    except Exception:
+        text = f"a {type(value).__name__}"
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
 def shown(value: object) -> str:
-    """A value and its type, short enough for a message."""
-    text = repr(value)
+    """A value and its type on one line, short enough for a message."""
+    text = " ".join(spelt(value).split())
     return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
 
 
@@ -44,7 +66,7 @@ def require_real(name: str, value: object) -> float:
     try:
         return float(value)
     except OverflowError:
-        raise ValueError(f"{name} is an integer of {value.bit_length()} bits, beyond any valid range") from None  # type: ignore[attr-defined]
+        raise ValueError(f"{name} is a number too large for a float, beyond any valid range") from None
 
 
 def require_within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
@@ -86,10 +108,46 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
 
 
-def require_flag(name: str, value: object) -> None:
-    """Raise a TypeError unless the value is True or False."""
+def require_flag(name: str, value: object) -> bool:
+    """Return `value` as a bool, or raise a TypeError unless it is True or False."""
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} = {shown(value)} is neither True nor False")
+    return bool(value)
+
+
+def require_text(name: str, value: object, longest: int = 1000) -> str:
+    """Return `value`, a text that a model, a page and a table can hold.
+
+    Raises:
+        TypeError: unless it is a text.
+        ValueError: if it has a NUL, half of a surrogate pair, or more characters than `longest`.
+    """
+    require_kind(name, value, str)
+    text = str(value)
+    if len(text) > longest:
+        raise ValueError(f"{name} = {shown(text)} has {len(text)} characters; the valid range is 0 to {longest}")
+    if "\0" in text or text.encode("utf-8", "ignore").decode() != text:
+        raise ValueError(f"{name} = {shown(text)} has a NUL or half of a surrogate pair, which no file can hold")
+    return text
+
+
+def require_path(name: str, path: object) -> Path:
+    """Return `path` as a Path.
+
+    Raises:
+        TypeError: unless it is a text or a path.
+        ValueError: if it is empty, or no name that a file can have.
+    """
+    require_kind(name, path, str, PathLike)
+    text = os.fspath(path)  # type: ignore[call-overload]
+    require_kind(name, text, str)
+    try:
+        encoded = os.fsencode(text)
+    except UnicodeError:
+        encoded = b"\0"
+    if not encoded or b"\0" in encoded:
+        raise ValueError(f"{name} = {shown(path)} is empty, or holds characters that no path has")
+    return Path(text)
 
 
 def require_size(what: str, count: float, remedy: str) -> None:
@@ -98,19 +156,75 @@ def require_size(what: str, count: float, remedy: str) -> None:
         raise ValueError(f"{what} would be {count:.3g}; at most {MOST_SAMPLES:.0e} fit into memory; {remedy}")
 
 
+def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArray[Any]:
+    """`values` as an array of certain kinds.
+
+    Args:
+        name: what it is called.
+        values: the values.
+        takes: what the values have to be, in words.
+        kinds: characters of the kinds, those of `numpy.dtype.kind`.
+
+    Raises:
+        TypeError: with the name and what it takes, for values of another kind.
+        ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
+    """
+    try:
+        given = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
+    if given.dtype.kind not in kinds:
+        held = "values of these kinds" if "b" in kinds else "real numbers"
+        raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")
+    if _is_masked(values):
+        raise ValueError(f"{name} has masked values; it takes {takes}")
+    require_size(f"the size of {name}", given.size, "give fewer values")
+    return given
+
+
+def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
+    """`values` as an array of floats, see `require_plain`. True and False are no real numbers."""
+    return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
+
+
+def require_row(name: str, values: ArrayLike, one: str) -> Array:
+    """Return a copy of `values` as a row of finite numbers, shape (n,).
+
+    Args:
+        name: what it is called.
+        values: the numbers.
+        one: what each of them is.
+
+    Raises:
+        TypeError: unless they are real numbers.
+        ValueError: if they are ragged or masked, no row, none at all, or not finite.
+    """
+    made = np.array(require_reals(name, values, f"a row of at least one {one}"))
+    if made.ndim != 1 or not made.size:
+        raise ValueError(f"{name} has the shape {made.shape}; a row of at least one {one} is needed")
+    return _finite(name, made)
+
+
+def _is_masked(values: ArrayLike) -> bool:
+    """Whether an array, or one of a list of arrays, has masked values."""
+    rows = values if isinstance(values, list | tuple) else [values]
+    return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
+
+
 def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """Return `value` as an array of finite numbers.
+    """Return a copy of `value` as an array of finite numbers.
 
     Raises:
         TypeError: if it is no array of real numbers.
-        ValueError: if it has another shape, or a value that is not finite.
+        ValueError: if it is ragged or masked, has another shape, or a value that is not finite.
     """
-    try:
-        made = np.array(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{name} = {shown(value)} is no array of real numbers") from None
+    made = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
     if made.shape != shape:
         raise ValueError(f"{name} has the shape {made.shape}; {shape} is needed")
+    return _finite(name, made)
+
+
+def _finite(name: str, made: Array) -> Array:
     if not np.isfinite(made).all():
         raise ValueError(f"{name} holds a value that is not finite")
     return made

@@ -35,9 +35,9 @@ def rebound_restitution(xi: float) -> float:
     Raises:
         TypeError, ValueError: unless xi is a number that is not negative.
     """
-    if not require_real("damping ratio xi", xi) >= 0:
+    xi = require_real("damping ratio xi", xi)
+    if not xi >= 0:
         raise ValueError(f"damping ratio xi = {xi:g} is outside the valid range xi >= 0")
-    xi = float(xi)
     if xi == math.inf:
         return 0.0
     if xi == 1:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .quantities import GRAVITY, Array, require_kind, require_size, require_within, shown
+from .quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
 
 Record = tuple[Array, float]
 
@@ -29,15 +29,16 @@ UNEVEN = 0.01
 
 AS_ASCII = re.ASCII | re.IGNORECASE
 EXPONENT = r"(?:[ed][-+]?\d+)?"
-COUNT, STEP = r"(\d{1,9})", rf"((?:\d+\.?\d*|\.\d+){EXPONENT})"
+COUNT, STEP = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
+"""No run of digits or blanks can be parted in two ways, so that the time of a search goes with the length of a line."""
 NUMBER = re.compile(rf"[-+]?{STEP}", AS_ASCII)
 POINTED = rf"[-+]?(?:\d+\.\d*|\.\d+){EXPONENT}"
 GLUED = re.compile(rf"{POINTED}(?:(?=[-+]){POINTED})+", AS_ASCII)
 """Columns of fixed width that a sign sets apart. Each has its decimal point: 1.5-102 is an exponent in Fortran."""
 AT2_UNIT = re.compile(
-    r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g\s*[.,;]?\s*(filter\s+points\b.*)?", AS_ASCII
+    r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
 )
-AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}\s*(s|sec|seconds)?[\s.,]*", AS_ASCII)
+AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}(\s*(s|sec|seconds))?[\s.,]*", AS_ASCII)
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
 SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
 BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
@@ -51,25 +52,6 @@ DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
-def reals(name: str, values: ArrayLike, takes: str) -> Array:
-    """`values` as an array of floats.
-
-    Raises:
-        TypeError: with the name and what it takes, unless they are real numbers. True and False are none.
-        ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
-    """
-    try:
-        given = np.asarray(values)
-    except ValueError:
-        raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
-    if given.dtype.kind not in "iuf":
-        raise TypeError(f"{name} = {shown(values)} does not hold real numbers alone; it takes {takes}")
-    if np.ma.is_masked(values):
-        raise ValueError(f"{name} has masked values; it takes {takes}")
-    require_size(f"the size of {name}", given.size, "give fewer values")
-    return np.asarray(given, dtype=float)
-
-
 def checked(accel: ArrayLike, dt: float) -> Record:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
@@ -77,7 +59,7 @@ def checked(accel: ArrayLike, dt: float) -> Record:
         TypeError: for what are no real numbers.
         ValueError: unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
     """
-    values = np.array(reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
+    values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
         raise ValueError(f"accel has the shape {values.shape}; one row of at least 2 accelerations [m/s2] is needed")
     bad = np.flatnonzero(~np.isfinite(values))
@@ -95,21 +77,21 @@ def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Rec
         TypeError: if the path is none.
         ValueError: with the name of the file, if it is not one of the format.
     """
-    require_kind("path", path, str, PathLike)
+    path = require_path("path", path)
     try:
         return checked(*parse(text_lines(path)))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 
 
-def text_lines(path: str | PathLike[str]) -> list[str]:
+def text_lines(path: Path) -> list[str]:
     """The lines of a text file in UTF-8 or Latin-1. Only CR, LF and CR LF end a line. A last ^Z of DOS is dropped.
 
     Raises:
         OSError: if the file cannot be read.
         ValueError: if it is binary or empty.
     """
-    data = Path(path).read_bytes()
+    data = path.read_bytes()
     if b"\0" in data:
         raise ValueError("a binary file or one in UTF-16; a text of accelerations in UTF-8 or Latin-1 is needed")
     try:
@@ -211,7 +193,7 @@ def _even_step(time: Array, places: Sequence[int]) -> float:
 
 def _factor(name: str, unit: str, units: dict[str, float]) -> float:
     if not isinstance(unit, str) or unit not in units:
-        raise ValueError(f"{name} = {unit!r} is not one of {', '.join(units)}")
+        raise ValueError(f"{name} = {spelt(unit)} is not one of {', '.join(units)}")
     return units[unit]
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from .block import Block
-from .quantities import require_real, require_within
+from .quantities import keep, require_real, require_within
 
 
 @dataclass(frozen=True)
@@ -25,9 +25,10 @@ class Restitution:
     side: float
 
     def __post_init__(self) -> None:
-        if not 0 < require_real("base restitution", self.base) <= 1:
+        keep(self, base=require_real("base restitution", self.base), side=require_real("side restitution", self.side))
+        if not 0 < self.base <= 1:
             raise ValueError(f"base restitution = {self.base:g} is outside the valid range 0 < e <= 1")
-        if not -1 <= require_real("side restitution", self.side) <= 1:
+        if not -1 <= self.side <= 1:
             raise ValueError(f"side restitution = {self.side:g} is outside the valid range -1 to 1")
 
     @property
@@ -62,7 +63,7 @@ class Restitution:
         """
         if isinstance(wall, Block):
             if stop_top is not None:
-                require_within("top of the side stop", stop_top, 0.01, 2 * wall.h * (1 + 1e-12), "m")
+                stop_top = require_within("top of the side stop", stop_top, 0.01, 2 * wall.h * (1 + 1e-12), "m")
             if wall.inset or not wall.is_plain or (stop_top is not None and stop_top < 2 * wall.h):
                 top = 2 * wall.h if stop_top is None else stop_top
                 base, side = _base(wall), _side(wall, top)
@@ -90,7 +91,7 @@ class Restitution:
         Raises:
             ValueError: if the measured value asks more of the side than a perfect rebound.
         """
-        require_real("lumped restitution", lumped)
+        lumped = require_real("lumped restitution", lumped)
         base = cls.from_geometry(wall).base
         if not -(base**2) <= lumped < 0:
             raise ValueError(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
-from .quantities import require_within, shown
+from .quantities import keep, require_within, shown
 
 Profile = tuple[tuple[float, float], ...]
 """Height [m] and thickness [m] from the base to the top, linear in between. Two at one height are a step."""
@@ -37,9 +37,12 @@ class Opening:
     sill: float = 0.0
 
     def __post_init__(self) -> None:
-        require_within("width of the opening", self.width, 0.01, 1000.0, "m")
-        require_within("height of the opening", self.height, 0.01, 200.0, "m")
-        require_within("sill of the opening", self.sill, 0.0, 200.0, "m")
+        keep(
+            self,
+            width=require_within("width of the opening", self.width, 0.01, 1000.0, "m"),
+            height=require_within("height of the opening", self.height, 0.01, 200.0, "m"),
+            sill=require_within("sill of the opening", self.sill, 0.0, 200.0, "m"),
+        )
 
     @property
     def head(self) -> float:
@@ -80,7 +83,7 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     whole = len(made) > 1 and made[0][0] == 0 and abs(made[-1][0] - height) <= 1e-9 * height
     if not whole or abs(made[0][1] / thickness - 1) > 1e-9:
         raise ValueError(
-            f"profile = {profile!r} is outside the valid range: it starts at height 0 with the thickness "
+            f"profile = {shown(profile)} is outside the valid range: it starts at height 0 with the thickness "
             f"{thickness:g} m and ends at the height {height:g} m"
         )
     return tuple(made)

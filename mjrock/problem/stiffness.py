@@ -34,7 +34,7 @@ def joint_stiffness(E: float, thickness: float) -> float:
 
     Source: Lourenço (1996), Computational strategies for masonry structures, TU Delft, for joints between stiff units.
     """
-    require_within("modulus E", E, 1e5, 1e12, "Pa")
+    E = require_within("modulus E", E, 1e5, 1e12, "Pa")
     return require_stiffness("k_n = E / thickness", E / require_within("thickness", thickness, 1e-4, 1.0, "m"))
 
 

@@ -49,9 +49,9 @@ def solve_compliant(
     """
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts)
-    require_within("rtol", rtol, 1e-14, 0.1)
-    require_within("atol", atol, 1e-16, 0.1)
-    require_within("output_step", output_step, 1e-7, 10.0, "s")
+    rtol = require_within("rtol", rtol, 1e-14, 0.1)
+    atol = require_within("atol", atol, 1e-16, 0.1)
+    output_step = require_within("output_step", output_step, 1e-7, 10.0, "s")
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)
     started = time.perf_counter()

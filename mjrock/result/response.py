@@ -13,7 +13,7 @@ import numpy as np
 
 from ..files import write_text
 from ..problem.case import Case
-from ..problem.quantities import Array, named
+from ..problem.quantities import Array, named, require_path
 from .joints import JointMotion
 from .ledger import Ledger
 from .rocking import Impact, Rocking, restitution_of
@@ -220,7 +220,7 @@ class Response:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
         if path is not None:
-            write_text(path, text)
+            write_text(require_path("path", path), text)
         return text
 
     @property

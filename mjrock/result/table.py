@@ -6,12 +6,16 @@ import csv
 import io
 from collections.abc import Iterable, Sequence
 
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""What a cell begins with that a spreadsheet computes."""
+
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Rows as CSV text that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read.
 
     NumPy knows no quotation marks and takes # for the start of a comment. Commas, quotation marks and # are therefore
-    left out of the header, and in the cells a comma becomes a semicolon. Numbers keep all their digits.
+    left out of the header, and in the cells a comma becomes a semicolon. Numbers keep all their digits. Text that a
+    spreadsheet would take for a formula has an apostrophe before it.
 
     Raises:
         ValueError: if two columns have the same name.
@@ -37,4 +41,15 @@ def _without(name: str) -> str:
 def _cell(value: object) -> object:
     if not isinstance(value, str):
         return value
-    return value.replace(",", ";").replace("#", "no. ").replace('"', "'")
+    return guarded(value.replace(",", ";").replace("#", "no. ").replace('"', "'"))
+
+
+def guarded(value: object) -> object:
+    """A cell that no spreadsheet computes: text that begins like a formula, and is no number, gets an apostrophe."""
+    if not isinstance(value, str) or not value.startswith(FORMULA):
+        return value
+    try:
+        float(value)
+    except ValueError:
+        return f"'{value}"
+    return value

@@ -12,7 +12,7 @@ from ..problem.lines import Lines
 from ..problem.masonry import Masonry
 from ..problem.masonry_case import MasonryCase
 from ..problem.quantities import GRAVITY, Array, Integers, named, require_kind
-from ..problem.statics import falling
+from ..problem.statics import falling, friction_lacking, slippery
 from .arrays import GROUND
 from .course import Course
 from .effects import attachments
@@ -47,10 +47,18 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
     """
     falls = falling(masonry, applied(masonry, effects))
     if falls and not any(isinstance(one, Tie) for one in effects):
-        raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight")
+        lacking = friction_lacking(masonry, applied(masonry, effects))
+        remedy = "" if lacking is None else f"; joints that need friction of {lacking[0]:g}: {named(lacking[1])}"
+        raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
     try:
         _ = standing_masonry(masonry, effects).at_rest
     except UnsettledError as error:
+        slide, joints = slippery(masonry)
+        if slide:
+            raise ValueError(
+                f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
+                f"joints that need friction, of any coefficient above 0: {named(joints)}"
+            ) from None
         moved = np.hypot(*error.pose[:, :2].T)
         gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= 0.1 * moved.max()]
         raise ValueError(

@@ -13,7 +13,7 @@ from ..files import write_arrays
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import require_kind, shown
+from ..problem.quantities import keep, require_kind, shown, spelt
 from ..problem.restitution import Restitution
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
@@ -90,9 +90,9 @@ class Analysis:
             value = getattr(self, name)
             if not isinstance(value, Mapping):
                 raise TypeError(f"{name} = {shown(value)} is no mapping of names to values")
-            object.__setattr__(self, name, dict(value))
-        if self.solver not in SOLVERS:
-            raise ValueError(f"solver = {self.solver!r} is none of {', '.join(SOLVERS)}")
+            keep(self, **{name: dict(value)})
+        if not isinstance(self.solver, str) or self.solver not in SOLVERS:
+            raise ValueError(f"solver = {spelt(self.solver)} is none of {', '.join(SOLVERS)}")
         if isinstance(self.case, Case):
             self._require_wall(self.case)
         elif self.solver not in OF_MASONRY or self.e is not None or self.contacts is not None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..problem.damping import HIGHEST, LEAST, DampingLaw
 from ..problem.forms import BedLaw, CornerLaw, Form, Groups, SideLaw
-from ..problem.quantities import require_array, require_kind, require_whole, require_within
+from ..problem.quantities import keep, require_array, require_kind, require_whole, require_within
 from ..problem.restitution import Restitution
 from .campaign import completed
 from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
@@ -48,20 +48,23 @@ class Plan:
     amplitude: tuple[float, float] = (0.08, 0.8)
 
     def __post_init__(self) -> None:
-        require_whole("base_count", self.base_count, 1, 100_000)
-        require_whole("side_count", self.side_count, 1, 100_000)
-        require_whole("seed", self.seed, 0, 2**31)
+        keep(
+            self,
+            base_count=require_whole("base_count", self.base_count, 1, 100_000),
+            side_count=require_whole("side_count", self.side_count, 1, 100_000),
+            seed=require_whole("seed", self.seed, 0, 2**31),
+        )
         for name, low, high in (("losses", 0.0, 10.0), ("side_losses", 0.0, 10.0), ("sides", 1e-3, 1.0)):
             values = getattr(self, name)
             require_kind(name, values, tuple)
-            for value in values:
-                require_within(name, value, low, high)
+            keep(self, **{name: tuple(require_within(name, value, low, high) for value in values)})
             if not values:
                 raise ValueError(f"{name} is empty; at least one value is needed")
         for name, low, high in (("k_n", 1e4, 1e14), ("amplitude", 0.01, 0.95)):
-            first, last = require_array(name, getattr(self, name), (2,))
-            require_within(f"{name}, lower end", float(first), low, high)
-            require_within(f"{name}, upper end", float(last), float(first), high)
+            first, last = require_array(name, getattr(self, name), (2,)).tolist()
+            require_within(f"{name}, lower end", first, low, high)
+            require_within(f"{name}, upper end", last, first, high)
+            keep(self, **{name: (first, last)})
 
     def base_tasks(self, points: int, **options: Any) -> list[Match]:
         """Two-sided matches; `options` are those of `Match`."""
@@ -144,7 +147,7 @@ def calibrate(
         ValueError, OSError, RuntimeError: as `completed` and `regress`.
     """
     require_kind("name", name, str)
-    require_whole("points", points, 2, 1000)
+    points = require_whole("points", points, 2, 1000)
     require_kind("plan", plan, Plan, type(None))
     plan = plan or Plan()
     accuracy = options.pop("accuracy", 1e-4)

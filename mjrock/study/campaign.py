@@ -5,14 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from multiprocessing import current_process
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+from ..problem.quantities import require_flag, require_path, require_real, require_whole, shown
 from .dispatch import Dispatch
 from .progress import Progress
 from .runner import Runner
 from .store import Store
 from .task import Row, Task, column_names, keyed
+
+MOST_WORKERS = 10_000
+"""Most processes of a campaign."""
 
 
 def campaign(
@@ -29,7 +34,7 @@ def campaign(
 
     Killing a campaign loses only the cases in progress, and the rows of about the last half second. The same call
     carries on from there and does nothing twice that has a row. A task that fails becomes a row with its error, and so
-    does one that calls `sys.exit`, kills its worker, or cannot be built, pickled or labelled. The rows do not depend on
+    does one that calls `sys.exit`, ends its process, or cannot be built, pickled or labelled. The rows do not depend on
     the order in which tasks finish. Without a terminal a line every 30 s says how far the campaign is.
 
     Args:
@@ -37,16 +42,20 @@ def campaign(
         store: the SQLite file.
         executor: any executor of `concurrent.futures`, such as Dask's `client.get_executor()`; it is not shut down.
             None stands for processes of this machine, which are replaced if they die.
-        workers: how many processes, one for each processor by default; 1 runs in a thread of this process.
+        workers: how many processes, 1 to 10000, one for each processor by default. They import the script that calls
+            the campaign, which needs `if __name__ == "__main__":`. The one process of workers=1 does not, unless there
+            is a time limit; tasks of types that the script or a notebook defines then run in this process, and a line
+            says so.
         histories: a folder, made where there is none, for the time history of each case, `<key>.npz`.
         retry: whether tasks that have failed before are run again.
         time_limit: how long a case may take [s]; one that takes longer is ended and becomes a failed row that says so.
-            It is for processes of this machine, which it uses also for workers=1.
+            It is for processes of this machine.
 
     Returns:
         The path of the store, for `Store(path)`.
 
     Raises:
+        TypeError: for an argument of another type.
         ValueError: if the file is not a store or is damaged, `workers` or `time_limit` is not positive, a time limit is
             given with an executor, or the name of a label is that of a column or of another label, up to upper and
             lower case. A label that repeats a column, as `solver` does, is none that clashes. For a list, and for a
@@ -55,30 +64,43 @@ def campaign(
         RuntimeError: if the executor given has broken down, or worker processes die as they start.
         KeyboardInterrupt: at Ctrl-C, once the worker processes have been ended; it says how many rows are kept.
     """
-    if workers is not None and workers < 1:
-        raise ValueError(f"workers = {workers} is outside the valid range, which starts at 1")
-    if time_limit is not None and not time_limit > 0:
-        raise ValueError(f"time_limit = {time_limit} s is outside the valid range, which is above 0")
+    path, tasks = require_path("store", store), required_tasks(tasks)
+    count = (os.cpu_count() or 1) if workers is None else require_whole("workers", workers, 1, MOST_WORKERS)
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise TypeError(f"executor = {shown(executor)} is no executor of concurrent.futures")
+    if time_limit is not None:
+        time_limit = require_real("time_limit", time_limit)
+        if not time_limit > 0:
+            raise ValueError(f"time_limit = {time_limit} s is outside the valid range, which is above 0")
+    retry = require_flag("retry", retry)
     if time_limit is not None and executor is not None:
         raise ValueError(f"time_limit = {time_limit} s needs processes of this machine, and executor gives others")
-    folder = None if histories is None else Path(histories)
+    folder = None if histories is None else require_path("histories", histories)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     total = len(tasks) if isinstance(tasks, Sequence) else None
-    with Store(store, writing=True) as file, Progress(file.path, len(file), total) as progress:
+    with Store(path, writing=True) as file, Progress(file.path, len(file), total) as progress:
         if isinstance(tasks, list | tuple):
             for names in dict.fromkeys(column_names(keyed(task)[1]) for task in tasks):
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry)
         try:
-            _carry_out(run, tasks, executor, workers or os.cpu_count() or 1, total, time_limit)
+            _carry_out(run, tasks, executor, count, total, time_limit)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
             ) from None
         if total is not None and run.asked != total:
             raise RuntimeError(f"the tasks ended after {run.asked} of {total}; the same call carries on from there")
-    return Path(store)
+    return path
+
+
+def required_tasks(tasks: object) -> Iterable[Task]:
+    """Tasks as something that can be gone through; TypeError unless they are, and for a text."""
+    gone_through = isinstance(tasks, Iterable) or hasattr(type(tasks), "__getitem__")
+    if isinstance(tasks, str | bytes) or not gone_through:
+        raise TypeError(f"tasks = {shown(tasks)} are no tasks that can be gone through")
+    return cast(Iterable[Task], tasks)
 
 
 def _carry_out(
@@ -94,16 +116,20 @@ def _carry_out(
     if executor is not None:
         run.across(pending, executor, getattr(executor, "_max_workers", count))
     elif limit is not None:
-        Dispatch(run, pending, count, limit).go()
+        Dispatch(run, pending, count, limit, script=True).go()
+    elif count == 1 and current_process().daemon:
+        for job in pending:
+            run.here(job, "this process may not start others")
     elif count == 1:
-        run.here(pending)
+        Dispatch(run, pending, 1, None, script=False).go()
     else:
-        Dispatch(run, pending, count, None).go()
+        Dispatch(run, pending, count, None, script=True).go()
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
     """The row of each task, in the order asked, from a store that may hold other rows too; None where there is none."""
-    with Store(store) as file:
+    tasks = required_tasks(tasks)
+    with Store(require_path("store", store)) as file:
         rows = {row["key"]: row for row in file.rows()}
     return [rows.get(keyed(task)[0]) for task in tasks]
 

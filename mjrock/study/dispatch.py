@@ -20,8 +20,9 @@ LOOK = 0.2
 class Dispatch:
     """The worker processes of a campaign.
 
-    A process that dies is replaced. The task that it was doing is run again. After DEATHS deaths it is run while the
-    others wait, in case memory was short. If its process dies again, the row of the task says so.
+    A process that dies is replaced. If a task ended it, the row of the task says so. If it was killed, the task is run
+    again. After DEATHS deaths it is run while the others wait, in case memory was short. If its process dies again, the
+    row of the task says so.
 
     Args:
         run: the campaign.
@@ -29,10 +30,12 @@ class Dispatch:
         count: how many processes.
         limit: how long a task may take [s]. The process of one that takes longer is ended, and the task gets a failed
             row. None stands for no limit.
+        script: whether the processes import the script that calls the campaign. Where they do not, tasks that they
+            cannot read for that reason run in this process.
     """
 
-    def __init__(self, run: Runner, pending: Iterator[Job], count: int, limit: float | None) -> None:
-        self.run, self.pending, self.count, self.limit = run, pending, count, limit
+    def __init__(self, run: Runner, pending: Iterator[Job], count: int, limit: float | None, *, script: bool) -> None:
+        self.run, self.pending, self.count, self.limit, self.script = run, pending, count, limit, script
         self.ahead: deque[Job] = deque()  # made while the processes are busy
         self.again: deque[Job] = deque()
         self.workers: list[Worker] = []
@@ -47,7 +50,7 @@ class Dispatch:
             return
         try:
             for _ in range(self.count):
-                self.workers.append(Worker())
+                self.workers.append(Worker(script=self.script))
             while self.hand_out():
                 self.look_ahead()
                 self.collect()
@@ -86,7 +89,7 @@ class Dispatch:
                     worker.send([(job.task, job.history) for job in jobs])
                     worker.jobs = jobs
                 except Exception as error:
-                    self.again.extend(self.run.singly(jobs, error))
+                    self.refused(jobs, error)
         return any(worker.jobs for worker in self.workers) or bool(self.again) or self.look_ahead()
 
     def collect(self) -> None:
@@ -100,18 +103,27 @@ class Dispatch:
                     self.replace(worker, overdue=False)
                 elif isinstance(answer, dict):
                     jobs, worker.jobs = worker.jobs, []
-                    self.again.extend(self.run.singly(jobs, PicklingError(answer["error"])))
+                    self.refused(jobs, PicklingError(answer["error"]))
                 elif answer:
                     jobs, worker.jobs = worker.jobs[: len(answer)], worker.jobs[len(answer) :]
                     self.run.write(jobs, answer)
             elif self.limit is not None and worker.jobs and worker.busy > self.limit:
                 self.replace(worker, overdue=True)
 
+    def refused(self, jobs: list[Job], error: Exception) -> None:
+        """Try the tasks of a chunk that could not be pickled or read one by one. One that was alone runs here, if its
+        process lacks the script, or fails."""
+        if self.script or len(jobs) > 1:
+            self.again.extend(self.run.singly(jobs, error))
+        else:
+            self.run.here(jobs[0], error)
+
     def replace(self, worker: Worker, *, overdue: bool) -> None:
         """Start another process in place of one that has died or whose task takes too long."""
         index = max(worker.started, 1) - 1  # one that dies before it starts a task may die of reading it
         how = worker.end(0 if overdue else 1)
-        self.workers[self.workers.index(worker)] = Worker()
+        ended = worker.started > 0 and (worker.process.exitcode or 0) >= 0
+        self.workers[self.workers.index(worker)] = Worker(script=self.script)
         if not worker.jobs:
             return
         job = worker.jobs.pop(index)
@@ -124,7 +136,8 @@ class Dispatch:
             assert self.limit is not None
             row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
             self.run.write([job], [row | {"seconds": self.limit}])
-        elif job.deaths > DEATHS:
-            self.run.write([job], [failed_row(RuntimeError(f"its worker process {how}, {job.deaths} times in all"))])
+        elif ended or job.deaths > DEATHS:
+            often = f", {job.deaths} times in all" if job.deaths > 1 else ""
+            self.run.write([job], [failed_row(RuntimeError(f"its worker process {how}{often}"))])
         else:
             self.again.append(job)

@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ..problem.quantities import spelt
+
 
 def fingerprint(*contents: object) -> str:
     """A hash of the content of dataclasses, arrays, mappings and plain values, the same on every machine.
@@ -50,4 +52,4 @@ def _pieces(value: object) -> Iterator[bytes]:
     elif value is None or isinstance(value, bool | str):
         yield repr(value).encode()
     else:
-        raise TypeError(f"{value!r} is of no type whose content can be hashed")
+        raise TypeError(f"{spelt(value)} is of no type whose content can be hashed")

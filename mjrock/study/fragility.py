@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import log_ndtr, ndtr, ndtri
 
-from ..problem.quantities import Array, Flags, require_whole, require_within
+from ..problem.quantities import Array, Flags, require_plain, require_reals, require_whole, require_within, shown
 
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""
@@ -42,24 +43,35 @@ class Fragility:
     resamples: Array | None = field(default=None, repr=False, compare=False)
 
     def probability(self, intensity: ArrayLike) -> Array:
-        """Share overturned at an intensity [-]."""
-        return np.asarray(ndtr(_score(intensity, self.median, self.dispersion)))
+        """Share overturned at an intensity [-], of any shape.
+
+        Raises:
+            TypeError, ValueError: unless the intensities are real numbers that are not negative. Infinity is one.
+        """
+        return np.asarray(ndtr(_score(_intensities(intensity), self.median, self.dispersion)))
 
     def band(self, intensity: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper bound of that share [-], point by point.
 
         With groups they come from the fits to the resamples, as the intervals do. Without, they are the normal
         approximation of the fit, carried over to the score.
+
+        Raises:
+            TypeError, ValueError: for an intensity as `probability` does, or a confidence outside 0 to 1.
         """
-        require_within("confidence", confidence, 0.0, 1.0)
-        score = _score(intensity, self.median, self.dispersion)
+        confidence = require_within("confidence", confidence, 0.0, 1.0)
+        x = _intensities(intensity)
+        score = _score(x, self.median, self.dispersion)
         if self.resamples is not None:
-            scores = _score(np.asarray(intensity, dtype=float)[..., None], *self.resamples.T)
+            scores = _score(x[..., None], *self.resamples.T)
             low, high = _reflected(score, scores, confidence)
             return np.asarray(ndtr(low)), np.asarray(ndtr(high))
-        gradient = np.stack([np.full_like(score, -1 / self.dispersion), -score], axis=-1)
+        certain = np.isinf(score)  # no damage without motion, and none is spared by an infinite one
+        finite = np.where(certain, 0.0, score)
+        gradient = np.stack([np.full_like(score, -1 / self.dispersion), -finite], axis=-1)
         spread = np.sqrt(np.einsum("...i,ij,...j->...", gradient, np.array(self.covariance), gradient))
-        reach = ndtri(0.5 + 0.5 * confidence) * spread
+        with np.errstate(invalid="ignore"):
+            reach = np.where(certain, 0.0, ndtri(0.5 + 0.5 * confidence) * spread)
         return np.asarray(ndtr(score - reach)), np.asarray(ndtr(score + reach))
 
     def median_interval(self, confidence: float = 0.9) -> tuple[float, float]:
@@ -71,7 +83,7 @@ class Fragility:
         return self._interval(1, self.dispersion, confidence)
 
     def _interval(self, which: int, value: float, confidence: float) -> tuple[float, float]:
-        require_within("confidence", confidence, 0.0, 1.0)
+        confidence = require_within("confidence", confidence, 0.0, 1.0)
         if self.resamples is not None:
             with np.errstate(divide="ignore"):
                 low, high = _reflected(np.log(value), np.log(self.resamples[:, which]), confidence)
@@ -98,21 +110,22 @@ def fit_fragility(
 
     Args:
         intensity: of each run, positive, shape (n,).
-        overturned: whether each run overturned, shape (n,).
+        overturned: whether each run overturned, True or False, or 1 or 0, shape (n,). A run without a result is none.
         groups: what each run belongs to, such as the name or the number of its record, shape (n,), at least 5
-            different ones. None takes the runs as independent.
+            different ones, all text or all numbers. None takes the runs as independent.
         resamples: how many times the groups are drawn, 20 to 100000.
         seed: of the draws, a whole number from 0 to 2**53.
 
     Raises:
-        ValueError: for an intensity that is not positive, shapes that differ, fewer than 5 groups, or runs that all, or
-            none, overturned, in which a single intensity parts them, so that no curve is more likely than a step, or
-            which overturn the less the stronger the motion is.
+        TypeError: for intensities that are no real numbers, and results that are neither True nor False.
+        ValueError: for an intensity that is not positive, a NaN, a masked value, shapes that differ, fewer than 5
+            groups, or runs that all, or none, overturned, in which a single intensity parts them, so that no curve is
+            more likely than a step, or which overturn the less the stronger the motion is.
 
     Source: Baker (2015), Efficient analytical fragility function fitting, Earthquake Spectra 31(1); for the bootstrap
     over clusters, Field and Welsh (2007), J. R. Stat. Soc. B 69(3).
     """
-    x, fell = np.asarray(intensity, dtype=float), np.asarray(overturned, dtype=bool)
+    x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
     log_x = np.log(x)
     ((level, slope),) = _probit(log_x, fell, np.ones((1, len(x))))
@@ -129,7 +142,7 @@ def fit_fragility(
     )
     if groups is None:
         return made
-    labels = np.asarray(groups)
+    labels = _labels(groups)
     if labels.shape != x.shape:
         raise ValueError(
             f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
@@ -146,6 +159,45 @@ def fit_fragility(
     found = np.concatenate(fits)
     found.setflags(write=False)
     return Fragility(made.median, made.dispersion, made.covariance, made.count, len(names), found)
+
+
+def _flags(overturned: ArrayLike) -> Flags:
+    """Whether each run overturned.
+
+    Raises:
+        TypeError, ValueError: unless each value is True or False, or 1 or 0.
+    """
+    takes = "whether each run overturned: True or False, or 1 or 0"
+    found = require_plain("overturned", overturned, takes, "biuf")
+    unclear = np.flatnonzero((found != 0) & (found != 1))
+    if unclear.size:
+        raise ValueError(f"overturned holds {found.flat[unclear[0]]:g} at {unclear[0]}; it takes {takes}")
+    return np.asarray(found, dtype=bool)
+
+
+def _labels(groups: ArrayLike) -> NDArray[Any]:
+    """What each run belongs to.
+
+    Raises:
+        TypeError, ValueError: unless they are all text or all numbers, without NaN.
+    """
+    takes = "the name or the number of the group of each run"
+    found = require_plain("groups", groups, takes, "biufU")
+    if found.dtype.kind == "U" and not all(isinstance(one, str) for one in np.asarray(groups, dtype=object).flat):
+        raise TypeError(f"groups = {shown(groups)} holds text and numbers; it takes {takes}, all of one kind")
+    if found.dtype.kind == "f" and np.isnan(found).any():
+        raise ValueError(f"groups holds nan; it takes {takes}")
+    return found
+
+
+def _intensities(intensity: ArrayLike) -> Array:
+    """Intensities at which a curve is asked for."""
+    takes = "one or more intensities that are not negative"
+    x = require_reals("intensity", intensity, takes)
+    bad = x[~(x >= 0)]
+    if bad.size:
+        raise ValueError(f"intensity holds {bad[0]:g}; it takes {takes}")
+    return x
 
 
 def _require_fit(x: Array, fell: Flags) -> None:
@@ -224,8 +276,9 @@ def _curvature(log_x: Array, fell: Flags, level: float, slope: float) -> Array:
 
 
 def _score(intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        score = np.log(np.asarray(intensity, dtype=float) / np.asarray(median)) / np.asarray(dispersion)
+    """How many dispersions an intensity lies above the median; nothing over nothing counts as the median itself."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        score = np.log(np.asarray(intensity) / np.asarray(median)) / np.asarray(dispersion)
     return np.asarray(np.where(np.isnan(score), 0.0, score))
 
 
@@ -237,4 +290,7 @@ def _reflected(value: ArrayLike, resampled: Array, confidence: float) -> tuple[A
     """
     ends = 50 * (1 - confidence), 50 * (1 + confidence)
     low, high = np.percentile(resampled, ends, axis=-1, method="nearest")
-    return 2 * np.asarray(value) - high, 2 * np.asarray(value) - low
+    with np.errstate(invalid="ignore"):
+        found = 2 * np.asarray(value) - high, 2 * np.asarray(value) - low
+    first, last = (np.where(np.isnan(one), value, one) for one in found)  # both infinite: as certain as the estimate
+    return np.asarray(first), np.asarray(last)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..problem.quantities import spelt
 from .task import Refused
 
 
@@ -72,4 +73,4 @@ class Grid(Sequence[Any]):
 def _label(value: object) -> object:
     if isinstance(value, np.generic):
         value = value.item()
-    return value if value is None or isinstance(value, str | int | float) else getattr(value, "name", repr(value))
+    return value if value is None or isinstance(value, str | int | float) else getattr(value, "name", spelt(value))

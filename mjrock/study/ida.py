@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..problem.quantities import Array, require_array, require_kind, require_within, shown
+from ..problem.quantities import Array, require_kind, require_row, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
 from .task import Row
@@ -52,9 +52,8 @@ class IncrementalAnalysis:
         Args:
             shares: 0 to 100 [%].
         """
-        for i, share in enumerate(shares):
-            require_within(f"shares[{i}]", share, 0.0, 100.0, "%")
-        found: Array = np.percentile(self.peaks, list(shares), axis=0, method="nearest")
+        levels = [require_within(f"shares[{i}]", share, 0.0, 100.0, "%") for i, share in enumerate(shares)]
+        found: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")
         return found
 
     def __repr__(self) -> str:
@@ -121,7 +120,7 @@ def overturning_intensity(build: Build, low: float, high: float, *, tolerance: f
         ValueError: for a value outside its range, or if the wall overturns at `low` or does not at `high`.
     """
     low, high = require_within("low", low, 0.0, 1e12), require_within("high", high, 0.0, 1e12)
-    require_within("tolerance", tolerance, 1e-9, 0.5)
+    tolerance = require_within("tolerance", tolerance, 1e-9, 0.5)
     if not low < high:
         raise ValueError(f"high = {high:g} is outside the valid range, which is above low = {low:g}")
     peaks = [_peak(build, scale) for scale in (low, high)]
@@ -165,16 +164,10 @@ def require_scales(scales: ArrayLike) -> Array:
     """Scales as an array.
 
     Raises:
-        TypeError: if they are no array of real numbers.
+        TypeError: if they are no real numbers.
         ValueError: unless there is at least one, none is negative, and they increase.
     """
-    try:
-        shape = np.shape(scales)
-    except ValueError:
-        raise TypeError(f"scales = {shown(scales)} is no array of real numbers") from None
-    if len(shape) != 1 or not shape[0]:
-        raise ValueError(f"scales has the shape {shape}; a row of at least one scale is needed")
-    made = require_array("scales", scales, shape)
+    made = require_row("scales", scales, "scale")
     if not (made[0] >= 0 and (np.diff(made) > 0).all()):
         raise ValueError(f"scales = {shown(scales)} has to increase within the valid range 0 and above")
     return made

@@ -23,7 +23,7 @@ from ..problem.contacts import Contacts
 from ..problem.damping import DENSITY, HIGHEST, LEAST
 from ..problem.effects import SideStop
 from ..problem.forms import Groups
-from ..problem.quantities import require_within
+from ..problem.quantities import keep, require_within, spelt
 from ..problem.restitution import Restitution
 from ..result.compare import compare
 from ..result.response import Response
@@ -128,10 +128,10 @@ class Match:
     side_friction: float | None = None
 
     def __post_init__(self) -> None:
-        if self.measure not in MEASURES:
-            raise ValueError(f"measure = {self.measure!r} is none of {', '.join(MEASURES)}")
+        if not isinstance(self.measure, str) or self.measure not in MEASURES:
+            raise ValueError(f"measure = {spelt(self.measure)} is none of {', '.join(MEASURES)}")
         if self.xi_base is not None:
-            require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0)
+            keep(self, xi_base=require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0))
 
     @property
     def target(self) -> float:

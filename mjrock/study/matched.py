@@ -10,7 +10,7 @@ import warnings
 from dataclasses import dataclass
 
 from ..problem.block import Block
-from ..problem.contacts import Contacts
+from ..problem.contacts import Contacts, required_frictions, required_layout
 from ..problem.effects import SideStop
 from ..problem.quantities import require_flag, require_kind, require_whole, require_within
 from ..problem.restitution import Restitution
@@ -82,8 +82,10 @@ def matched_contacts(
     """
     require_kind("wall", wall, Block)
     require_kind("e", e, Restitution)
-    require_within("amplitude", amplitude, 0.01, 0.95)
-    require_within("accuracy", accuracy, 1e-8, 0.1)
+    amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
+    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
+    points, k_base, k_side = required_layout(points, k_base, k_side)
+    friction, side_friction = required_frictions(friction, side_friction)
     if k_side is not None:
         e.require_rebound()
     one = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
@@ -131,8 +133,8 @@ def as_theory(
     require_kind("wall", wall, Block)
     require_kind("e", e, Restitution)
     require_flag("side_stop", side_stop)
-    require_within("amplitude", amplitude, 0.01, 0.95)
-    require_whole("rebounds", rebounds, 1, 6)
+    amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
+    rebounds = require_whole("rebounds", rebounds, 1, 6)
     theory = Restitution.from_geometry(wall).base
     if abs(e.base / theory - 1) > UNLIKE:
         warnings.warn(f"a stiff base gives e_2s = {theory:.4g} of Eq. 2, and not {e.base:.4g}", stacklevel=2)

@@ -72,8 +72,8 @@ def matched_masonry(
     """
     require_kind("masonry", masonry, Masonry)
     require_kind("e", e, Restitution, type(None))
-    require_within("amplitude", amplitude, 0.01, 0.95)
-    require_within("accuracy", accuracy, 1e-8, 0.1)
+    amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
+    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
     pile = Pile.of(masonry)
     e = as_one(pile) if e is None else e
     if pile.sides:

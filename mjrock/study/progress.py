@@ -27,6 +27,7 @@ class Progress:
         self.started = self.spoken = time.monotonic()
         if kept:
             self._say(f"{kept} rows in {store} are kept")
+        self.noted = False
         self.bar = tqdm(total=total, unit="case", desc="campaign", delay=1, disable=None, smoothing=0.05)
 
     def show(self, skipped: int, finished: int, failed: int) -> None:
@@ -44,6 +45,13 @@ class Progress:
             if self.total is not None and rate > 0:
                 parts.append(f"{(self.total - skipped - finished) / rate:.0f} s left")
             self._say(", ".join([*parts, failures] if failures else parts))
+
+    def note(self, text: str) -> None:
+        """Tell the user something about the campaign, once."""
+        if not self.noted:
+            self.noted = True
+            self.bar.clear()
+            self._say(text)
 
     def _say(self, text: str) -> None:
         print(f"campaign: {text}", file=sys.stderr, flush=True)

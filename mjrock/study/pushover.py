@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..problem.case import Case
 from ..problem.contacts import Contacts
 from ..problem.pulling import pulled, yielded
-from ..problem.quantities import ON_ITS_FACE, Array, require_array, require_kind, require_whole, shown
+from ..problem.quantities import ON_ITS_FACE, Array, require_kind, require_row, require_whole, shown
 from ..problem.uplift import Uplift
 from ..scene.wall import wall_scene
 from .tilted import tilted
@@ -82,16 +82,16 @@ def pushover(
     """
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts, type(None))
-    require_whole("points", points, 20, 100_000)
+    points = require_whole("points", points, 20, 100_000)
     asked = np.zeros(0) if rotations is None else require_rotations(rotations)
     if contacts is None:
-        path = np.unique(np.concatenate([_path(case, 0.0, 0.0, int(points)), asked]))
+        path = np.unique(np.concatenate([_path(case, 0.0, 0.0, points), asked]))
         multiplier, moment = _rigid(case, path)
         start = float(multiplier[0])
     else:
         scene, uplift = wall_scene(case, contacts), Uplift.of(case, contacts).rotation
         rest = float(scene.at_rest[0, 2])
-        path = np.unique(np.concatenate([_path(case, rest, uplift, int(points)), asked]))
+        path = np.unique(np.concatenate([_path(case, rest, uplift, points), asked]))
         held = tilted(scene, path)
         if asked.size and len(held.pose) < len(path) and asked[-1] > path[len(held.pose) - 1]:
             raise ValueError(
@@ -115,16 +115,10 @@ def require_rotations(rotations: ArrayLike) -> Array:
     """Rotations as an array.
 
     Raises:
-        TypeError: if they are no array of real numbers.
+        TypeError: if they are no real numbers.
         ValueError: unless there is at least one, and they increase within 0 to pi/2.
     """
-    try:
-        shape = np.shape(rotations)
-    except ValueError:
-        raise TypeError(f"rotations = {shown(rotations)} is no array of real numbers") from None
-    if len(shape) != 1 or not shape[0]:
-        raise ValueError(f"rotations has the shape {shape}; a row of at least one rotation [rad] is needed")
-    made = require_array("rotations", rotations, shape)
+    made = require_row("rotations", rotations, "rotation [rad]")
     if not (made[0] >= 0 and made[-1] <= ON_ITS_FACE and (np.diff(made) > 0).all()):
         raise ValueError(f"rotations = {shown(rotations)} has to increase within the valid range 0 to pi/2 rad")
     return made

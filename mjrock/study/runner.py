@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
-from queue import SimpleQueue
-from threading import Event, Thread
+from queue import Empty, SimpleQueue
+from threading import Thread
 
 import numpy as np
 
@@ -92,37 +93,17 @@ class Runner:
         self.failed += sum(row["status"] == "failed" for row in rows)
         self.progress.show(self.skipped, self.finished, self.failed)
 
-    def here(self, pending: Iterator[Job]) -> None:
-        """Run jobs one after the other in a thread of this process.
+    def here(self, job: Job, reason: object) -> None:
+        """Run a job that can go to no other process, for a reason that the user is told, in a thread of this one.
 
-        The main thread waits for the rows, so that Ctrl-C reaches it also while compiled code runs.
+        The main thread waits for the row, so that Ctrl-C reaches it also while compiled code runs.
         """
-        asked: SimpleQueue[tuple[list[Job], list[Row], Event]] = SimpleQueue()
-        stop = Event()
-
-        def work() -> None:
-            while not stop.is_set():
-                jobs, rows, done = asked.get()
-                for job in jobs:
-                    if not stop.is_set():
-                        rows.append(carry_out(job.task, job.history))
-                done.set()
-
-        Thread(target=work, daemon=True).start()
-        try:
-            while jobs := list(itertools.islice(pending, self.chunk())):
-                rows: list[Row] = []
-                done, written = Event(), 0
-                asked.put((jobs, rows, done))
-                while written < len(jobs):
-                    done.wait(FLUSH)
-                    new = rows[written:]
-                    if new:
-                        self.write(jobs[written : written + len(new)], new)
-                        written += len(new)
-        finally:
-            stop.set()
-            asked.put(([], [], Event()))
+        self.progress.note(f"tasks that no other process can take run in this one, which may die of them: {reason}")
+        rows: SimpleQueue[Row] = SimpleQueue()
+        Thread(target=lambda: rows.put(carry_out(job.task, job.history)), daemon=True).start()
+        while True:
+            with contextlib.suppress(Empty):
+                return self.write([job], [rows.get(timeout=FLUSH)])
 
     def chunk(self) -> int:
         """How many jobs are about CHUNK_SECONDS of work."""

@@ -11,6 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from ..problem.quantities import require_path, spelt
+from ..result.table import guarded
 from .lock import Lock
 from .values import checksum, plain, shown
 
@@ -61,8 +63,8 @@ class Store:
         return f"<Store {self.path}>"
 
     def __init__(self, path: str | Path, *, writing: bool = False) -> None:
-        self.path = Path(path)
         self._lock: Lock | None = None
+        self.path = require_path("path", path)
         if not writing and not self.path.is_file():
             raise FileNotFoundError(f"{self.path}: there is no such campaign")
         if writing:
@@ -93,11 +95,12 @@ class Store:
             FileExistsError: if there is a file at the new path.
             FileNotFoundError: if there is none at the old one.
         """
-        if not Path(damaged).is_file():
+        damaged, path = require_path("damaged", damaged), require_path("path", path)
+        if not damaged.is_file():
             raise FileNotFoundError(f"{damaged}: there is no such campaign")
-        if Path(path).exists():
+        if path.exists():
             raise FileExistsError(f"{path} exists already; rows are rescued into a new file")
-        rows = readable(Path(damaged))
+        rows = readable(damaged)
         with cls(path, writing=True) as store:
             store.add_columns(dict.fromkeys(name for row in rows for name in row if name not in FIXED))
             store.add(rows)
@@ -184,7 +187,7 @@ class Store:
         seen: set[str] = set()
         for name in names:
             if not isinstance(name, str) or not name or '"' in name or "\0" in name or name.lower() in reserved:
-                raise ValueError(f"{name!r} cannot name a column; reserved are {', '.join(reserved)}")
+                raise ValueError(f"{spelt(name)} cannot name a column; reserved are {', '.join(reserved)}")
             plain(name)
             if name.lower() in seen or known.get(name.lower(), name) != name:
                 other = known.get(name.lower(), name)
@@ -262,12 +265,15 @@ class Store:
         return [row for row in self._verified() if all(row[name] == value for name, value in wanted.items())]
 
     def csv(self, *, timings: bool = True) -> str:
-        """The rows as CSV text; without timings it is the same however the campaign went, killed and resumed or not."""
+        """The rows as CSV text; without timings it is the same however the campaign went, killed and resumed or not.
+
+        Text that a spreadsheet would take for a formula has an apostrophe before it.
+        """
         names = [name for name in self.columns if timings or name != "seconds"]
         text = io.StringIO()
-        writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(self.rows())
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(map(guarded, names))
+        writer.writerows([guarded(row[name]) for name in names] for row in self.rows())
         return text.getvalue()
 
     def frame(self) -> pandas.DataFrame:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..problem.quantities import spelt
+
 Value = str | int | float | None
 
 
@@ -35,11 +37,7 @@ def plain(value: object) -> Value:
 
 def shown(value: object) -> str:
     """A value as short text that every table can hold."""
-    try:
-        text = value if isinstance(value, str) else repr(value)
-    except Exception:
-        text = f"a {type(value).__name__}"
-    text = text.encode("utf-8", "backslashreplace").decode()
+    text = value.encode("utf-8", "backslashreplace").decode() if isinstance(value, str) else spelt(value)
     return text if len(text) <= 200 else text[:200] + "..."
 
 

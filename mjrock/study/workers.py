@@ -8,13 +8,17 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from pathlib import Path
+from types import ModuleType
 from typing import Any
+
+from tqdm import tqdm
 
 from .task import Row, Task, carry_out, failed_row
 
@@ -22,7 +26,7 @@ FLUSH = 0.1
 """Time after which rows of a list of tasks are handed over while the next task runs [s]."""
 GUARD = (
     "the worker processes die as they start: they import the script that calls the campaign; let it do so "
-    'below `if __name__ == "__main__":`; or give workers=1'
+    'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
 )
 
 
@@ -32,14 +36,18 @@ class Worker:
     `jobs` is for the campaign to note what the process has got and has not answered yet. `progress` is shared with the
     process. It holds how many tasks it has started, and when it started the last one, in the time of `time.monotonic`
     [s]; infinity if it is idle.
+
+    Args:
+        script: whether the process imports the script that calls the campaign. It has to if the tasks are made of what
+            the script defines. The script then needs `if __name__ == "__main__":`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, script: bool) -> None:
         context = multiprocessing.get_context("spawn")
         self.progress = context.RawArray("d", [0.0, math.inf])
         self.connection, theirs = context.Pipe()
         self.process = context.Process(target=serve, args=(theirs, self.progress))
-        with _uninterrupted():
+        with _uninterrupted(), contextlib.nullcontext() if script else _unscripted():
             self.process.start()
         theirs.close()
         self.ready = False
@@ -100,7 +108,10 @@ class Worker:
         self.process.join()
         self.connection.close()
         code = self.process.exitcode or 0
-        return f"was killed by {signal.Signals(-code).name}" if code < 0 else f"ended with exit status {code}"
+        if code < 0:
+            return f"was killed by {signal.Signals(-code).name}"
+        cause = ", as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold" if code == 1 else ""
+        return f"ended with exit status {code}{cause}"
 
 
 @contextlib.contextmanager
@@ -117,9 +128,26 @@ def _uninterrupted() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+@contextlib.contextmanager
+def _unscripted() -> Iterator[None]:
+    """Start processes that do not import the script: a module without a file stands for it meanwhile."""
+    before = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = before
+
+
 def serve(connection: Connection, progress: Any) -> None:
-    """What a worker process does: carry out lists of tasks until the connection is closed."""
+    """What a worker process does: carry out lists of tasks until the connection is closed, maybe while it starts."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tqdm.set_lock(threading.RLock())  # its own is a semaphore, which a process that is killed would leave behind
+    with contextlib.suppress(EOFError, OSError):  # what a task raises is in its row
+        _serve(connection, progress)
+
+
+def _serve(connection: Connection, progress: Any) -> None:
     rows: list[Row] = []
     lock = threading.Lock()
 
@@ -132,10 +160,7 @@ def serve(connection: Connection, progress: Any) -> None:
     connection.send(None)
     threading.Thread(target=_accompany, args=(hand_over,), daemon=True).start()
     while True:
-        try:
-            content = connection.recv_bytes()
-        except EOFError:
-            return
+        content = connection.recv_bytes()
         try:
             tasks = pickle.loads(content)
         except BaseException as error:
