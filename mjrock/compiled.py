@@ -2,9 +2,10 @@
 
 `compiled` marks a loop for compilation at its first call. The result is stored in the folder that the environment
 variable NUMBA_CACHE_DIR names, or in `__pycache__` beside the module, or in the user's cache folder where the package
-lies on a read-only disk. Where none of them can be written, each process compiles anew. `jitable` marks a small function
-that compiled loops call, and `inlined` one whose call would take longer than its arithmetic; called from Python they run
-as Python. With NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
+lies on a read-only disk. Where none of them can be written, each process compiles anew. `jitable` marks a small
+function that compiled loops call, and `inlined` one whose call would take longer than its arithmetic; called from
+Python they run as Python. With NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python
+with the same results.
 """
 
 from __future__ import annotations
