@@ -7,12 +7,12 @@ from scenes import course
 
 import mjrock as mr
 from mjrock.engine import run as engine_run
-from mjrock.engine.contact import OVERDAMPED
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import short_step
 from mjrock.engine.stepping import fitted_steps, fixed_steps
 from mjrock.geometry.kinematics import gaps
+from mjrock.method import METHOD
 from mjrock.scene.of_case import course_of
 from paper import FIGURE_3, K_N
 
@@ -75,7 +75,7 @@ def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
 
 @pytest.mark.parametrize("share", [0.01, 0.9, 1.1, 30.0])
 def test_a_dashpot_at_a_fixed_step_is_that_of_its_row(wall, share):
-    """A wall that moves straight down on its base, with dashpots of a share of OVERDAMPED, against m a = 2 f.
+    """A wall that moves straight down on its base, with dashpots of a share of `overdamped`, against m a = 2 f.
 
     f = -(k r + c v + m_i a) of each of the two rows, with m_i = h^2 k / 4 + h c / 2, or + h c for a stiff dashpot. A
     stiff dashpot then takes c h / m of the velocity that is left, and never turns it round.
@@ -83,7 +83,7 @@ def test_a_dashpot_at_a_fixed_step_is_that_of_its_row(wall, share):
     h, v = 1e-3, 0.01
     bare = mr.Contacts.from_damping(wall, k_base=1e8, xi_base=0.0)
     k, weight, rest = bare.base.stiffness[0], 2 / (3 * wall.mass), -wall.weight / bare.base.stiffness.sum()
-    c = share * OVERDAMPED / (h * weight)
+    c = share * METHOD.overdamped / (h * weight)
     xi = 0.5 * c / k * bare.base.frequency
     with warnings.catch_warnings(action="ignore"):
         contacts = mr.Contacts.from_damping(wall, k_base=1e8, xi_base=xi)
