@@ -12,7 +12,8 @@ from mjrock.engine import model
 from mjrock.engine import run as engine_run
 from mjrock.engine.model import Engine
 from mjrock.engine.steps import StepError
-from mjrock.scene.wall import HELD_FRICTION, inner_friction
+from mjrock.method import METHOD
+from mjrock.scene.wall import inner_friction
 from paper import K_N
 
 
@@ -192,7 +193,7 @@ def test_the_rows_of_the_wall_are_the_law(one_sided, contacts, wall):
             force = -(k * contact.dist + c * velocity[row] + inertia * acceleration[row])
             # while an edge slides, the elliptic cone adds some of its friction to the normal force
             along = np.hypot(*data.efc_force[row + 1 : row + 3]) if contact.dim == 3 else 0.0
-            mu = HELD_FRICTION if name == "base_1" else inner_friction(wall, contacts)
+            mu = METHOD.held_friction if name == "base_1" else inner_friction(wall, contacts)
             slides = along > 0.999 * mu * data.efc_force[row]
             allowed = 1e-2 if slides else 1e-6
             sliding += slides and name == "base_1"
