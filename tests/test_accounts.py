@@ -15,6 +15,7 @@ from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fixed_steps
 from mjrock.geometry.kinematics import gaps
+from mjrock.method import METHOD
 from mjrock.scene.wall import wall_scene
 
 SQUAT = mr.Block.from_size(2.0, 2.0)
@@ -106,6 +107,27 @@ def test_the_ledger_closes_for_a_block_that_a_pulse_slides(accuracy):
     taken = run.ledger.friction[-1]
     assert taken > 0.99 * run.ledger.ground[-1] > 1000.0
     assert np.abs(run.energy_residual).max() < 0.2 * np.sqrt(accuracy) * taken
+
+
+@pytest.mark.parametrize(("timestep", "most"), [(1e-4, 1e-5), (None, 1e-3)])
+@pytest.mark.parametrize("held_masses", [1e1, 1e3])
+def test_the_ledger_closes_whatever_the_method(timestep, most, held_masses, wall, contacts):
+    """The accounts have the rows of the run: light friction rows creep, and friction takes what that costs."""
+    case, method = mr.Case(wall, 0.5 * wall.alpha, 1.0), METHOD._replace(held_masses=held_masses)
+    run = mr.simulate(case, contacts, timestep, accuracy=1e-4, ledger=True, method=method)
+    assert np.abs(run.energy_residual).max() < most * run.energy[0]
+
+
+def test_a_fixed_step_slides_by_the_method_too():
+    """With contacts that are never taken to slide it is the run of the rows."""
+    contacts = mr.Contacts.from_damping(SQUAT, k_base=5e8, xi_base=0.05, friction=0.3)
+    case = mr.Case(SQUAT, 0.0, 0.5, side_stop=False, motion=mr.GroundMotion.sine(-6.0, 0.5))
+    coulomb = mr.simulate(case, contacts, 1e-4, coulomb=True)
+    never = mr.simulate(case, contacts, 1e-4, coulomb=True, method=METHOD._replace(slides=1e9))
+    with pytest.warns(UserWarning, match="contacts that slide"):
+        rows = mr.simulate(case, contacts, 1e-4, coulomb=False)
+    np.testing.assert_allclose(never.pose, rows.pose, rtol=0, atol=1e-9)
+    assert np.abs(coulomb.pose - rows.pose).max() > 1e-6
 
 
 def test_on_ice_a_pushed_block_has_the_energy_that_was_put_in(monkeypatch):

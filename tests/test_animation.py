@@ -166,7 +166,7 @@ def test_blocks_of_masonry_are_drawn_where_they_are():
     case = SimpleNamespace(masonry=SimpleNamespace(blocks=[block(-2.0, True), block(0.0, False), block(2.0, False)]))
     poses = np.zeros((len(response.t), 2, 3))
     poses[-1, 1] = [0.1, 0.0, np.pi / 2]
-    stacked = dataclasses.replace(response, case=case, compliant=(response.energy, poses))
+    stacked = dataclasses.replace(response, case=case, pose=poses)
     bodies = Bodies.of(stacked)
     np.testing.assert_array_equal(bodies.fixed[0], corners - np.array([0, 2]))
     np.testing.assert_allclose(bodies.placed(-1, 0, bodies.outlines[0]), corners, atol=1e-12)

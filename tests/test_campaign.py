@@ -16,7 +16,6 @@ import pytest
 from campaign_tasks import Square
 
 import mjrock as mr
-from mjrock.study import batch, runner
 
 ENVIRONMENT = os.environ | {
     "PYTHONPATH": os.pathsep.join(filter(None, [str(Path(__file__).parent), os.environ.get("PYTHONPATH")]))
@@ -214,30 +213,22 @@ def test_kill_and_resume(tmp_path):
     assert table(path) == expected
 
 
-def test_threads_of_the_engine(tmp_path, wall, contacts, monkeypatch):
-    """Fixed-step runs of one geometry: the same rows by MuJoCo's threads, by processes, and one by one."""
+def test_runs_with_a_fixed_step(tmp_path, wall, contacts):
+    """Runs of one geometry: the same rows by processes, and one by one."""
 
     def build(polarity, scale):
         motion = mr.GroundMotion.sine(-2.5, 0.9).polarities[polarity].scaled(scale)
         return mr.Analysis(mr.Case(wall, 0.0, 1.5, motion=motion), contacts=contacts, options={"timestep": 1e-3})
 
     grid = mr.Grid(build, polarity=[0, 1], scale=np.linspace(0.5, 1.5, 12).tolist())
-    batches = []
-    original = batch.simulate_batch
-    monkeypatch.setattr(
-        batch, "simulate_batch", lambda cases, *a, **k: batches.append(len(cases)) or original(cases, *a, **k)
+    one_by_one, by_processes = (
+        table(mr.campaign(grid, tmp_path / f"{workers}.sqlite", workers=workers)) for workers in (1, 2)
     )
-    tables = [table(mr.campaign(grid, tmp_path / "1.sqlite", workers=1))]
-    assert not batches
-    tables.append(table(mr.campaign(grid, tmp_path / "2.sqlite", workers=2)))
-    assert sum(batches) == 24
-    monkeypatch.setattr(runner, "START_UP", -1e9)  # processes, whatever the measurement says
-    tables.append(table(mr.campaign(grid, tmp_path / "3.sqlite", workers=2)))
-    assert sum(batches) < 48
-    assert tables[0] == tables[1] == tables[2]
+    assert one_by_one == by_processes
+    assert len(one_by_one.splitlines()) == 1 + 24
 
 
-def test_a_mixed_campaign_leaves_the_threads(tmp_path, wall, e, contacts):
+def test_a_campaign_of_several_solvers(tmp_path, wall, e, contacts):
     case = mr.Case(wall, 0.02, 0.5)
     tasks = [mr.Analysis(case, contacts=contacts, options={"timestep": h}) for h in (1e-3, 5e-4)]
     tasks.append(mr.Analysis(case, "analytical", e=e))

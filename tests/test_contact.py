@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.contact import IMPEDANCE_RANGE, OVERDAMPED, pair_values, row, set_rows
+from mjrock.engine.contact import IMPEDANCE_RANGE, pair_values, row
+from mjrock.engine.rows import Law, RowInertia, Rows, Step, set_rows
+from mjrock.method import METHOD
 
 K, C, H, W = 1.5e8, 5.3e5, 1e-3, 2 / (3 * 5040)
 
@@ -53,33 +55,33 @@ def test_only_a_constant_impedance_has_a_stiffness(solimp):
 
 def test_a_row_is_newmarks_where_it_can_be():
     """The row of the text and of the loop is `contact_parameters`, where nothing has to be held back."""
-    dashpot, inertia = row(K, C, H, W, 0.25, 0.0)
+    dashpot, inertia = row(K, C, H, W, 0.25, 0.0, METHOD.overdamped)
     p = mr.contact_parameters(K, C, timestep=H, inverse_weight=W, newmark_beta=0.25)
     assert (dashpot, inertia) == (C, p.inertia)
     assert pair_values(K, dashpot, inertia, W) == (*p.solref, p.impedance)
 
 
 def test_the_least_inertia_is_just_not_clamped():
-    _, inertia = row(1e8, 0.0, 1e-7, W, 0.25, 0.0)
+    _, inertia = row(1e8, 0.0, 1e-7, W, 0.25, 0.0, METHOD.overdamped)
     assert pair_values(1e8, 0.0, inertia, W)[2] == pytest.approx(IMPEDANCE_RANGE[0], rel=1e-6)
     with pytest.raises(ValueError, match="impedance"):
         mr.contact_parameters(1e8, 0.0, timestep=1e-7, inverse_weight=W, newmark_beta=0.25)
 
 
 def test_a_stiff_dashpot_acts_at_the_end_of_the_step():
-    """Above OVERDAMPED it takes h c for h c / 2, and never more than half the inertia that MuJoCo represents."""
+    """Above `overdamped` it takes h c for h c / 2, and never more than half the inertia that MuJoCo represents."""
     for share, inertia_over_hc in ((0.99, 0.5), (1.01, 1.0)):
-        c = share * OVERDAMPED / (H * W)
-        dashpot, inertia = row(1.0, c, H, W, 0.25, 0.0)
+        c = share * METHOD.overdamped / (H * W)
+        dashpot, inertia = row(1.0, c, H, W, 0.25, 0.0, METHOD.overdamped)
         assert dashpot == c
         assert inertia == pytest.approx(inertia_over_hc * H * c, rel=1e-6)
-    dashpot, inertia = row(1.0, 1e30, H, W, 0.25, 0.0)
+    dashpot, inertia = row(1.0, 1e30, H, W, 0.25, 0.0, METHOD.overdamped)
     assert inertia == pytest.approx(H * dashpot)
     assert pair_values(1.0, dashpot, inertia, W)[2] < IMPEDANCE_RANGE[1]
 
 
 def test_ringing_is_an_extra_dashpot():
-    dashpot, inertia = row(K, C, H, W, 0.5, 0.3)
+    dashpot, inertia = row(K, C, H, W, 0.5, 0.3, METHOD.overdamped)
     assert dashpot == pytest.approx(C + 0.3 * H * K)
     assert inertia == pytest.approx(H * dashpot / 2 + 0.5 * H**2 * K)
 
@@ -88,14 +90,17 @@ def test_ringing_is_an_extra_dashpot():
 def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
     """A friction row has impratio times the inertia of its normal row, here 1 kg and 2 kg. It is 1 without friction."""
     c = np.array([1.0, 2.0]) * 2 / H
-    rows = np.zeros((2, 2)), np.zeros((2, 5)), np.zeros((2, 2))
-    weight, none = np.full(2, 0.01), np.zeros(2)
-    found = set_rows(np.full(2, 1e-9), c, weight, np.array(held), 0.0, H, none, none, np.full(2, 0.2), *rows)
+    rows, none = Rows.of(2), np.zeros(2)
+    law = Law(np.full(2, 1e-9), c, np.where(np.array(held) > 0, 0.5, 0.0))
+    inertia = RowInertia(
+        weight=np.full(2, 0.01), overdamped=np.full(2, METHOD.overdamped), friction=np.array(held), growth=0.0
+    )
+    found = set_rows(law, inertia, Step(H, none, none), rows)
     assert found == pytest.approx(impratio, rel=1e-9)
-    impedance = rows[1][:, 0]
+    impedance = rows.solimp[:, 0]
     assert impedance == pytest.approx([0.01 / 1.01, 0.02 / 1.02])
     for i in range(2):
-        assert rows[2][i, 1] == pytest.approx(-impedance[i] / H if held[i] else 0.0)
+        assert rows.solreffriction[i, 1] == pytest.approx(-impedance[i] / H if held[i] else 0.0)
 
 
 def ball(k, c, timestep, beta, mass=3.0):

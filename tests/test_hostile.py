@@ -122,15 +122,14 @@ CALLS = {
         },
     ),
     "simulate, fitted": (mr.simulate, {"case": SHORT, "contacts": CONTACTS, "accuracy": 1e-2, "output_step": 1e-3}),
-    "simulate_batch": (
-        mr.simulate_batch,
-        {"cases": [SHORT], "contacts": CONTACTS, "timestep": 1e-3, "output_step": 1e-2, "ledger": False},
-    ),
     "solve_analytical": (mr.solve_analytical, {"case": SHORT, "e": E, "rtol": 1e-8, "output_step": 1e-3, "rest": 1e-9}),
     "solve_compliant": (mr.solve_compliant, {"case": SHORT, "contacts": CONTACTS, "rtol": 1e-6, "output_step": 1e-3}),
     "compare": (mr.compare, {"reference": RESPONSE, "candidate": RESPONSE}),
     "wall_mjcf": (mr.wall_mjcf, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
     "wall_scene": (mr.wall_scene, {"case": SHORT, "contacts": CONTACTS}),
+    "scene_of": (mr.scene_of, {"case": SHORT, "contacts": CONTACTS}),
+    "scene_of, masonry": (mr.scene_of, {"case": mr.MasonryCase(COLUMN, 0.02), "contacts": None}),
+    "mjcf_of": (mr.mjcf_of, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
     "overturning_intensity": (
         mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1},
     ),
@@ -290,7 +289,7 @@ def test_every_public_entry_is_tried():
         (lambda: mr.Block(True, True), "half thickness b = True of type bool is not a real number"),
         (lambda: mr.Block.from_slenderness(-1, 2.0), "slenderness h/b = -1 is outside the valid range 1 to 200"),
         (lambda: mr.Case(WALL, 0.0, 1.0, side_stop="no"), "side_stop = 'no' of type str is neither True nor False"),
-        (lambda: mr.simulate(CONTACTS, SHORT), r"case and contacts are swapped: simulate\(case, contacts\)"),
+        (lambda: mr.simulate(CONTACTS, SHORT), "case and contacts are swapped: the case comes first"),
         (lambda: mr.simulate(SHORT, CONTACTS, start=0), "start = 0 of type int is not a pose and a velocity"),
         (
             lambda: mr.simulate(SHORT, CONTACTS, start=([[0, 0, math.nan]], [[0, 0, 0]])),
@@ -300,7 +299,7 @@ def test_every_public_entry_is_tried():
             lambda: mr.simulate(SHORT, CONTACTS, start=([[0, 0, 40]], [[0, 0, 0]])),
             "start, rotation = 40 rad is outside the valid range",
         ),
-        (lambda: mr.simulate_batch([SHORT], CONTACTS, 1e-3, output_step=-1), "output_step = -1 s is outside"),
+        (lambda: mr.simulate(SHORT, CONTACTS, 1e-3, output_step=-1), "output_step = -1 s is outside"),
         (
             lambda: mr.simulate(mr.Case(WALL, 0.05, 1e5), CONTACTS, 1e-5),
             r"the steps of this run would be 1e\+10; at most 5e\+07 fit into memory; take a longer timestep",

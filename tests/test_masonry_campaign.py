@@ -41,8 +41,8 @@ def test_what_tells_tasks_apart():
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [
-        (lambda: mr.MasonryAnalysis(columns(1)), "case = .* is not a MasonryCase"),
-        (lambda: analysis(1.0, precision=2), "options: there is no precision; valid: timestep, accuracy"),
+        (lambda: mr.MasonryAnalysis(columns(1)), "case = .* is not a Case or MasonryCase"),
+        (lambda: analysis(1.0, precision=2), "MuJoCo has no option precision; it has timestep, accuracy"),
         (lambda: mr.MasonryAnalysis(mr.MasonryCase(columns(1), 1.0), labels=3), "labels = 3 of type int is no mapping"),
     ],
 )

@@ -10,6 +10,7 @@ from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
 from mjrock.geometry.kinematics import gaps
+from mjrock.scene.of_case import course_of
 
 PULSE = mr.GroundMotion.sine(2.0, 0.7)
 STRONG = mr.GroundMotion.sine(3.0, 0.9)
@@ -24,7 +25,8 @@ def against_explicit(masonry, duration, motion, accuracy, h=2e-6, vertical=None)
     """Largest errors of peak rotation and of rotation, over the peaks of the explicit integration."""
     case = mr.MasonryCase(masonry, duration, motion, vertical=vertical)
     answer = mr.simulate(case, accuracy=accuracy)
-    t, pose = explicit(mr.masonry_scene(case), duration, h, round(1e-3 / h))
+    scene = mr.masonry_scene(case)
+    t, pose = explicit(scene, course_of(case, scene), h, round(1e-3 / h))
     theta = pose[: len(answer.t), :, 2]
     assert t[: len(answer.t)] == pytest.approx(answer.t, abs=1e-9)
     peaks = np.abs(theta).max(axis=0)

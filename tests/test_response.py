@@ -142,7 +142,7 @@ def test_a_wall_rests_while_its_energy_lifts_no_edge(wall, share):
     case = mr.Case(wall, share * undamped.uplift_rotation(wall), 2.0, side_stop=False)
     for run in (mr.simulate(case, undamped, 2e-4), mr.simulate(case, undamped)):
         assert run.outcome is (mr.Outcome.AT_REST if share < 1 else mr.Outcome.TIME_ENDED)
-        lifted = gaps(wall_scene(case, undamped).points, run.pose[:, 0]).max()
+        lifted = gaps(wall_scene(case, undamped).places, run.pose[:, 0]).max()
         assert bool(lifted > 0) is (share > 1)
         if share < 1:
             np.testing.assert_allclose(run.energy, share**2 * Uplift.of(run.case, undamped).energy, rtol=5e-3)

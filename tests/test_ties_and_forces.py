@@ -6,12 +6,12 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from scenes import course
 
 import mjrock as mr
 from mjrock.engine.accounts import ledger
 from mjrock.engine.mjcf import pair_rows, scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
-from mjrock.engine.pace import short_step
 from mjrock.engine.stepping import fitted_steps, fixed_steps
 from mjrock.scene.wall import wall_scene
 
@@ -21,8 +21,8 @@ def fields(scene):
 
 
 def scene_with(scene, **changed):
-    """A scene with other parts, released from rest where it then stands."""
-    return mr.Scene(**fields(scene) | {"settled": None, "release": None} | changed)
+    """A scene with other parts, which settles anew."""
+    return mr.Scene(**fields(scene) | {"settled": None} | changed)
 
 
 def tie(anchor, held, *, k=2e6, slack=0.0, strength=math.inf, name="tie"):
@@ -45,33 +45,36 @@ def pull(force, point, name="pull"):
     return {"force_names": (name,), "force_body": [0], "force_point": [point], "force": [force]}
 
 
-def run(scene, accuracy=1e-3, timestep=None):
+def run(scene, course, accuracy=1e-3, timestep=None):
     with engine_of(scene) as engine:
-        h = short_step(scene, accuracy) if timestep is None else timestep
         if timestep is None:
-            engine.place(scene.started)
-            return fitted_steps(engine, scene, accuracy)
-        engine.follow(h, pair_rows(scene, h, 0.25))
-        engine.release(scene.started)
-        return fixed_steps(engine, scene, h, 0.25)
+            engine.place(course)
+            return fitted_steps(engine, scene, course, accuracy)
+        engine.follow(timestep, pair_rows(scene, timestep, 0.25))
+        engine.release(course)
+        return fixed_steps(engine, scene, course, timestep, 0.25)
+
+
+def away(scene):
+    """Half a second that starts at 0.5 m/s outwards."""
+    return course(scene, [[0.5, 0.0, 0.0]], 0.5)
 
 
 @pytest.fixture
 def standing(wall, contacts):
-    """The wall on its base, without a side stop, for a second."""
+    """The wall on its base, without a side stop."""
     return wall_scene(mr.Case(wall, 0.0, 1.0, side_stop=False), contacts)
 
 
 @pytest.fixture
 def sliding(standing):
-    """The wall on a base without friction, which slides at 0.5 m/s away from an anchor 5 m behind its centroid."""
+    """The wall on a base without friction, tied to an anchor 5 m behind its centroid."""
     rest = standing.rest[0]
-    smooth = scene_with(standing, friction=[0.0, 0.0], **tie((-5.0, rest[1]), ((0.0, 0.0), rest), slack=0.02))
-    return smooth.released(smooth.at_rest, np.array([[0.5, 0.0, 0.0]]), 0.5, None)
+    return scene_with(standing, friction=[0.0, 0.0], **tie((-5.0, rest[1]), ((0.0, 0.0), rest), slack=0.02))
 
 
 def test_what_is_not_there_is_not_in_the_text(standing):
-    text = released_mjcf(standing, 1e-3)
+    text = released_mjcf(standing, course(standing), 1e-3)
     for word in ("tendon", "spatial", "actuator", "site"):
         assert word not in text
     model = mujoco.MjModel.from_xml_string(text)
@@ -81,7 +84,7 @@ def test_what_is_not_there_is_not_in_the_text(standing):
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-5])
 def test_a_tie_stops_a_mass_as_a_spring_does(sliding, accuracy):
     """After the slack, half a sine: x = slack + v/omega sin(omega t)."""
-    steps = run(sliding, accuracy)
+    steps = run(sliding, away(sliding), accuracy)
     x, omega = steps.pose[:, 0], math.sqrt(2e6 / sliding.mass[0])
     inside = steps.t - 0.02 / 0.5
     pulled = (inside > 0) & (inside < math.pi / omega)
@@ -89,7 +92,7 @@ def test_a_tie_stops_a_mass_as_a_spring_does(sliding, accuracy):
     exact = np.where(inside > math.pi / omega, 0.02 - 0.5 * (inside - math.pi / omega), exact)
     assert np.abs(x - exact).max() < 2 * accuracy * 0.5 / omega
     assert steps.touches >= 1
-    assert steps.before[-1, 0] == pytest.approx(-0.5, rel=accuracy)
+    assert steps.record.before[-1, 0] == pytest.approx(-0.5, rel=accuracy)
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
@@ -97,29 +100,29 @@ def test_a_yielding_tie_takes_its_strength_times_its_plastic_elongation(sliding,
     """m v^2/2 = T^2/(2 k) + T u at the farthest, and T^2/(2 k) is given back."""
     strength = 2e4
     scene = mr.Scene(**fields(sliding) | {"tie_strength": [strength]})
-    steps = run(scene, accuracy)
-    books = ledger(scene, steps)
+    steps = run(scene, away(scene), accuracy)
+    books = ledger(scene, away(scene), steps)
     given = 0.5 * scene.mass[0] * 0.5**2
     elastic = strength**2 / (2 * 2e6)
     assert books.ties["tie"][-1] == pytest.approx(given - elastic, rel=2 * accuracy)
     farthest = 0.02 + strength / 2e6 + (given - elastic) / strength
     assert steps.pose[:, 0].max() == pytest.approx(farthest, rel=accuracy)
-    assert 0.5 * scene.mass[0] * steps.before[-1, 0] ** 2 == pytest.approx(elastic, rel=20 * accuracy)
+    assert 0.5 * scene.mass[0] * steps.record.before[-1, 0] ** 2 == pytest.approx(elastic, rel=20 * accuracy)
     assert np.abs(books.residual).max() < 3 * accuracy * given
 
 
 def test_stock_mujoco_yields_as_the_ledger_says(sliding):
     """The text alone has the tie, its slack and its strength: MuJoCo's own plastic state is the ledger's."""
     scene = mr.Scene(**fields(sliding) | {"tie_strength": [2e4]})
-    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, 1e-4))
+    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, away(scene), 1e-4))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    steps = run(scene, timestep=1e-4)
+    steps = run(scene, away(scene), timestep=1e-4)
     for pose in steps.pose:
         np.testing.assert_allclose(data.qpos, pose, rtol=0, atol=1e-12)
         mujoco.mj_step(model, data)
     elongation = float(np.ravel(data.plastic)[1]) - scene.tie_length[0]
-    assert ledger(scene, steps).ties["tie"][-1] == pytest.approx(2e4 * elongation, rel=1e-6)
+    assert ledger(scene, away(scene), steps).ties["tie"][-1] == pytest.approx(2e4 * elongation, rel=1e-6)
     assert elongation > 0.02
 
 
@@ -133,7 +136,7 @@ def test_a_force_keeps_its_direction_and_follows_its_point(standing, wall):
     k, weight = standing.k[0], wall.weight
     stiffness = 2 * k * wall.b**2 - weight * wall.h
     assert lean == pytest.approx(force * 2 * wall.h / stiffness, rel=1e-4)
-    steps = run(pushed)
+    steps = run(pushed, course(pushed))
     # long steps hold the edges with dashpots, and each correction of their creep stirs the wall a little
     assert np.abs(steps.pose[:, 2] / lean - 1).max() < 3e-4
     assert np.abs(steps.pose[:, 0] - pushed.at_rest[0, 0]).max() < 1e-5
@@ -143,7 +146,7 @@ def test_a_force_keeps_its_direction_and_follows_its_point(standing, wall):
 def test_the_multiplier_at_which_rocking_starts(standing, wall, share, rocks):
     """lambda_0: a force at the top overturns where F 2h = m g b."""
     force = share * wall.weight * wall.b / (2 * wall.h)
-    pushed = scene_with(standing, duration=20.0, **pull((force, 0.0), (0.0, wall.h)))
+    pushed = scene_with(standing, **pull((force, 0.0), (0.0, wall.h)))
     if rocks:
         with pytest.raises(ValueError, match="do not stand"):
             _ = pushed.at_rest
@@ -158,13 +161,14 @@ def test_energy_of_forces_and_ties_adds_up(standing, wall):
     )
     scene = scene_with(standing, **parts)
     tilted = scene.lowered(wall.pose(np.array([-0.4 * wall.alpha])))
-    scene = scene.released(tilted, np.zeros((1, 3)), 3.0, None)
+    released = course(scene, duration=3.0, pose=tilted)
+    energy = released.energy(scene)
     for accuracy in (1e-3, 1e-5):
-        steps = run(scene, accuracy)
-        books = ledger(scene, steps)
-        assert np.abs(books.residual).max() < 5 * accuracy * scene.release_energy + 2e-4 * scene.release_energy
+        steps = run(scene, released, accuracy)
+        books = ledger(scene, released, steps)
+        assert np.abs(books.residual).max() < 5 * accuracy * energy + 2e-4 * energy
     assert steps.touches > 5
-    assert books.elastic.max() > 0.1 * scene.release_energy  # the tie was taut
+    assert books.elastic.max() > 0.1 * energy  # the tie was taut
 
 
 @pytest.mark.parametrize(

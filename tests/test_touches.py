@@ -16,8 +16,9 @@ from mjrock.engine.sliding import Sliding
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
-from mjrock.engine.touches import ABRUPT, FADED, Openings, Springs, Touches, hardest, predict
+from mjrock.engine.touches import Openings, Springs, Touches, hardest, predict
 from mjrock.geometry.kinematics import gaps
+from mjrock.method import METHOD
 from mjrock.scene.wall import wall_scene
 
 BLOCK = mr.Block.from_size(2.0, 2.0)
@@ -69,13 +70,14 @@ def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
 def test_a_faint_touch_is_not_met(ice, share):
-    """It is met where noticing it a step h late misplaces more than FADED accuracy x energy in one of the contacts.
+    """It is met where noticing it a step h late misplaces too much in one of the contacts.
 
-    That is k (v h)^2 / 4 in the spring and c h v^2 in the dashpot.
+    Too much is the share `faded` of accuracy x energy. What it misplaces is k (v h)^2 / 4 in the spring and c h v^2 in
+    the dashpot.
     """
     h = 2 * short_step(ice, ACCURACY)
     misplaced = (0.25 * ice.k[-1] * h + ice.c[-1]) * h * SPEED**2
-    after, _ = one_step(ice, 0.5 * h * SPEED, h, share * misplaced / (FADED * ACCURACY))
+    after, _ = one_step(ice, 0.5 * h * SPEED, h, share * misplaced / (METHOD.faded * ACCURACY))
     assert after.touches == (1 if share < 1 else 0)
 
 
@@ -88,11 +90,11 @@ def test_no_touch_is_predicted_from_an_abrupt_step(ice):
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
 def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
-    """The stop takes a share of ABRUPT of the speed of the last touch in one step. Speeds weigh with the masses."""
+    """The stop takes a share of `abrupt` of the speed of the last touch in one step. Speeds weigh with the masses."""
     h = short_step(ice, ACCURACY)
     _, record = one_step(ice, -1e-4, h)
     change = ice.masses @ (record.after[0] - record.before[0]) ** 2
-    after, _ = one_step(ice, -1e-4, h, change / (share * ABRUPT) ** 2)
+    after, _ = one_step(ice, -1e-4, h, change / (share * METHOD.abrupt) ** 2)
     assert bool(after.abrupt) is (share > 1)
 
 

@@ -65,7 +65,8 @@ def contact_work(scene: Scene, steps: Steps) -> ContactWork:
     groups = tuple(dict.fromkeys(scene.group))
     work = Work(np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t)), np.zeros(2))
     number = np.array([groups.index(name) for name in scene.group])
-    _contact_work(points_of(scene), number, steps.record, steps.windows, steps.kinds, Room.of(scene), work)
+    points, room = points_of(scene, steps.method), Room.of(scene)
+    _contact_work(points, number, steps.record, steps.windows, steps.kinds, room, work)
     lift, pressed = work.impulses.tolist()
     return ContactWork(groups, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
 

@@ -17,7 +17,7 @@ from ..scene.course import Course
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
 from .caveats import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
-from .mjcf import FixedRows, pair_rows
+from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
@@ -106,8 +106,8 @@ def simulate(
         timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
         require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
         warn_if_coarse(scene, timestep)
-        rows = pair_rows(scene, timestep, newmark_beta, method)
-        run, settings = fixed(asked, scene, course, timestep, newmark_beta, rows, coulomb=coulomb is True)
+        coulombs = coulomb is True
+        run, settings = fixed(asked, scene, course, timestep, newmark_beta, coulomb=coulombs, method=method)
         stride = max(1, round(output_step / timestep)) if output_step else 1
         response = run.response(None, stride, ledger, settings)
         advice = "take a shorter timestep"
@@ -146,7 +146,14 @@ def fitted(
 
 
 def fixed(
-    asked: Asked, scene: Scene, course: Course, timestep: float, newmark_beta: float, rows: FixedRows, *, coulomb: bool
+    asked: Asked,
+    scene: Scene,
+    course: Course,
+    timestep: float,
+    newmark_beta: float,
+    *,
+    coulomb: bool,
+    method: Method,
 ) -> tuple[Run, dict[str, Any]]:
     """A run at one step, and what it took.
 
@@ -155,10 +162,10 @@ def fixed(
     """
     try:
         with engine_of(scene) as engine:
-            engine.follow(timestep, rows)
+            engine.follow(timestep, pair_rows(scene, timestep, newmark_beta, method))
             engine.release(course)
             begun = time.perf_counter()
-            steps = fixed_steps(engine, scene, course, timestep, newmark_beta, coulomb=coulomb)
+            steps = fixed_steps(engine, scene, course, timestep, newmark_beta, coulomb=coulomb, method=method)
         took = time.perf_counter() - begun
         run = Run.judged(asked, scene, course, steps)
     except StepError as error:

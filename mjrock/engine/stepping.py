@@ -59,11 +59,18 @@ def fitted_steps(
 
     record = _recorded(engine, course.duration, advance)
     kind = (record.h * pace.frequency >= method.smooth).astype(np.int64)
-    return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches)
+    return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method)
 
 
 def fixed_steps(
-    engine: Engine, scene: Scene, course: Course, timestep: float, newmark_beta: float, *, coulomb: bool = False
+    engine: Engine,
+    scene: Scene,
+    course: Course,
+    timestep: float,
+    newmark_beta: float,
+    *,
+    coulomb: bool = False,
+    method: Method = METHOD,
 ) -> Steps:
     """Steps of one length, until the duration of the course or until a body lies on its face.
 
@@ -74,12 +81,13 @@ def fixed_steps(
         newmark_beta: Newmark's beta of the rows [-].
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`; without it they have the
             rows of the model text.
+        method: the constants of the method, with which the rows were made.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, problem, done = engine.memory, Problem.of(scene, course), 0
-    sliding, released_on = Sliding.of(problem.points, coulomb=coulomb), engine.closed
+    memory, problem, done = engine.memory, Problem.of(scene, course, method), 0
+    sliding, released_on = Sliding.of(problem.points, coulomb=coulomb, method=method), engine.closed
     frames = frames_of(memory.pose, problem.points.places.freedom)
     if sliding.coulomb:
         release(memory, problem, sliding, frames, memory.velocity + 0.5 * timestep * memory.acceleration)
@@ -92,7 +100,8 @@ def fixed_steps(
 
     record, contacts = _recorded(engine, course.duration, advance), len(scene.k)
     kind = np.zeros(len(record.t), dtype=np.int64)
-    return Steps(record, Kinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on))
+    kinds = Kinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on)
+    return Steps(record, kinds, method=method)
 
 
 def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple[int, float, bool]]) -> Record:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..method import METHOD, Method
 from ..problem.quantities import Array, Flags, Integers
 from ..result.response import State
 from ..result.samples import interpolated
@@ -81,11 +82,13 @@ class Steps:
         record: the steps.
         kinds: their rows.
         touches: how many touches were met with a short step.
+        method: the constants of the method by which they were made.
     """
 
     record: Record
     kinds: Kinds
     touches: int = 0
+    method: Method = METHOD
 
     @property
     def t(self) -> Array:

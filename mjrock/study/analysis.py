@@ -163,13 +163,14 @@ def _of_masonry(response: Response) -> tuple[object, ...]:
     )
 
 
+@dataclass(frozen=True, repr=False)
 class MasonryAnalysis(Analysis):
-    """`Analysis` of masonry by MuJoCo, with the arguments in this order."""
+    """`Analysis` of masonry by MuJoCo, with the arguments case, options and labels."""
 
-    def __init__(
-        self, case: MasonryCase, options: Mapping[str, object] | None = None, labels: Mapping[str, object] | None = None
-    ) -> None:
-        super().__init__(case, options={} if options is None else options, labels={} if labels is None else labels)
+    case: MasonryCase
+    solver: str = field(default="MuJoCo", init=False)
+    e: None = field(default=None, init=False)
+    contacts: None = field(default=None, init=False)
 
 
 def save_history(response: Response, path: Path) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.scene.wall import standing_wall
+from mjrock.method import METHOD
 from paper import FIGURE_3, FIGURE_3_XI, K_N
 
 
@@ -57,22 +57,19 @@ class TestVerification:
             law, run = mr.solve_compliant(case, contacts), mr.simulate(case, contacts, accuracy=1e-4)
             assert run.impacts[0].restitution == pytest.approx(law.impacts[0].restitution, abs=1e-3)
 
-    def test_a_base_that_slips_fails(self, one_sided, contacts, monkeypatch):
+    def test_a_base_that_slips_fails(self, one_sided, contacts):
         """The twin that must fail: with mu = 1 the side impact throws the base along."""
-        monkeypatch.setattr("mjrock.scene.wall.HELD_FRICTION", 1.0)
-        monkeypatch.setattr("mjrock.scene.wall.standing_wall", standing_wall.__wrapped__)
-        found = mr.compare(mr.solve_compliant(one_sided, contacts), mr.simulate(one_sided, contacts, 1e-4))
+        slippery = mr.simulate(one_sided, contacts, 1e-4, method=METHOD._replace(held_friction=1.0))
+        found = mr.compare(mr.solve_compliant(one_sided, contacts), slippery)
         assert found.restitution[0, 1] < 0.9 * found.restitution[0, 0]
 
     @pytest.mark.slow
-    def test_friction_is_not_what_limits_the_agreement(self, one_sided, contacts, monkeypatch):
+    def test_friction_is_not_what_limits_the_agreement(self, one_sided, contacts):
         """At a step of 10 us friction coefficient and row inertia can be varied a hundredfold without effect."""
         exact = mr.solve_compliant(one_sided, contacts).restitution[0]
-        monkeypatch.setattr("mjrock.scene.wall.standing_wall", standing_wall.__wrapped__)
         for mu, masses in ((10.0, 1e3), (30.0, 1e1), (30.0, 1e3), (30.0, 1e5), (1000.0, 1e3)):
-            monkeypatch.setattr("mjrock.scene.wall.HELD_FRICTION", mu)
-            monkeypatch.setattr("mjrock.scene.scene.HELD_MASSES", masses)
-            run = mr.simulate(mr.Case(FIGURE_3, one_sided.theta0, 1.2), contacts, 1e-5)
+            method = METHOD._replace(held_friction=mu, held_masses=masses)
+            run = mr.simulate(mr.Case(FIGURE_3, one_sided.theta0, 1.2), contacts, 1e-5, method=method)
             assert run.restitution[0] == pytest.approx(exact, rel=0.002)
 
 

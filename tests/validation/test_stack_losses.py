@@ -15,6 +15,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.problem.pile import Pile
+from mjrock.scene.of_case import course_of
 from mjrock.theory.impact import as_one
 
 
@@ -46,7 +47,8 @@ def test_two_solvers_agree_on_what_a_stack_loses(blocks, matched, expected):
     velocity, swing = pile.rising(0.5)
     case = mr.MasonryCase(masonry, 1.75 * swing, velocity=velocity)
     answer = mr.simulate(case, accuracy=1e-5)
-    _, poses = explicit(mr.masonry_scene(case), case.duration)
+    scene = mr.masonry_scene(case)
+    _, poses = explicit(scene, course_of(case, scene))
     found, reference = lost(pile, answer.pose), lost(pile, poses)
     assert found == pytest.approx(reference, abs=1e-3)
     assert found == pytest.approx(expected, abs=1e-3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine import loop
+from mjrock.engine import loop, sticking
 from paper import FIGURE_3
 
 FIRST = 5
@@ -41,6 +41,6 @@ def test_an_edge_that_drifts_fails(monkeypatch):
     monkeypatch.setattr("mjrock.engine.stepping.fitted_loop", py)
     whole = mr.simulate(case, contacts)
     np.testing.assert_allclose(whole.restitution[:FIRST], law, atol=1e-3)
-    monkeypatch.setattr(loop, "put_back", lambda *_: None)
+    monkeypatch.setattr(sticking, "put_back", lambda *_: None)
     drifting = mr.simulate(case, contacts).restitution[:FIRST]
     assert np.abs(drifting - law).max() > 2e-3
