@@ -33,7 +33,7 @@ lint: $(READY)
 	$(BIN)/mypy
 
 calibrate: $(READY) # the laws that ship, and what they are worth on walls they have not seen; half an hour on two cores
-	$(BIN)/python scripts/calibrate.py --laws mjrock/problem/laws
+	$(BIN)/python scripts/calibrate.py --laws mjrock/problem/damping/laws
 	$(BIN)/python scripts/validate_law.py
 	cp out/calibrate/calibrated_fit.png docs/figures/damping_corners.png
 	cp out/calibrate/calibrated_bed_fit.png docs/figures/damping_bed.png

@@ -9,29 +9,29 @@ import importlib
 from typing import TYPE_CHECKING
 
 from ._version import __version__
+from .anymodel.contact import PairContact
+from .anymodel.inspect import InspectedContact, inspect_contacts
+from .anymodel.make import contact_for
 from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
-from .engine.inspection import InspectedContact, inspect_contacts
 from .engine.model import SimulationError
-from .engine.pair import PairContact
-from .engine.pairing import contact_for
 from .engine.simulation import automatic_timestep, simulate
 from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
-from .problem.block import Block
-from .problem.case import Case
-from .problem.contacts import Contacts
-from .problem.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
-from .problem.effects import AddedMass, Load, SideStop, Thrust, Tie
-from .problem.forms import PowerLaw
-from .problem.interface import Interface, reference_frequency
-from .problem.joints import Joint
-from .problem.masonry import Masonry
-from .problem.masonry_case import MasonryCase
-from .problem.motion import GroundMotion
-from .problem.polygon import Polygon
-from .problem.quantities import GRAVITY
-from .problem.restitution import Restitution
-from .problem.section import Opening
-from .problem.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
+from .problem.damping.contacts import Contacts
+from .problem.damping.forms import PowerLaw
+from .problem.damping.interface import Interface, reference_frequency
+from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+from .problem.damping.restitution import Restitution
+from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
+from .problem.ground.motion import GroundMotion
+from .problem.masonry.case import MasonryCase
+from .problem.masonry.joints import Joint
+from .problem.masonry.masonry import Masonry
+from .problem.masonry.polygon import Polygon
+from .problem.wall.block import Block
+from .problem.wall.case import Case
+from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
+from .problem.wall.section import Opening
+from .quantities import GRAVITY
 from .reference.compliant import solve_compliant
 from .result.compare import Comparison, compare
 from .result.ledger import Ledger
@@ -44,10 +44,10 @@ from .scene.wall import wall_scene
 from .study.analysis import Analysis, MasonryAnalysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
+from .study.contacts_by_matching import as_theory, matched_contacts
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
-from .study.matched import as_theory, matched_contacts
-from .study.matched_masonry import matched_masonry
+from .study.masonry_by_matching import matched_masonry
 from .study.pushover import pushover
 from .study.store import Store
 from .theory.analytical import solve_analytical

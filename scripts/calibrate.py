@@ -16,8 +16,8 @@ import numpy as np
 
 import cli
 from mjrock import Restitution, Store, plotting
-from mjrock.problem.damping import HIGHEST, LEAST
-from mjrock.problem.forms import PowerLaw
+from mjrock.problem.damping.forms import PowerLaw
+from mjrock.problem.damping.law import HIGHEST, LEAST
 from mjrock.study.calibration import Calibration, Plan, calibrate, presumed_damping, sweep
 from mjrock.study.campaign import completed
 from mjrock.study.match import K_N_RANGE, REFERENCE, Combination, Match

@@ -18,7 +18,7 @@ import cli
 import mjrock as mr
 import suite
 from mjrock import plotting
-from mjrock.problem.pulling import pulled, yielded
+from mjrock.problem.wall.ties_on_wall import pulled, yielded
 
 WALL = mr.Block.from_size(
     thickness=0.65,

@@ -28,10 +28,10 @@ from mjrock import plotting
 from mjrock.engine.loop import fixed_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
-from mjrock.engine.problem import Problem
+from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
 from mjrock.geometry.frames import frames_of
-from mjrock.problem.quantities import Array
+from mjrock.quantities import Array
 from mjrock.scene.of_case import course_of
 
 WIDTH, HEIGHT = 0.6, 4.2
@@ -133,14 +133,14 @@ def finely(case: mr.MasonryCase, timestep: float) -> Motion:
     """Fixed steps so short that not all of them are kept."""
     scene, every, done, ended = mr.masonry_scene(case), round(SAMPLE / timestep), 0, False
     course = course_of(case, scene)
-    problem = Problem.of(scene, course)
+    setting = Setting.of(scene, course)
     peaks, samples = np.zeros(len(scene.names)), []
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(course)
-        sliding, frames = Sliding.of(problem.points, coulomb=False), frames_of(engine.memory.pose)
+        sliding, frames = Sliding.of(setting.points, coulomb=False), frames_of(engine.memory.pose)
         while not ended:
-            ended, n = fixed_loop(engine.memory, problem, sliding, frames, engine.room, done, timestep)
+            ended, n = fixed_loop(engine.memory, setting, sliding, frames, engine.room, done, timestep)
             theta = engine.room.pose[:n, 2::3]
             peaks = np.maximum(peaks, np.abs(theta).max(axis=0))
             samples.append(theta[-done % every :: every].copy())

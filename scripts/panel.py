@@ -24,7 +24,7 @@ from tqdm import tqdm
 import cli
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.statics import falling
+from mjrock.problem.masonry.statics import falling
 
 LENGTH, HEIGHT, UNIT = 1.5, 1.75, (0.5, 0.25)
 FRICTIONS = (0.3, 0.45, 0.6, 0.75)

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 import cli
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.effects import Effect
+from mjrock.problem.wall.effects import Effect
 from paper import DENSITY, FIGURE_3, K_N
 
 Values = NDArray[np.float64]

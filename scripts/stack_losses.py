@@ -22,9 +22,9 @@ from tqdm import tqdm
 import cli
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.pile import Pile
+from mjrock.problem.masonry.pile import Pile
 from mjrock.result.as_one import restitutions
-from mjrock.study.matched_masonry import STEP, excess
+from mjrock.study.masonry_by_matching import STEP, excess
 from mjrock.theory.impact import as_one
 from paper import FIGURE_3
 

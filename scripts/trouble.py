@@ -21,7 +21,7 @@ import cli
 import mjrock as mr
 import random_masonry
 from mjrock import AddedMass, GroundMotion, Load, Opening, Outcome, SideStop, Thrust, Tie
-from mjrock.problem.uplift import Uplift
+from mjrock.problem.damping.uplift import Uplift
 
 Effect = Tie | Thrust | Load | AddedMass
 Sine = tuple[float, float]

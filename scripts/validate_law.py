@@ -19,8 +19,8 @@ import numpy as np
 import cli
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.damping import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
-from mjrock.problem.forms import Groups
+from mjrock.problem.damping.forms import Groups
+from mjrock.problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
 from mjrock.study.calibration import Plan
 from mjrock.study.campaign import completed
 from mjrock.study.match import Combination, Match, combinations

@@ -31,8 +31,8 @@ from mjrock.engine import loop, stepping
 from mjrock.engine.contact import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
 from mjrock.engine.points import inverse_weights
+from mjrock.engine.record import StepError
 from mjrock.engine.stepping import fixed_steps
-from mjrock.engine.steps import StepError
 from mjrock.result.history import rocking_history
 from mjrock.result.response import Response
 from mjrock.result.rocking import Rocking, peak_energies, restitution_of

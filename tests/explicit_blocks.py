@@ -8,7 +8,7 @@ Gauss-Seidel). They act halfway into the overlap. Steps are those of the symplec
 import numpy as np
 
 from mjrock.compiled import compiled, jitable
-from mjrock.problem.quantities import GRAVITY
+from mjrock.quantities import GRAVITY
 
 SWEEPS = 20
 """Most sweeps over the contacts in a step."""

@@ -10,7 +10,7 @@ from scenes import course, two_blocks
 
 import mjrock as mr
 from mjrock.engine import run as engine_run
-from mjrock.engine.accounts import ledger
+from mjrock.engine.energy_work import ledger
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fixed_steps

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.damping import CALIBRATED, HIGHEST
-from mjrock.problem.forms import BedLaw, CornerLaw, PowerLaw, SideLaw
+from mjrock.problem.damping.forms import BedLaw, CornerLaw, PowerLaw, SideLaw
+from mjrock.problem.damping.law import CALIBRATED, HIGHEST
 from mjrock.study import match
 from mjrock.study.calibration import Plan
 from mjrock.study.campaign import completed

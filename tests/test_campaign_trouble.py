@@ -18,7 +18,7 @@ from tqdm import tqdm
 import cli
 import mjrock as mr
 from mjrock.study import progress
-from mjrock.study.workers import serve
+from mjrock.study.campaign_worker import serve
 
 KINDS = ["", "exit", "interrupt", "generator", "columns", "list", "last"]
 ERRORS = [

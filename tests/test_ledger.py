@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine import caveats
+from mjrock.engine import run_warnings
 from mjrock.geometry.kinematics import gaps
 from paper import FIGURE_3, K_N
 
@@ -51,7 +51,7 @@ def test_released_into_strong_dashpots():
 
 def test_one_that_does_not_close_says_so(one_sided, contacts, monkeypatch):
     mr.simulate(one_sided, contacts, ledger=True)  # silent: warnings are errors here
-    monkeypatch.setattr(caveats, "OPEN", -1.0)
+    monkeypatch.setattr(run_warnings, "OPEN", -1.0)
     with pytest.warns(UserWarning, match=r"the ledger does not close: it has .* too much; lower accuracy = 0.001"):
         mr.simulate(one_sided, contacts, ledger=True)
 

@@ -10,7 +10,7 @@ from masonry_blocks import GROUND, box, columns
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import gap
-from mjrock.problem.lines import rates
+from mjrock.problem.masonry.lines import rates
 from mjrock.scene.masonry import standing_masonry
 
 LEFT, RIGHT, TOP = (

@@ -8,7 +8,7 @@ import pytest
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 
 import mjrock as mr
-from mjrock.problem.statics import falling, friction_lacking
+from mjrock.problem.masonry.statics import falling, friction_lacking
 from mjrock.scene.masonry import applied, require_standing, standing_masonry
 
 

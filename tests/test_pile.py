@@ -7,7 +7,7 @@ import pytest
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.problem.pile import Pile
+from mjrock.problem.masonry.pile import Pile
 from mjrock.theory.impact import as_one
 
 WALL = mr.Block(0.3, 2.1, length=1.5, density=1800.0)

@@ -3,7 +3,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.geometry.kinematics import gaps
-from mjrock.problem.uplift import Uplift
+from mjrock.problem.damping.uplift import Uplift
 from mjrock.result.history import rocking_history
 from mjrock.result.response import ending
 from mjrock.result.rocking import peak_energies, restitution_of

@@ -11,7 +11,7 @@ import mjrock as mr
 from mjrock.engine import model
 from mjrock.engine import run as engine_run
 from mjrock.engine.model import Engine
-from mjrock.engine.steps import StepError
+from mjrock.engine.record import StepError
 from mjrock.method import METHOD
 from mjrock.scene.wall import inner_friction
 from paper import K_N

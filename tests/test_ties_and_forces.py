@@ -9,7 +9,7 @@ import pytest
 from scenes import course
 
 import mjrock as mr
-from mjrock.engine.accounts import ledger
+from mjrock.engine.energy_work import ledger
 from mjrock.engine.mjcf import pair_rows, scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fitted_steps, fixed_steps

@@ -7,14 +7,15 @@ import pytest
 from scenes import course
 
 import mjrock as mr
-from mjrock.engine.loop import Clock, Progress, fitted_loop
+from mjrock.engine.loop import fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace, short_step
-from mjrock.engine.problem import Problem
+from mjrock.engine.progress import Clock, Progress
+from mjrock.engine.record import Record
+from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
 from mjrock.engine.stepping import fitted_steps
-from mjrock.engine.steps import Record
 from mjrock.engine.sticking import Joints
 from mjrock.engine.touches import Openings, Springs, Touches, hardest, predict
 from mjrock.geometry.kinematics import gaps
@@ -41,17 +42,17 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
     """
     start = scene.at_rest + np.array([away, 0.0, 0.0])
     slides = course(scene, [[-SPEED, 0.0, 0.0]], 1.0, pose=start)
-    pace, problem = Pace.of(scene, slides, ACCURACY), Problem.of(scene, slides)
+    pace, setting = Pace.of(scene, slides, ACCURACY), Setting.of(scene, slides)
     with engine_of(scene) as engine:
         engine.follow(h, pair_rows(scene, h, 0.25))
         engine.release(slides)
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
-        sliding = Sliding.of(problem.points, coulomb=True)
-        state = Progress.of(engine.memory, problem, Joints.of_scene(scene), sliding)
+        sliding = Sliding.of(setting.points, coulomb=True)
+        state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
         record = Record.of(1, 3, len(scene.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
-        values, n = fitted_loop(engine.memory, problem, pace, state, before, record)
+        values, n = fitted_loop(engine.memory, setting, pace, state, before, record)
     assert n == 1
     return Clock(*values), record
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compiled import jitable
-from ..problem.quantities import Array, require_array, require_real, require_within, shown
+from ..quantities import Array, require_array, require_real, require_within, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""

@@ -9,11 +9,11 @@ import numpy as np
 from ..compiled import compiled
 from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import Places, along, depth
-from ..problem.masonry import Masonry
-from ..problem.quantities import Array, Flags, Integers
+from ..problem.masonry.masonry import Masonry
+from ..quantities import Array, Flags, Integers
 from ..result.joints import LOST
 from ..scene.scene import Scene
-from .steps import Steps
+from .record import Steps
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""

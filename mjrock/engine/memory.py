@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from ..problem.quantities import Array, Integers
+from ..quantities import Array, Integers
 from .rows import Rows
 
 TIMESTEP, IMPRATIO = 0, 1

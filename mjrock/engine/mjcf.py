@@ -19,11 +19,12 @@ import numpy as np
 
 from .._version import __version__
 from ..method import METHOD, Method
-from ..problem.quantities import GRAVITY, Array
+from ..quantities import GRAVITY, Array
 from ..scene.arrays import GROUND
 from ..scene.scene import Scene
 from .points import points_of
 from .rows import Rows, Step, set_rows
+from .tags import section, tag, value_text
 
 HEAD = """\
 <mujoco model="rocking wall">
@@ -89,13 +90,13 @@ def scene_mjcf(
         title=scene.title.replace("--", "- -"),
         version=__version__,
         h=repr(float(timestep)),
-        timestep=_value(timestep),
-        gravity=_value((0.0, 0.0, -GRAVITY)),
-        impratio=_value(fixed.impratio),
+        timestep=value_text(timestep),
+        gravity=value_text((0.0, 0.0, -GRAVITY)),
+        impratio=value_text(fixed.impratio),
         rows=' jacobian="sparse"' if len(scene.names) >= SPARSE_FROM else "",
         start="" if len(scene.names) > 1 else 'warmstart="disable" ',
-        center=_value((middle[0], 0.0, middle[1])),
-        extent=_value(2 * half),
+        center=value_text((middle[0], 0.0, middle[1])),
+        extent=value_text(2 * half),
         meshes="".join(f"\n    {mesh}" for mesh in _meshes(scene)),
     )
     camera = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
@@ -105,15 +106,15 @@ def scene_mjcf(
     body = [
         "<worldbody>",
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
-        _tag("camera", name="front", pos=camera, xyaxes=(1.0, 0.0, 0.0, 0.0, 0.05, 1.0), fovy="28"),
+        tag("camera", name="front", pos=camera, xyaxes=(1.0, 0.0, 0.0, 0.0, 0.05, 1.0), fovy="28"),
         *_world(scene),
         *(f"  {site}" for site in _sites(scene, GROUND)),
         "</worldbody>",
-        *_section("contact", _pairs(scene, fixed.rows)),
-        *_section("tendon", _ties(scene)),
-        *_section("actuator", _forces(scene)),
-        *_section("custom", _records(scene, newmark_beta)),
-        *_section("keyframe", iter(["  " + _tag("key", name="release", **key)])),
+        *section("contact", _pairs(scene, fixed.rows)),
+        *section("tendon", _ties(scene)),
+        *section("actuator", _forces(scene)),
+        *section("custom", _records(scene, newmark_beta)),
+        *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 
@@ -159,21 +160,21 @@ def _world(scene: Scene) -> Iterator[str]:
         if not abs(across[0] - across[1]) <= scene.inertia[j] <= sum(across):  # of a rectangle; any will do that can be
             across = [scene.inertia[j]] * 2
         prefix = "" if len(scene.names) == 1 else f"{name}_"
-        yield f"  <body name={quoteattr(name)} pos={_value((rest[0], 0.0, rest[1] + radius))}>"
-        yield "    " + _tag("inertial", pos=(0, 0, 0), mass=mass, diaginertia=(across[0], scene.inertia[j], across[1]))
+        yield f"  <body name={quoteattr(name)} pos={value_text((rest[0], 0.0, rest[1] + radius))}>"
+        yield "    " + tag("inertial", pos=(0, 0, 0), mass=mass, diaginertia=(across[0], scene.inertia[j], across[1]))
         for joint, kind, axis in (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0 1 0")):
-            yield "    " + _tag("joint", name=prefix + joint, type=kind, axis=axis)
+            yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)
         if _is_box(outline):
-            yield "    " + _tag(
+            yield "    " + tag(
                 "geom", name=name, type="box", size=(width / 2, scene.length / 2, height / 2), material="brick"
             )
         else:
-            yield "    " + _tag("geom", name=name, type="mesh", mesh=name, material="brick")
+            yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick")
         for face in (face for face, i in faces.items() if scene.face_body[i] == j):
-            yield "    " + _tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face], radius))
+            yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face], radius))
         for i in np.flatnonzero(scene.point_body == j):
             at = (scene.point[i, 0], 0.0, scene.point[i, 1])
-            yield "    " + _tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
+            yield "    " + tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
         yield from (f"    {site}" for site in _sites(scene, j))
         yield "  </body>"
 
@@ -189,15 +190,9 @@ def _sites(scene: Scene, body: int) -> Iterator[str]:
     for names, bodies, places in ends:
         for name, on, (x, z) in zip(names, bodies, places, strict=True):
             if on == body:
-                yield _tag("site", name=name, pos=(x, 0.0, z + raised))
+                yield tag("site", name=name, pos=(x, 0.0, z + raised))
     if body == GROUND and scene.force_names:
-        yield _tag("site", name="origin")
-
-
-def _section(name: str, lines: Iterator[str]) -> list[str]:
-    """A section of the text, or nothing where it would be empty."""
-    found = list(lines)
-    return [f"<{name}>", *found, f"</{name}>"] if found else []
+        yield tag("site", name="origin")
 
 
 def _ties(scene: Scene) -> Iterator[str]:
@@ -205,14 +200,14 @@ def _ties(scene: Scene) -> Iterator[str]:
     for i, name in enumerate(scene.tie_names):
         yields = {} if scene.ties.stretch[i] == np.inf else {"springyield": scene.ties.stretch[i]}
         spring = {"springlength": (0, scene.tie_length[i]), "stiffness": scene.tie_k[i], **yields}
-        ends = "".join(_tag("site", site=site) for site in (f"{name}_anchor", name))
-        yield "  " + _tag("spatial", ends, name=name, **spring)
+        ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
+        yield "  " + tag("spatial", ends, name=name, **spring)
 
 
 def _forces(scene: Scene) -> Iterator[str]:
     """The constant forces: actuators that need no control."""
     for name, (x, z) in zip(scene.force_names, scene.force, strict=True):
-        yield "  " + _tag(
+        yield "  " + tag(
             "general",
             name=name,
             site=name,
@@ -231,7 +226,7 @@ def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
     nx, nz = scene.normal[i]
     at = (x - radius * nx, 0.0, z - radius * nz + radius)
     if nz == 1:
-        yield "  " + _tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
+        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
         return
     met = np.array([own == name for own in scene.face_names])
     along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
@@ -239,10 +234,10 @@ def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
     half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())
     x, z = x + middle * nz, z - middle * nx
     size, axis = (half, 0.6 * scene.length, 1.0), (nx, 0.0, nz)
-    yield "  " + _tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")
+    yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")
     thick = 0.15 * half
     slab, behind = (half, 0.6 * scene.length, thick), (x - thick * nx, 0.0, z - thick * nz)
-    yield "  " + _tag("geom", name=f"{name}_wall", type="box", size=slab, pos=behind, zaxis=axis, material="plaster")
+    yield "  " + tag("geom", name=f"{name}_wall", type="box", size=slab, pos=behind, zaxis=axis, material="plaster")
 
 
 def _plate(scene: Scene, i: int, radius: float) -> dict[str, object]:
@@ -263,7 +258,7 @@ def _meshes(scene: Scene) -> Iterator[str]:
     for name, outline in zip(scene.names, scene.outlines, strict=True):
         if not _is_box(outline):
             vertices = [(x, y, z) for y in (-scene.length / 2, scene.length / 2) for x, z in outline]
-            yield _tag("mesh", name=name, vertex=np.ravel(vertices))
+            yield tag("mesh", name=name, vertex=np.ravel(vertices))
 
 
 def _is_box(outline: Array) -> bool:
@@ -279,27 +274,15 @@ def _pairs(scene: Scene, rows: Rows) -> Iterator[str]:
         if mu > 0:
             grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": rows.solreffriction[i]}
         row = {"solref": rows.solref[i], "solimp": rows.solimp[i]}
-        yield "  " + _tag("pair", name=point, geom1=point, geom2=face, **row, **grip)
+        yield "  " + tag("pair", name=point, geom1=point, geom2=face, **row, **grip)
 
 
 def _records(scene: Scene, newmark_beta: float) -> Iterator[str]:
     """What made the model."""
     for name, value in scene.facts.items():
         if not isinstance(value, str):
-            yield "  " + _tag("numeric", name=name, data=value)
-    yield "  " + _tag("numeric", name="newmark_beta", data=newmark_beta)
+            yield "  " + tag("numeric", name=name, data=value)
+    yield "  " + tag("numeric", name="newmark_beta", data=newmark_beta)
     for name, text in (*scene.facts.items(), ("mjrock", __version__)):
         if isinstance(text, str):
-            yield "  " + _tag("text", name=name, data=text)
-
-
-def _value(value: object) -> str:
-    """A quoted attribute: texts as they are, numbers with every digit that tells them from their neighbours."""
-    if isinstance(value, str):
-        return quoteattr(value)
-    return f'"{" ".join(repr(float(number)) for number in np.ravel(np.asarray(value)))}"'
-
-
-def _tag(tag: str, within: str = "", /, **attributes: object) -> str:
-    opened = f"<{tag} {' '.join(f'{key}={_value(value)}' for key, value in attributes.items())}"
-    return f"{opened}>{within}</{tag}>" if within else f"{opened}/>"
+            yield "  " + tag("text", name=name, data=text)

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..problem.quantities import Flags
+from ..quantities import Flags
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .contact import planar_weight
 from .memory import Memory
 from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
-from .steps import Record
+from .record import Record
 
 CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""

@@ -25,7 +25,7 @@ import numpy as np
 from ..compiled import jitable
 from ..geometry.kinematics import Ties
 from ..method import METHOD, Method
-from ..problem.quantities import Array
+from ..quantities import Array
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .contact import longest_step

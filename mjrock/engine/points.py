@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.kinematics import Places
 from ..method import METHOD, Method
-from ..problem.quantities import Array, Flags
+from ..quantities import Array, Flags
 from ..scene.arrays import frozen
 from ..scene.scene import Scene
 from .contact import planar_weight

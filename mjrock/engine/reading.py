@@ -8,11 +8,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..geometry.kinematics import gaps
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import Array, Integers
-from ..problem.uplift import Uplift
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.uplift import Uplift
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..quantities import Array, Integers
 from ..result.history import rocking_history
 from ..result.joints import JointMotion, fallen_blocks
 from ..result.response import Outcome, ending, masonry_ending
@@ -20,7 +20,7 @@ from ..result.rocking import Rocking
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .joint_motion import joint_motion
-from .steps import Steps
+from .record import Steps
 
 MARKS = 1000
 """Times in a run of masonry between which no energy may appear."""

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
-from ..problem.quantities import Array
+from ..quantities import Array
 from .contact import pair_values, row
 
 

@@ -9,14 +9,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from ..problem.quantities import Array, Integers
+from ..quantities import Array, Integers
 from ..result.response import Plastic, Response
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .accounts import ground_work, ledger
+from .energy_work import ground_work, ledger
 from .model import SimulationError
 from .reading import Asked, Reading
-from .steps import StepError, Steps
+from .record import StepError, Steps
 
 ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, as a share of the energy of release [-]."""

@@ -7,24 +7,24 @@ from dataclasses import replace
 from typing import Any
 
 from ..method import METHOD, Method
-from ..problem.block import Block
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import require_flag, require_kind, require_size, require_within
+from ..problem.damping.contacts import Contacts
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.block import Block
+from ..problem.wall.case import Case
+from ..quantities import require_flag, require_kind, require_size, require_within
 from ..result.response import Response, State
 from ..scene.course import Course
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
-from .caveats import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
+from .record import StepError
 from .run import Run, explained, sound_timestep
+from .run_warnings import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
 from .start import required_start
 from .stepping import fitted_steps, fixed_steps
-from .steps import StepError
 
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
@@ -68,7 +68,7 @@ def simulate(
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
             all; fitted steps are interpolated, None stands for 1 ms.
-        ledger: whether to account for every part of the energy, see `mjrock.engine.accounts`.
+        ledger: whether to account for every part of the energy, see `mjrock.engine.energy_work`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
         method: the constants of the method, see `mjrock.method`, for studies that vary them.

@@ -22,11 +22,11 @@ from ..compiled import inlined, jitable
 from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
 from ..geometry.vectors import dot, scaled, tangent
 from ..method import METHOD, Method
-from ..problem.quantities import Array, Flags
+from ..quantities import Array, Flags
 from .contact import inertia_of
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .points import Points
-from .problem import Problem, push
+from .setting import Setting, push
 from .touches import ROUNDING
 
 SMOOTH, ROUGH = 1, 3
@@ -102,11 +102,11 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
 
 
 @jitable
-def apply_friction(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: float) -> None:
+def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Write the force of the moving ground and the friction of what slides into the applied forces."""
-    places = problem.points.places
+    places = setting.points.places
     memory.applied[:] = 0.0
-    push(memory, problem, t)
+    push(memory, setting, t)
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
@@ -145,25 +145,25 @@ def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int
 
 
 @jitable
-def slide(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: float) -> bool:
+def slide(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> bool:
     """Whether contacts slide; the applied forces then hold their friction, and the engine all but the accelerations."""
-    if not (sliding.coulomb and find_sliding(memory, problem.points, sliding, frames)):
+    if not (sliding.coulomb and find_sliding(memory, setting.points, sliding, frames)):
         return False
     rows_changed = True
     for n in range(sliding.method.looks):
-        apply_friction(memory, problem, sliding, frames, t)
+        apply_friction(memory, setting, sliding, frames, t)
         if rows_changed:
             memory.forward(memory.model, memory.data)
         else:
             memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
         for j in range(len(memory.guess)):
             memory.guess[j] = memory.acceleration[j]
-        again, rows_changed = look(memory, problem.points, sliding, frames, n)
+        again, rows_changed = look(memory, setting.points, sliding, frames, n)
         if not again:
             break
     if rows_changed:
         memory.forward(memory.model, memory.data)
-    apply_friction(memory, problem, sliding, frames, t)
+    apply_friction(memory, setting, sliding, frames, t)
     return True
 
 
@@ -187,11 +187,11 @@ def give_rows_back(memory: Memory, sliding: Sliding) -> None:
 
 
 @jitable
-def find_acceleration(memory: Memory, problem: Problem, sliding: Sliding, frames: Array, t: float) -> None:
+def find_acceleration(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Let the engine find the accelerations of a step, and make none."""
-    if slide(memory, problem, sliding, frames, t):
+    if slide(memory, setting, sliding, frames, t):
         memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
         give_rows_back(memory, sliding)
     else:
-        push(memory, problem, t)
+        push(memory, setting, t)
         memory.forward(memory.model, memory.data)

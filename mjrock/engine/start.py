@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..problem.case import Case
-from ..problem.effects import Tie
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import ON_ITS_FACE, require_array, require_within, shown
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..problem.wall.effects import Tie
+from ..quantities import ON_ITS_FACE, require_array, require_within, shown
 from ..result.response import State
 
 PARTS = ("pose", "velocity")

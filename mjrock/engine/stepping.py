@@ -19,12 +19,13 @@ from ..geometry.kinematics import stretch
 from ..method import METHOD, Method
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .loop import Clock, Progress, fitted_loop, fixed_loop, release
+from .loop import fitted_loop, fixed_loop, release
 from .model import Engine
 from .pace import Pace
-from .problem import Problem
+from .progress import Clock, Progress
+from .record import Kinds, Record, StepError, Steps
+from .setting import Setting
 from .sliding import Sliding
-from .steps import Kinds, Record, StepError, Steps
 from .sticking import Joints
 
 
@@ -43,17 +44,17 @@ def fitted_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, problem, pace = engine.memory, Problem.of(scene, course, method), Pace.of(scene, course, accuracy, method)
-    places, released_on = problem.points.places, engine.closed
-    for i in range(len(problem.ties.k)):
-        stretch(problem.ties, i, frames_of(memory.pose, places.freedom), memory.velocity, places.axes)
-    sliding = Sliding.of(problem.points, coulomb=coulomb, method=method)
-    state = Progress.of(memory, problem, Joints.of_scene(scene), sliding)
+    memory, setting, pace = engine.memory, Setting.of(scene, course, method), Pace.of(scene, course, accuracy, method)
+    places, released_on = setting.points.places, engine.closed
+    for i in range(len(setting.ties.k)):
+        stretch(setting.ties, i, frames_of(memory.pose, places.freedom), memory.velocity, places.axes)
+    sliding = Sliding.of(setting.points, coulomb=coulomb, method=method)
+    state = Progress.of(memory, setting, Joints.of_scene(scene), sliding)
     clock = Clock.started(pace, course.energy(scene))
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal clock
-        values, n = fitted_loop(memory, problem, pace, state, clock, record)
+        values, n = fitted_loop(memory, setting, pace, state, clock, record)
         clock = Clock(*values)
         return n, clock.t, clock.ended
 
@@ -86,15 +87,15 @@ def fixed_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, problem, done = engine.memory, Problem.of(scene, course, method), 0
-    sliding, released_on = Sliding.of(problem.points, coulomb=coulomb, method=method), engine.closed
-    frames = frames_of(memory.pose, problem.points.places.freedom)
+    memory, setting, done = engine.memory, Setting.of(scene, course, method), 0
+    sliding, released_on = Sliding.of(setting.points, coulomb=coulomb, method=method), engine.closed
+    frames = frames_of(memory.pose, setting.points.places.freedom)
     if sliding.coulomb:
-        release(memory, problem, sliding, frames, memory.velocity + 0.5 * timestep * memory.acceleration)
+        release(memory, setting, sliding, frames, memory.velocity + 0.5 * timestep * memory.acceleration)
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal done
-        ended, n = fixed_loop(memory, problem, sliding, frames, record, done, timestep)
+        ended, n = fixed_loop(memory, setting, sliding, frames, record, done, timestep)
         done += n
         return n, done * timestep, ended
 

@@ -23,12 +23,12 @@ from ..compiled import jitable
 from ..geometry.frames import take_frames
 from ..geometry.kinematics import Places, along, depth, gap, meeting
 from ..geometry.vectors import scaled, tangent
-from ..problem.quantities import Array, Integers
+from ..quantities import Array, Integers
 from ..scene.scene import Scene
 from .pace import Pace, step_of
 from .points import Points, Reach
+from .record import Record
 from .rows import Step, row_of
-from .steps import Record
 
 
 class Joints(NamedTuple):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import require_kind, require_within
+from ..problem.damping.contacts import Contacts
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..quantities import require_kind, require_within
 from ..scene.of_case import course_of, scene_of
 from .model import released_mjcf
 

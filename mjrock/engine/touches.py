@@ -14,7 +14,7 @@ import numpy as np
 
 from ..compiled import jitable
 from ..geometry.kinematics import Places, Ties, opening
-from ..problem.quantities import Array, Flags
+from ..quantities import Array, Flags
 from .rows import Law
 
 ROUNDING = 1e-12

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined, jitable
-from ..problem.quantities import Array
+from ..quantities import Array
 from .vectors import Vector, moment, plus, vector
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled, inlined, jitable
-from ..problem.quantities import Array, Integers
+from ..quantities import Array, Integers
 from .frames import Freedom, displaced, linear, place, push_body, spin, swung, take_frames
 from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, vector
 

@@ -8,7 +8,7 @@ of the tuples that it meets, so that the plane costs what it would cost alone.
 from __future__ import annotations
 
 from ..compiled import inlined
-from ..problem.quantities import Array
+from ..quantities import Array
 
 Vector = tuple[float, ...]
 

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from ..files import replacing
-from ..problem.case import Case
-from ..problem.quantities import Array, require_path, require_text, require_within
+from ..problem.wall.case import Case
+from ..quantities import Array, require_path, require_text, require_within
 from ..result.response import Response
 from .bodies import Bodies
 from .histories import acceleration, rotation

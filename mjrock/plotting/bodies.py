@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.case import Case
-from ..problem.quantities import (
+from ..problem.wall.case import Case
+from ..quantities import (
     Array,
     keep,
     require_array,

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..problem.case import Case
-from ..problem.quantities import require_kind
+from ..problem.wall.case import Case
+from ..quantities import require_kind
 from ..result.response import Outcome, Response
 from .style import style_of
 

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon as Patch
 from numpy.typing import ArrayLike
 
-from ..problem.masonry import Masonry
-from ..problem.quantities import Array, require_array, require_kind, require_within
+from ..problem.masonry.masonry import Masonry
+from ..quantities import Array, require_array, require_kind, require_within
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
 

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 
-from ..problem.case import Case
-from ..problem.effects import AddedMass, Load, Thrust, Tie
-from ..problem.quantities import Array
+from ..problem.wall.case import Case
+from ..problem.wall.effects import AddedMass, Load, Thrust, Tie
+from ..quantities import Array
 from .bodies import Bodies
 
 STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"

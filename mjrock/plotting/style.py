@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..problem.quantities import require_path
+from ..quantities import require_path
 from ..result.response import Response
 
 STYLES: dict[str, dict[str, Any]] = {

@@ -15,10 +15,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
-from ..problem.uplift import Uplift
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.uplift import Uplift
+from ..problem.wall.case import Case
+from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
 from ..result.history import rocking_history
 from ..result.response import Response, ending
 from ..result.rocking import Rocking

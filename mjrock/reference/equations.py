@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq, fsolve
 
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.effects import Load, Thrust, Tie
-from ..problem.quantities import GRAVITY, Array
+from ..problem.damping.contacts import Contacts
+from ..problem.wall.case import Case
+from ..problem.wall.effects import Load, Thrust, Tie
+from ..quantities import GRAVITY, Array
 
 
 class Wall:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problem.pile import Pile
-from ..problem.quantities import Array
+from ..problem.masonry.pile import Pile
+from ..quantities import Array
 from .response import Response
 
 LEAST = 0.01

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem.quantities import Array, require_kind
+from ..quantities import Array, require_kind
 from .response import Outcome, Response
 from .table import csv_text
 

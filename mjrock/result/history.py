@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from ..problem.case import Case
-from ..problem.quantities import Array
+from ..problem.wall.case import Case
+from ..quantities import Array
 from .rocking import Impact, peak_energies
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem.joints import Joint
-from ..problem.masonry import Masonry
-from ..problem.quantities import Array, Flags
+from ..problem.masonry.joints import Joint
+from ..problem.masonry.masonry import Masonry
+from ..quantities import Array, Flags
 
 LOST = 0.7
 """Opening of a joint, over its width, beyond which it holds no longer [-]: the blocks have turned by 45 degrees."""

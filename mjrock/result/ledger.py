@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..problem.quantities import Array
+from ..quantities import Array
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..files import write_text
-from ..problem.case import Case
-from ..problem.quantities import Array, named, require_path
+from ..problem.wall.case import Case
+from ..quantities import Array, named, require_path
 from .joints import JointMotion
 from .ledger import Ledger
 from .rocking import Impact, Rocking, restitution_of

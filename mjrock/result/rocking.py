@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..problem.case import Case
-from ..problem.quantities import Array
+from ..problem.wall.case import Case
+from ..quantities import Array
 
 
 class Impact(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..problem.quantities import Array
+from ..quantities import Array
 
 
 @jitable

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..problem.quantities import Array, Integers, shown
+from ..quantities import Array, Integers, shown
 
 GROUND = -1
 """The body of a face or an anchor that belongs to the ground."""

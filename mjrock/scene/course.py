@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..problem.motion import GroundMotion
-from ..problem.quantities import Array
+from ..problem.ground.motion import GroundMotion
+from ..quantities import Array
 from .ground import Ground
 from .scene import Scene
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.effects import Effect, Load, Thrust, Tie
-from ..problem.quantities import Array
+from ..problem.wall.effects import Effect, Load, Thrust, Tie
+from ..quantities import Array
 from .arrays import GROUND
 
 

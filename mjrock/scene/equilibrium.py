@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import null_space
 
 from ..geometry.kinematics import Forces, Places, gaps
-from ..problem.quantities import GRAVITY, Array, Flags
+from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential
 
 ITERATIONS = 1000

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
-from ..problem.motion import GroundMotion
-from ..problem.quantities import Array
+from ..problem.ground.motion import GroundMotion
+from ..quantities import Array
 
 
 class Shaking(NamedTuple):

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.effects import AddedMass, Effect, Load, Thrust, Tie
-from ..problem.lines import Lines
-from ..problem.masonry import Masonry
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import GRAVITY, Array, Integers, named, require_kind
-from ..problem.statics import falling, friction_lacking, slippery
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.lines import Lines
+from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.statics import falling, friction_lacking, slippery
+from ..problem.wall.effects import AddedMass, Effect, Load, Thrust, Tie
+from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .arrays import GROUND
 from .course import Course
 from .effects import attachments

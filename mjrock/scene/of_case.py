@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ..method import METHOD, Method
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import require_kind, shown
+from ..problem.damping.contacts import Contacts
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..quantities import require_kind, shown
 from .course import Course
 from .masonry import masonry_course, masonry_scene
 from .scene import Scene

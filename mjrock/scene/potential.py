@@ -15,7 +15,7 @@ from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import frames_of, push_body, swung, take_frames
 from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, stretch
 from ..geometry.vectors import dot, plus, vector
-from ..problem.quantities import GRAVITY, Array
+from ..quantities import GRAVITY, Array
 
 
 class Structure(NamedTuple):

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..geometry.frames import PLANE
 from ..geometry.kinematics import Forces, Places, Ties, gaps
-from ..problem.quantities import GRAVITY, Array, Flags, Integers
+from ..quantities import GRAVITY, Array, Flags, Integers
 from .arrays import checked, frozen, nothing
 from .equilibrium import lowered, settled
 from .potential import Potential, Structure, energies

@@ -7,11 +7,11 @@ from functools import lru_cache
 import numpy as np
 
 from ..method import METHOD, Method
-from ..problem.block import Block
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.effects import AddedMass, Effect, Tie
-from ..problem.quantities import Array, require_kind
+from ..problem.damping.contacts import Contacts
+from ..problem.wall.block import Block
+from ..problem.wall.case import Case
+from ..problem.wall.effects import AddedMass, Effect, Tie
+from ..quantities import Array, require_kind
 from .arrays import GROUND
 from .course import Course
 from .effects import attachments

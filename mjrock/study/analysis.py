@@ -10,15 +10,15 @@ from pathlib import Path
 
 from ..engine.simulation import simulate
 from ..files import write_arrays
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.masonry_case import MasonryCase
-from ..problem.quantities import keep, require_kind, shown, spelt
-from ..problem.restitution import Restitution
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..quantities import keep, require_kind, shown, spelt
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
 from ..theory.analytical import solve_analytical
-from .task import Row
+from .campaign_task import Row
 
 SOLVERS: dict[str, Callable[..., Response]] = {
     "analytical": solve_analytical,

@@ -3,7 +3,7 @@
 For each combination of wall, stiffness and release, and for each restitution that is asked for, a search finds the
 damping ratio whose simulation is closest to the analytical response (`mjrock.study.match`): first two-sided for the
 base, then one-sided for the side with the damping of the base presumed. The matched pairs are regressed on the
-dimensionless groups of `mjrock.problem.forms` (`mjrock.study.regression`).
+dimensionless groups of `mjrock.problem.damping.forms` (`mjrock.study.regression`).
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.damping import HIGHEST, LEAST, DampingLaw
-from ..problem.forms import BedLaw, CornerLaw, Form, Groups, SideLaw
-from ..problem.quantities import keep, require_array, require_kind, require_whole, require_within
-from ..problem.restitution import Restitution
+from ..problem.damping.forms import BedLaw, CornerLaw, Form, Groups, SideLaw
+from ..problem.damping.law import HIGHEST, LEAST, DampingLaw
+from ..problem.damping.restitution import Restitution
+from ..quantities import keep, require_array, require_kind, require_whole, require_within
 from .campaign import completed
+from .campaign_task import VERSION, Row
 from .match import AMPLITUDE_RANGE, K_N_RANGE, R_RANGE, SLENDERNESS_RANGE, Combination, Match, combinations
 from .regression import Regression, regress
-from .task import VERSION, Row
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from multiprocessing import current_process
 from pathlib import Path
 from typing import Any, cast
 
-from ..problem.quantities import require_flag, require_path, require_real, require_whole, shown
-from .dispatch import Dispatch
+from ..quantities import require_flag, require_path, require_real, require_whole, shown
+from .campaign_pool import Dispatch
+from .campaign_run import Runner
+from .campaign_task import Row, Task, column_names, keyed
 from .progress import Progress
-from .runner import Runner
 from .store import Store
-from .task import Row, Task, column_names, keyed
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from ..problem.quantities import spelt
+from ..quantities import spelt
 
 
 def fingerprint(*contents: object) -> str:

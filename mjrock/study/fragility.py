@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log_ndtr, ndtr, ndtri
 
-from ..problem.quantities import Array, Flags, require_plain, require_reals, require_whole, require_within, shown
+from ..quantities import Array, Flags, require_plain, require_reals, require_whole, require_within, shown
 
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.quantities import spelt
-from .task import Refused
+from ..quantities import spelt
+from .campaign_task import Refused
 
 
 class Grid(Sequence[Any]):

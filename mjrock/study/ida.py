@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..problem.quantities import Array, require_kind, require_row, require_within, shown
+from ..quantities import Array, require_kind, require_row, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
-from .task import Row
+from .campaign_task import Row
 
 Build = Callable[[float], Analysis]
 

@@ -17,18 +17,18 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from ..engine.simulation import simulate
-from ..problem.block import Block
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.damping import DENSITY, HIGHEST, LEAST
-from ..problem.effects import SideStop
-from ..problem.forms import Groups
-from ..problem.quantities import keep, require_within, spelt
-from ..problem.restitution import Restitution
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.forms import Groups
+from ..problem.damping.law import DENSITY, HIGHEST, LEAST
+from ..problem.damping.restitution import Restitution
+from ..problem.wall.block import Block
+from ..problem.wall.case import Case
+from ..problem.wall.effects import SideStop
+from ..quantities import keep, require_within, spelt
 from ..result.compare import compare
 from ..result.response import Response
 from ..theory.analytical import solve_analytical
-from .task import Row
+from .campaign_task import Row
 
 R_RANGE, SLENDERNESS_RANGE, AMPLITUDE_RANGE, K_N_RANGE = (1.4, 2.8), (4.0, 15.0), (0.3, 0.8), (0.5e8, 30e8)
 """Table 1: half diagonal [m], h/b [-], theta_0/alpha [-], interface stiffness of base and of side [N/m3]."""

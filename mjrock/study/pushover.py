@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..problem.case import Case
-from ..problem.contacts import Contacts
-from ..problem.pulling import pulled, yielded
-from ..problem.quantities import ON_ITS_FACE, Array, require_kind, require_row, require_whole, shown
-from ..problem.uplift import Uplift
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.uplift import Uplift
+from ..problem.wall.case import Case
+from ..problem.wall.ties_on_wall import pulled, yielded
+from ..quantities import ON_ITS_FACE, Array, require_kind, require_row, require_whole, shown
 from ..scene.wall import wall_scene
 from .tilted import tilted
 

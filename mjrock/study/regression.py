@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from ..problem.damping import MARGIN
-from ..problem.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
-from ..problem.quantities import Array
+from ..problem.damping.forms import BedLaw, CornerLaw, Form, Groups, PowerLaw, SideLaw
+from ..problem.damping.law import MARGIN
+from ..quantities import Array
+from .campaign_task import Row
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Combination, Match
-from .task import Row
 
 STARTS: dict[type, tuple[float, ...]] = {
     PowerLaw: (0.1, -1.0, 0.1),

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from ..problem.quantities import require_path, spelt
+from ..quantities import require_path, spelt
 from ..result.table import guarded
 from .lock import Lock
 from .values import checksum, plain, shown

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..geometry.frames import frames_of
 from ..geometry.kinematics import along, gaps, stretch
-from ..problem.quantities import GRAVITY, Array, Flags, Integers
+from ..quantities import GRAVITY, Array, Flags, Integers
 from ..scene.potential import Potential
 from ..scene.scene import Scene
 

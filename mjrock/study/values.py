@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..problem.quantities import spelt
+from ..quantities import spelt
 
 Value = str | int | float | None
 

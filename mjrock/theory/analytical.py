@@ -10,10 +10,10 @@ import time
 
 import numpy as np
 
-from ..problem.case import Case
-from ..problem.pulling import stored
-from ..problem.quantities import GRAVITY, Array, require_kind, require_size, require_within
-from ..problem.restitution import Restitution
+from ..problem.damping.restitution import Restitution
+from ..problem.wall.case import Case
+from ..problem.wall.ties_on_wall import stored
+from ..quantities import GRAVITY, Array, require_kind, require_size, require_within
 from ..result.response import Outcome, Plastic, Response, describe
 from ..result.rocking import Impact, Rocking
 from .forced import rock_forced

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..problem.case import Case
-from ..problem.pulling import yielded
-from ..problem.quantities import ON_ITS_FACE, Array, Integers
+from ..problem.wall.case import Case
+from ..problem.wall.ties_on_wall import yielded
+from ..quantities import ON_ITS_FACE, Array, Integers
 from ..result.samples import interpolated
 from .law import Law, Push, Ties, Toe, acceleration, nystroem, pushed
 from .motion import Motion

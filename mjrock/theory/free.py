@@ -19,8 +19,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ..problem.case import Case
-from ..problem.quantities import ON_ITS_FACE, Array
+from ..problem.wall.case import Case
+from ..quantities import ON_ITS_FACE, Array
 from ..result.rocking import Impact
 from .motion import Motion
 

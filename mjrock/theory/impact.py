@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import null_space
 
-from ..problem.lines import lines_of, rates
-from ..problem.masonry import Masonry
-from ..problem.pile import Pile
-from ..problem.quantities import Array, Flags, require_array, require_kind
-from ..problem.restitution import Restitution
+from ..problem.damping.restitution import Restitution
+from ..problem.masonry.lines import lines_of, rates
+from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.pile import Pile
+from ..quantities import Array, Flags, require_array, require_kind
 
 NOTHING = 1e-9
 """Share of the momentum, and of the speed, that counts as none [-]."""

@@ -3,9 +3,10 @@
     theta'' = -[s a cos(theta) - b sin(theta)] - sum T lever / I_0,
     a = (P + W d a_v/g + s W z a_g/g) / I_0,      b = (Q + W z a_v/g - s W d a_g/g) / I_0,
 
-s = +1 or -1 the side to which the wall rocks, d and z the distance of the centroid from that toe inwards and upwards,
-P and Q the restoring moment of weight, loads and thrusts (`mjrock.problem.restoring`), and T the force of each tie.
-Without effects a = p^2 (sin(alpha) + s cos(alpha) a_g/g) and b = p^2 (cos(alpha) - s sin(alpha) a_g/g), which is Eq. 1.
+s = +1 or -1 the side to which the wall rocks, d and z the distance of the centroid from that toe inwards and upwards, P
+and Q the restoring moment of weight, loads and thrusts (`mjrock.problem.wall.restoring_moment`), and T the force of
+each tie. Without effects a = p^2 (sin(alpha) + s cos(alpha) a_g/g) and b = p^2 (cos(alpha) - s sin(alpha) a_g/g), which
+is Eq. 1.
 """
 
 from __future__ import annotations
@@ -16,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
-from ..problem.case import Case
-from ..problem.motion import GroundMotion
-from ..problem.pulling import Pull, pulled
-from ..problem.quantities import GRAVITY, Array, Integers
+from ..problem.ground.motion import GroundMotion
+from ..problem.wall.case import Case
+from ..problem.wall.ties_on_wall import Pull, pulled
+from ..quantities import GRAVITY, Array, Integers
 
 SMALL = 0.05
 """Largest change of an angle in a step for which its sine and cosine are taken from series [rad]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..problem.quantities import Array
+from ..quantities import Array
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import jitable
-from ..problem.pulling import pulled
+from ..problem.wall.ties_on_wall import pulled
 from .law import SLACK, TAUT, YIELDING, Push, Ties, Toe, nystroem, pull_of
 
 HALVINGS = 50

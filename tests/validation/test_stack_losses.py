@@ -14,7 +14,7 @@ from explicit_blocks import explicit
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.problem.pile import Pile
+from mjrock.problem.masonry.pile import Pile
 from mjrock.scene.of_case import course_of
 from mjrock.theory.impact import as_one
 

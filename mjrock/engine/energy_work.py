@@ -1,0 +1,251 @@
+"""The accounts of a run: where its energy is at every step, and what dashpots, friction and the ground did to it.
+
+Everything follows from the recorded poses and half-step velocities. Energies are evaluated half a step before each
+pose, where the leapfrog's velocity is exact and where a touch that is centred in time falls. From one of these times to
+the next, which is the window of a step, a constant force acts. What it does to the kinetic energy is force times mean
+velocity times length, without error. With Newmark's beta = 1/4 a spring stores exactly what it should; with another
+beta the residual contains the (1/4 - beta) h^2 k v^2 / 2 by which the step shifts the energy of the contact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled, jitable
+from ..geometry.frames import take_frames
+from ..geometry.kinematics import along, gap
+from ..quantities import Array, Integers
+from ..result.ledger import Ledger
+from ..scene.course import Course
+from ..scene.ground import Shaking, mean_acceleration
+from ..scene.potential import spring_energy
+from ..scene.scene import Scene
+from .points import Points, points_of
+from .record import Kinds, Record, Steps, Windows
+from .rows import Step, impratio_of, row_of
+
+
+def ground_work(scene: Scene, course: Course, steps: Steps) -> Array:
+    """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
+    work, windows = np.zeros(len(steps.t)), steps.windows
+    for axis, shaking in enumerate(course.ground):
+        if len(shaking.accel):
+            momentum = windows.mean[:, axis::3] @ scene.mass
+            _ground_work(shaking, steps.t, steps.h, windows.width, momentum, work)
+    return work
+
+
+@compiled
+def _ground_work(shaking: Shaking, t: Array, h: Array, width: Array, momentum: Array, work: Array) -> None:
+    for n in range(len(t)):
+        work[n] -= mean_acceleration(shaking, t[n], h[n]) * momentum[n] * width[n]
+
+
+class ContactWork(NamedTuple):
+    """What the contacts take from a motion.
+
+    Args:
+        groups: names of the groups of contacts.
+        dashpots, friction: work in the window of each step [J], shapes (steps, groups) and (steps,).
+        lift: impulse that the rows of sliding contacts add to their normal force, over the impulse of the contact law
+            in the steps in which they slide [-].
+    """
+
+    groups: tuple[str, ...]
+    dashpots: Array
+    friction: Array
+    lift: float
+
+
+def contact_work(scene: Scene, steps: Steps) -> ContactWork:
+    """What the contacts take from a motion."""
+    groups = tuple(dict.fromkeys(scene.group))
+    work = Work(np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t)), np.zeros(2))
+    number = np.array([groups.index(name) for name in scene.group])
+    points, room = points_of(scene, steps.method), Room.of(scene)
+    _contact_work(points, number, steps.record, steps.windows, steps.kinds, room, work)
+    lift, pressed = work.impulses.tolist()
+    return ContactWork(groups, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
+
+
+def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
+    """The ledger of a run."""
+    windows = steps.windows
+    stored, taken = scene.accounts(windows.pose, windows.velocity)
+    stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
+    groups, dashpots, friction, _ = contact_work(scene, steps)
+    friction[:-1] -= given_back(scene, steps)
+    return Ledger(
+        t=windows.t,
+        kinetic=stored[:, 0],
+        potential=stored[:, 1],
+        elastic=stored[:, 2],
+        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate(groups)},
+        friction=_since_release(friction),
+        ground=_since_release(ground_work(scene, course, steps)),
+        ties=dict(zip(scene.tie_names, (taken - taken[0]).T, strict=True)),
+    )
+
+
+def given_back(scene: Scene, steps: Steps) -> Array:
+    """Energy that ties and constant forces regain after each step but the last [J], shape (steps - 1,).
+
+    An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken on the
+    way is then there again. It would else add up under a thrust that a resting wall bears for long.
+    """
+    pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
+    pose[::2], pose[1::2] = steps.pose, (steps.pose + steps.h[:, None] * steps.record.after)[:-1]
+    stored = scene.accounts(pose, np.zeros_like(pose))[0].sum(axis=1)
+    gained: Array = stored[2::2] - stored[1::2]
+    return gained
+
+
+def _since_release(work: Array) -> Array:
+    """Sums up to the start of each window."""
+    return np.append(0.0, np.cumsum(work[:-1]))
+
+
+class Drag(NamedTuple):
+    """Force of a dashpot, and what Newmark's beta adds to the spring beside it [N]."""
+
+    dashpot: float
+    sprung: float
+
+
+@jitable
+def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: float, mu: float) -> tuple[float, float]:
+    """Normal and tangential force of an elliptic contact, as MuJoCo solves it.
+
+    A contact that sticks has the forces of its two rows. One that slides has a force on the cone, mu times the normal
+    one: the point of the cone that is nearest to the forces of the rows, weighted with their inertias. One that is
+    pulled open has none.
+
+    Args:
+        normal, stopping: forces of the two rows without the cone [N].
+        slip_inertia, inertia: inertias of the two rows [kg].
+        mu: coefficient of friction [-].
+    """
+    sideways = abs(stopping)
+    if normal > 0 and sideways <= mu * normal:
+        return normal, stopping
+    share = mu * mu * inertia / slip_inertia
+    pressing = (normal + mu * sideways * inertia / slip_inertia) / (1 + share)
+    if pressing <= 0:
+        return 0.0, 0.0
+    return pressing, math.copysign(mu * pressing, stopping)
+
+
+class Work(NamedTuple):
+    """What the contacts take, to be filled.
+
+    Args:
+        dashpots, friction: work in the window of each step [J], shapes (steps, groups) and (steps,).
+        impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
+    """
+
+    dashpots: Array
+    friction: Array
+    impulses: Array
+
+
+class Room(NamedTuple):
+    """Room for one step.
+
+    Args:
+        frames, seam, next_seam: frames of the pose, and of the two ends of its window.
+        middle, acceleration, mean: velocity around the pose, acceleration, and mean velocity in the window, (n nv,).
+        dashpot, inertia: of the row of each contact, shape (m,).
+    """
+
+    frames: Array
+    seam: Array
+    next_seam: Array
+    middle: Array
+    acceleration: Array
+    mean: Array
+    dashpot: Array
+    inertia: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> Room:
+        """Room for a step of a scene."""
+        freedom, coordinates, contacts = scene.places.freedom, len(scene.masses), len(scene.k)
+        frames = (freedom.frames(len(scene.mass)) for _ in range(3))
+        return cls(*frames, *np.empty((3, coordinates)), *np.empty((2, contacts)))
+
+
+@jitable
+def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, room: Room) -> None:
+    """Write frames and rates of step n of the record."""
+    take_frames(record.pose[n], room.frames, axes)
+    take_frames(windows.pose[n], room.seam, axes)
+    take_frames(windows.pose[min(n + 1, len(record.h) - 1)], room.next_seam, axes)
+    for j in range(len(room.mean)):
+        room.middle[j] = 0.5 * (record.before[n, j] + record.after[n, j])
+        room.acceleration[j] = (record.after[n, j] - record.before[n, j]) / record.h[n]
+        room.mean[j] = windows.mean[n, j]
+
+
+@jitable
+def take_rows(points: Points, step: Step, room: Room) -> float:
+    """Write dashpot and inertia of the row of every contact in a step, and return impratio [-]."""
+    impratio = math.inf
+    for i in range(len(room.inertia)):
+        room.dashpot[i], room.inertia[i] = row_of(points.law, points.inertia, i, step)
+        impratio = min(impratio, impratio_of(points.inertia, i, room.inertia[i], step.h))
+    return impratio
+
+
+@jitable
+def drag_of(law_k: float, dashpot: float, inertia: float, step: Step, i: int, rate: float, curve: float) -> Drag:
+    """Force of the dashpot of contact i, centred or at the end of the step, and what Newmark's beta adds to its spring.
+
+    Args:
+        law_k: its spring [N/m].
+        dashpot, inertia: its row [N s/m, kg].
+        step, i: the step, and which contact.
+        rate, curve: mean velocity of the contact in the step, and its acceleration [m/s, m/s2].
+    """
+    sprung = step.beta[i] * step.h**2 * law_k * curve
+    # the row acts on the velocity that the leapfrog keeps, half a step before the pose
+    return Drag(dashpot * (rate - 0.5 * step.h * curve) + inertia * curve - sprung, sprung)
+
+
+@compiled
+def _contact_work(
+    points: Points, number: Integers, record: Record, windows: Windows, kinds: Kinds, room: Room, work: Work
+) -> None:
+    """Add up the work of dashpots and friction in the window of each step; `number` is the group of each contact."""
+    places, law = points.places, points.law
+    for n in range(len(record.h)):
+        take_step(record, windows, places.axes, n, room)
+        kind = kinds.kind[n]
+        step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
+        impratio = take_rows(points, step, room)
+        for i in range(len(law.k)):
+            closed = gap(places, i, room.frames, room.middle, room.acceleration)
+            given = spring_energy(places, law.k, i, room.seam) - spring_energy(places, law.k, i, room.next_seam)
+            inertia = room.inertia[i]
+            drag = drag_of(law.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
+            pressed = -(law.k[i] * closed.value + drag.dashpot + drag.sprung)
+            if not kinds.released_on[i] if n == 0 else closed.value >= 0:
+                work.dashpots[n, number[i]] += given
+                continue
+            # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
+            opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
+            work.dashpots[n, number[i]] += drag.dashpot * opened if pressed > 0 else given
+            if law.friction[i] > 0:
+                dragging, lift = record.friction[n, i], 0.0
+                if math.isnan(dragging):
+                    slip = along(places, i, room.frames, record.after[n]).bodies
+                    stopping = -impratio * inertia * slip / step.h
+                    pressing, dragging = cone_force(pressed, stopping, impratio * inertia, inertia, law.friction[i])
+                    lift = pressing - max(pressed, 0.0)  # what a sliding cone presses on top of the law
+                    if points.rubs[i] and abs(stopping) > law.friction[i] * max(pressed, 0.0):
+                        work.impulses[0] += lift * step.h
+                        work.impulses[1] += max(pressed, 0.0) * step.h
+                slipped = along(places, i, room.frames, room.mean).bodies * windows.width[n]
+                work.friction[n] -= dragging * slipped + lift * opened

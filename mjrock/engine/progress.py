@@ -1,0 +1,88 @@
+"""Progress: what one step of a run hands to the next, and where the run is."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.frames import frames_of
+from ..quantities import Array, Flags
+from .memory import Memory
+from .pace import Pace
+from .setting import Setting
+from .sliding import Sliding
+from .sticking import Joints
+from .touches import Openings, Springs, Touches
+
+
+class Progress(NamedTuple):
+    """What one step hands to the next.
+
+    Args:
+        acceleration: in the last step, shape (n nv,).
+        rate: its rate, from the last two steps, shape (n nv,).
+        velocity_now, acceleration_now: room for the values at the time of the pose, shape (n nv,).
+        frames, next_frames: frames of the pose before and after the step.
+        openings: gap of each contact, slack of each tie, and their rates.
+        closed: which contacts are closed and which ties are taut, shape (m + t,).
+        touches: room for the touches of a step.
+        springs: of the contacts and the ties.
+        joints: where sticking edges stuck.
+        sliding: which contacts slide.
+    """
+
+    acceleration: Array
+    rate: Array
+    velocity_now: Array
+    acceleration_now: Array
+    frames: Array
+    next_frames: Array
+    openings: Openings
+    closed: Flags
+    touches: Touches
+    springs: Springs
+    joints: Joints
+    sliding: Sliding
+
+    @classmethod
+    def of(cls, memory: Memory, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
+        """The state before the first step."""
+        springs, freedom = Springs.of(setting.points.law, setting.ties), setting.points.places.freedom
+        frames = frames_of(memory.pose, freedom)
+        closed = np.zeros(len(springs.k), dtype=np.bool_)
+        acceleration, rate, velocity_now, acceleration_now = np.zeros((4, len(memory.velocity)))
+        rates = acceleration, rate, velocity_now, acceleration_now
+        touching = Openings.of(springs), closed, Touches.of(springs), springs
+        return cls(*rates, frames, frames.copy(), *touching, joints, sliding)
+
+
+class Clock(NamedTuple):
+    """Where a run of fitted steps is.
+
+    Args:
+        t: time of the next pose [s].
+        h: length of step that the pace allows [s].
+        last: length of the last step, zero at the release [s].
+        energy: twice the kinetic energy at the last touch [J], by which changes are measured.
+        calm: how many steps in a row changed little.
+        fresh: whether no rate of the acceleration is known: after a touch, and at the release.
+        abrupt: whether the last step changed the velocity so much that it says nothing of the next.
+        touches: how many touches have been met.
+        ended: whether the run is over.
+    """
+
+    t: float
+    h: float
+    last: float
+    energy: float
+    calm: int
+    fresh: bool
+    abrupt: bool
+    touches: int
+    ended: bool
+
+    @classmethod
+    def started(cls, pace: Pace, energy: float) -> Clock:
+        """At the release, with the energy of the release [J]."""
+        return cls(0.0, pace.short, 0.0, max(2 * energy, pace.least_energy), 0, True, False, 0, False)

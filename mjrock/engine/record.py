@@ -1,0 +1,169 @@
+"""Steps of the engine: what a run of MuJoCo leaves behind, or what broke it down."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ..method import METHOD, Method
+from ..quantities import Array, Flags, Integers
+from ..result.response import State
+from ..result.samples import interpolated
+
+
+class StepError(RuntimeError):
+    """The engine warned, or the state is no longer finite, at the time given [s]."""
+
+    def __init__(self, what: str, t: float) -> None:
+        super().__init__(what)
+        self.t = t
+
+
+class Record(NamedTuple):
+    """Steps one after the other, or room for them.
+
+    Args:
+        t: times [s], shape (steps,).
+        h: step lengths [s], shape (steps,).
+        pose: of each body [m, m, rad], shape (steps, n nq).
+        before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (steps, n nv).
+        friction: friction of each contact that slides by Coulomb's law, NaN for one that has its row [N], (steps, m).
+    """
+
+    t: Array
+    h: Array
+    pose: Array
+    before: Array
+    after: Array
+    friction: Array
+
+    @classmethod
+    def of(cls, steps: int, coordinates: int, contacts: int) -> Record:
+        """Room for a number of steps."""
+        t, h = np.empty((2, steps))
+        pose, before, after = np.empty((3, steps, coordinates))
+        return cls(t, h, pose, before, after, np.empty((steps, contacts)))
+
+    def first(self, n: int) -> Record:
+        """A copy of the first n steps."""
+        return Record(*(values[:n].copy() for values in self))
+
+    @staticmethod
+    def joined(parts: list[Record]) -> Record:
+        """Records one after the other."""
+        return parts[0] if len(parts) == 1 else Record(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+class Kinds(NamedTuple):
+    """The rows of the steps, which are of two kinds: those that resolve the contacts, and those that do not.
+
+    Args:
+        beta: Newmark's beta of each contact [-] in the two kinds, shape (2, m).
+        ringing: the extra dashpots of each contact in units of h k [-], shape (2, m).
+        kind: which of the two each step is, shape (steps,).
+        released_on: which contacts the engine sees closed at the release, where gaps are zero to rounding, shape (m,).
+    """
+
+    beta: Array
+    ringing: Array
+    kind: Integers
+    released_on: Flags
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What the engine did.
+
+    Args:
+        record: the steps.
+        kinds: their rows.
+        touches: how many touches were met with a short step.
+        method: the constants of the method by which they were made.
+    """
+
+    record: Record
+    kinds: Kinds
+    touches: int = 0
+    method: Method = METHOD
+
+    @property
+    def t(self) -> Array:
+        """Times of the poses [s], shape (steps,)."""
+        return self.record.t
+
+    @property
+    def h(self) -> Array:
+        """Lengths of the steps [s], shape (steps,)."""
+        return self.record.h
+
+    @property
+    def pose(self) -> Array:
+        """Poses [m, m, rad], shape (steps, n nq)."""
+        return self.record.pose
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocities at the times of the poses, shape (steps, 3 n)."""
+        velocity: Array = 0.5 * (self.record.before + self.record.after)
+        return velocity
+
+    def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, State]:
+        """Samples of a motion: times [s], poses and velocities of shape (n, bodies, 3), and the state at the end.
+
+        Args:
+            duration: up to when samples that are interpolated reach [s].
+            spacing: their distance [s]; None takes every `stride`-th step as it is.
+            stride: which steps are taken then.
+        """
+        if spacing is None:
+            t, pose, velocity = self.t[::stride], self.pose[::stride], self.velocity[::stride]
+            last = self.pose[-1], self.velocity[-1]
+        else:
+            finish = min(float(self.t[-1]), duration)
+            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
+            pose, velocity = interpolated(self.t, self.pose, self.velocity, t)
+            last = pose[-1], velocity[-1]
+        shape = (len(t), -1, 3)
+        return t, pose.reshape(shape), velocity.reshape(shape), (last[0].reshape(-1, 3), last[1].reshape(-1, 3))
+
+    @cached_property
+    def windows(self) -> Windows:
+        """The windows of the steps."""
+        before, after = self.record.before, self.record.after
+        t, pose, velocity = self.t - 0.5 * self.h, self.pose - 0.5 * self.h[:, None] * before, before.copy()
+        t[0], pose[0], velocity[0] = self.t[0], self.pose[0], self.velocity[0]
+        end = np.concatenate([velocity[1:], after[-1:]])
+        width, mean = np.append(np.diff(t), self.h[-1]), 0.5 * (velocity + end)
+        square = np.append(0.0, self.h[1:] ** 2)  # of the distance from pose to seam, four times
+        late = np.diff(square)[:, None] * ((after - before) / self.h[:, None])[:-1] / 8
+        placed = pose - np.concatenate([np.zeros_like(pose[:1]), np.cumsum(late, axis=0)])
+        return Windows(t, width, pose, placed, velocity, mean)
+
+
+class Windows(NamedTuple):
+    """The windows of the leapfrog, in which the force of a step acts, from half a step before a pose to half a step
+    after it.
+
+    The first starts at the release: before it no force has acted. Over a window a constant force does the work that is
+    its product with the mean velocity and the width, without error.
+
+    Args:
+        t: start of each window [s], shape (steps,).
+        width: its length, the last as long as its step [s], shape (steps,).
+        pose, velocity: at its start, the pose as the springs of the contacts see it, shape (steps, 3 n).
+        placed: the same as the weight sees it, moved by mean velocity times width in each window, shape (steps, 3 n).
+            Where the step changes from h to h', a pose that falls back to the seam with its velocity alone misses
+            a (h'^2 - h^2) / 8, with a the acceleration of the step.
+        mean: the mean velocity in it, shape (steps, 3 n).
+    """
+
+    t: Array
+    width: Array
+    pose: Array
+    placed: Array
+    velocity: Array
+    mean: Array

@@ -1,0 +1,85 @@
+"""What a run warns of: a fixed step that scatters, a base that slides, a ledger that does not close."""
+
+from __future__ import annotations
+
+import warnings
+
+from ..method import METHOD
+from ..result.response import Response
+from ..scene.scene import Scene
+from .energy_work import contact_work
+from .points import points_of
+from .reading import AskedWall
+from .record import Steps
+from .run import Run, sound_timestep
+
+SCATTER = 0.1
+"""Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
+step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts/convergence.py`). Without a side stop
+|e| scatters by less than 0.002 omega h."""
+WORTH_SAYING = 0.02
+"""Scatter of |e| that is warned of [-]."""
+OPEN = 0.05
+"""Energy that the ledger may have too much before that is warned of, over the energy of the release and of the
+ground motion [-]."""
+LIFTED = 0.02
+"""Share of the normal force that the rows of sliding contacts may add to it before that is warned of [-]."""
+SLID = 0.01
+"""Sliding of a base that should hold that is warned of, over b [-]."""
+
+
+def warn_if_coarse(scene: Scene, h: float) -> None:
+    """Warn of a fixed step h [s] with which |e| depends on the phase of the touch."""
+    resolved = h * scene.highest_frequency
+    scatter = SCATTER * resolved if (scene.bears == 0).any() else 0.0
+    if scatter > WORTH_SAYING and resolved <= METHOD.smooth:
+        warnings.warn(
+            f"with a fixed step of {h:.3g} s |e| scatters by {scatter:.0%} (standard deviation) with the phase of the "
+            f"touch; below {WORTH_SAYING / SCATTER / scene.highest_frequency:.3g} s it is less than "
+            f"{WORTH_SAYING:.0%}, and fitted steps have no such scatter",
+            stacklevel=3,
+        )
+    if resolved > METHOD.smooth:
+        warnings.warn(
+            f"a step of {h:.3g} s does not resolve the contacts: impacts lose what the step makes of them; "
+            f"the largest sound step is {sound_timestep(scene.highest_frequency):.3g} s",
+            stacklevel=3,
+        )
+
+
+def warn_if_lifted(scene: Scene, steps: Steps) -> None:
+    """Warn of contacts that slide on the rows of a fixed step, which press them apart."""
+    if not points_of(scene).rubs.any():
+        return
+    lift = contact_work(scene, steps).lift
+    if lift > LIFTED:
+        warnings.warn(
+            f"contacts that slide are pressed apart by {lift:.0%} of their normal force on top of it: the rows of a "
+            "fixed step, which are those of the model text, do not slide as Coulomb has it. Pass coulomb=True, or take "
+            "steps that fit the motion",
+            stacklevel=3,
+        )
+
+
+def warn_if_slid(run: Run, asked: AskedWall) -> None:
+    """Warn of a base that has slid although it should hold."""
+    half_base, slid = asked.case.block.half_base, run.reading.slid
+    if asked.contacts.base.friction is None and slid > SLID * half_base:
+        warnings.warn(
+            f"the base slid by up to {slid:.3g} m, {slid / half_base:.1%} of b, although it should hold: no "
+            "edge was loaded enough to hold it. Give the base the friction that it has",
+            stacklevel=3,
+        )
+
+
+def warn_if_open(response: Response, run: Run, asked: AskedWall, advice: str) -> None:
+    """Warn of a ledger with energy that nothing has put in, with advice."""
+    if response.ledger is None:
+        return
+    standing = asked.case.returns_from(response.theta)
+    unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
+    if unpaid > OPEN:
+        warnings.warn(
+            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}",
+            stacklevel=3,
+        )

@@ -1,0 +1,241 @@
+"""The interfaces of one wall: its base and, where it has one, its side stop."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...quantities import require_kind, require_real, require_stiffness, require_text, require_within, shown
+from ..wall.block import Block
+from .interface import Interface, reference_frequency, require_points
+from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
+from .restitution import Restitution
+
+HOLDS = 10.0
+"""Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
+Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
+
+
+def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
+    """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
+    asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
+    try:
+        found = law(wall, e, k_base)
+    except TypeError as error:
+        raise TypeError(f"{asked}: {error}") from None
+    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str) or np.shape(found)[:1] != (2,):
+        raise TypeError(f"{asked}: it gives {shown(found)}")
+    xi_base, xi_side = found
+    return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
+
+
+def required_layout(points: int, k_base: float, k_side: float | None) -> tuple[int, float, float | None]:
+    """Contact lines and stiffnesses [N/m3] as numbers that they can be."""
+    k_base = require_stiffness("base stiffness k_n", k_base)
+    k_side = None if k_side is None else require_stiffness("side stiffness k_n", k_side)
+    return require_points(points), k_base, k_side
+
+
+def required_frictions(friction: float | None, side_friction: float | None) -> tuple[float | None, float | None]:
+    """Coefficients of friction of base and side as numbers that they can be."""
+    given = {"friction": friction, "side_friction": side_friction}
+    base, side = (None if one is None else require_within(name, one, 0.0, 10.0) for name, one in given.items())
+    return base, side
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """The interfaces of one wall: its base and, where it has one, its side stop.
+
+    Args:
+        base: the base, over the thickness of the wall.
+        side: the side stop over the whole inner face, or None for a wall that never meets one.
+        law: name of the damping law, recorded in the generated model.
+    """
+
+    base: Interface
+    side: Interface | None = None
+    law: str = "given"
+
+    def __post_init__(self) -> None:
+        require_kind("base", self.base, Interface)
+        require_kind("side", self.side, Interface, type(None))
+        require_text("law", self.law)
+
+    def __repr__(self) -> str:
+        faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])
+        parts = []
+        for name, one in faces:
+            held = "" if one.friction is None else f", friction {one.friction:.3g}"
+            parts.append(f"{name} k_n = {one.k_n:.4g} N/m3, xi = {one.xi:.4g}{held}")
+        return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"
+
+    @classmethod
+    def from_damping(
+        cls,
+        wall: Block,
+        *,
+        k_base: float,
+        xi_base: float,
+        k_side: float | None = None,
+        xi_side: float = 0.0,
+        points: int = 2,
+        friction: float | None = None,
+        side_friction: float | None = None,
+        law: str = "given",
+    ) -> Contacts:
+        """Interfaces of `wall` from stiffnesses [N/m3] and damping ratios [-]; no side stop without `k_side`.
+
+        Friction is that of `Interface`: by default the base holds and the side is smooth.
+
+        Raises:
+            ValueError: for a value outside its range, or a base too soft for the wall to stand on.
+        """
+        require_kind("wall", wall, Block)
+        points, k_base, k_side = required_layout(points, k_base, k_side)
+        friction, side_friction = required_frictions(friction, side_friction)
+        omega = reference_frequency(wall, k_base, points)
+        base = Interface(k_base, xi_base, 2 * wall.half_base, wall.base_length, omega, points, friction)
+        side = None
+        if k_side is not None:
+            side = Interface(k_side, xi_side, 2 * wall.h, wall.length, omega, points, side_friction)
+        toppling = wall.weight * wall.centroid_height
+        if base.K_rot <= toppling:
+            least = k_base * toppling / base.K_rot
+            raise ValueError(
+                f"base stiffness k_n = {k_base:g} N/m3 cannot hold the wall upright; "
+                f"the valid range is k_n > {least:.3g} N/m3"
+            )
+        return cls(base, side, law)
+
+    @classmethod
+    def from_law(
+        cls,
+        wall: Block,
+        e: Restitution,
+        k_base: float,
+        k_side: float | None = None,
+        law: Law | str | None = None,
+        points: int = 2,
+        amplitude: float = 0.5,
+        friction: float | None = None,
+        side_friction: float | None = None,
+    ) -> Contacts:
+        """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
+
+        By default the base holds and the side is smooth, which is what the laws were fitted for.
+        `mjrock.matched_contacts` finds the damping for another friction.
+
+        Args:
+            wall, e: the wall, and the restitution that is asked for.
+            k_base, k_side: interface stiffness of base and side [N/m3]; no side stop without `k_side`.
+            law: a law or its name; None takes CALIBRATED for two lines and CALIBRATED_BED for more. A law of your own
+                is called as `law(wall, e, k_base)`; a `DampingLaw` is told `k_side` and `amplitude` too.
+            points: contact lines a face.
+            amplitude: rotation theta_0/alpha from which the wall falls to the rebound that matters most [-].
+            friction, side_friction: coefficients as in `Interface`.
+
+        Raises:
+            ValueError: as `from_damping`, and what the law raises.
+
+        Warns:
+            UserWarning: what the law warns of; where it was fitted for another number of lines or another friction; and
+                one-sided where it was fitted in another code, as PUBLISHED was.
+        """
+        require_kind("wall", wall, Block)
+        require_kind("e", e, Restitution)
+        points, k_base, k_side = required_layout(points, k_base, k_side)
+        friction, side_friction = required_frictions(friction, side_friction)
+        if law is None:
+            law = CALIBRATED if points == 2 else CALIBRATED_BED
+        elif isinstance(law, str):
+            law = law_named(law)
+        elif not callable(law):
+            raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
+        if k_side is not None:
+            e.require_rebound()
+        if isinstance(law, DampingLaw):
+            xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
+            if law.points not in (None, points):
+                warnings.warn(
+                    f"{law.name} was fitted for {law.points} contact lines a face, not {points}", stacklevel=2
+                )
+            if law.points is None and k_side is not None:
+                warnings.warn(
+                    f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on "
+                    "the contacts of this one (docs/damping.md); CALIBRATED is made for them",
+                    stacklevel=2,
+                )
+        else:
+            xi_base, xi_side = _predicted(law, wall, e, k_base)
+        if isinstance(law, DampingLaw) and (side_friction or (friction is not None and friction < HOLDS)):
+            warnings.warn(
+                f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
+                f"side_friction = {side_friction}; matched_contacts finds the damping for them",
+                stacklevel=2,
+            )
+        name = getattr(law, "name", getattr(law, "__name__", "given"))
+        return cls.from_damping(
+            wall,
+            k_base=k_base,
+            xi_base=xi_base,
+            k_side=k_side,
+            xi_side=xi_side,
+            points=points,
+            friction=friction,
+            side_friction=side_friction,
+            law=name,
+        )
+
+    def faces(self, *, side_stop: bool) -> list[Interface]:
+        """The interfaces that a case with or without a side stop meets, the base first."""
+        return [self.base] + ([self.side] if side_stop and self.side else [])
+
+    def side_up_to(self, top: float) -> Interface:
+        """The interface of a side stop that reaches from the base up to `top` [m], with the same lines spread over it.
+
+        Raises:
+            ValueError: if there is no side.
+        """
+        return self._stopping if top == self._stopping.face else replace(self._stopping, face=top)
+
+    @property
+    def _stopping(self) -> Interface:
+        if self.side is None:
+            raise ValueError("the case has a side stop but the contacts have none; give k_side when making them")
+        return self.side
+
+    def require_fit(self, wall: Block, *, side_stop: bool) -> None:
+        """Raise ValueError unless these interfaces have the size of `wall`, and a side where the case has a stop."""
+        faces = [("base", self.base, (2 * wall.half_base, wall.base_length))]
+        if side_stop:
+            faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
+        for name, interface, asked in faces:
+            made = interface.face, interface.length
+            if not np.allclose(made, asked, rtol=1e-9, atol=0):
+                raise ValueError(
+                    f"the {name} contacts were made for a face of {made[0]:g} x {made[1]:g} m, "
+                    f"but that of the wall of this case is {asked[0]:g} x {asked[1]:g} m"
+                )
+
+    def uplift_rotation(self, wall: Block) -> float:
+        """Rotation at which the first edge of a wall at rest decompresses [rad]; below it the wall does not rock."""
+        return wall.weight / (float(self.base.stiffness.sum()) * wall.half_base)
+
+    def highest_frequency(self, wall: Block, *, side_stop: bool) -> float:
+        """The highest natural frequency of the wall with every contact closed and free to slide [rad/s].
+
+        No contact state of the run can vibrate faster: opening a contact or holding the base only lowers it.
+        """
+        base = self.base
+        vertical = float(base.stiffness.sum()) / wall.mass
+        if not side_stop:
+            return math.sqrt(max(vertical, base.K_rot / wall.inertia))
+        assert self.side is not None
+        horizontal = float(self.side.stiffness.sum()) / wall.mass
+        return math.sqrt(max(vertical, horizontal, (base.K_rot + self.side.K_rot) / wall.inertia))

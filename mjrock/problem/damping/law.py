@@ -1,0 +1,279 @@
+"""The damping law: the damping ratio that loses in a compliant contact what restitution loses at once."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+import warnings
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any, Self
+
+from ...files import write_text
+from ...quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within
+from ..wall.block import Block
+from .forms import FORMS, Form, Groups, PowerLaw
+from .restitution import Restitution
+
+LEAST, HIGHEST = 1e-3, 0.3
+"""Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
+MARGIN = 0.03
+"""Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
+SIZE = 2.0
+"""Rebound over the uplift rotation from which a law can be expected to give it [-]."""
+POSITIVE = ("coefficient", "scale", "floor", "bounce", "inertia", "weight")
+"""Coefficients of the formulas that cannot be negative."""
+DENSITY = 2000.0
+"""Density of the walls that laws are fitted on [kg/m3]."""
+
+
+@dataclass(frozen=True)
+class DampingLaw:
+    """A formula for the base and one for the side, their source, and the ranges they were fitted over.
+
+    Calling a law gives `(xi_base, xi_side)` as fractions, and warns (UserWarning) outside the fitted ranges, or where
+    no damping of the base loses as much or as little as is asked for; it then gives the damping that comes closest.
+
+    Args:
+        name: what a generated model records.
+        source: where the coefficients come from.
+        base: formula of the base, of e_2s.
+        side: formula of the side stop, of e_side.
+        R_range: half diagonals covered by the fit [m].
+        slenderness_range: h/b covered by the fit [-].
+        k_n_range: interface stiffnesses covered by the fit [N/m3].
+        side_range: |e_side| covered by the fit [-].
+        points: contact lines a face that the law was fitted for, or None where the source does not say.
+        scalable: whether size and density enter through dimensionless groups alone. `R_range` is then no limit, and
+            `k_n_range` holds for walls of 2000 kg/m3 and goes with the density.
+        runs: matched simulations behind base and side.
+        errors: standard errors of the coefficients by "base" and "side" and name, where they are known.
+    """
+
+    name: str
+    source: str
+    base: Form
+    side: Form
+    R_range: tuple[float, float]
+    slenderness_range: tuple[float, float]
+    k_n_range: tuple[float, float]
+    side_range: tuple[float, float] = (0.0, 1.0)
+    points: int | None = None
+    scalable: bool = False
+    runs: tuple[int, int] = (0, 0)
+    errors: Mapping[str, Mapping[str, float]] = field(default_factory=dict, compare=False)
+
+    def __post_init__(self) -> None:
+        for name in ("name", "source"):
+            require_kind(name, getattr(self, name), str)
+        for name in ("R_range", "slenderness_range", "k_n_range", "side_range"):
+            low, high = require_array(name, getattr(self, name), (2,)).tolist()
+            if not 0 <= low <= high:
+                raise ValueError(f"{name} = {low:g} to {high:g} is no range of positive numbers")
+            keep(self, **{name: (low, high)})
+        for part, form in (("base", self.base), ("side", self.side)):
+            require_kind(part, form, *FORMS.values())
+            checked = {
+                key: require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE else -1e6, 1e6)
+                for key, value in asdict(form).items()  # type: ignore[call-overload]
+                if key != "r_squared"
+            }
+            keep(self, **{part: replace(form, **checked)})  # type: ignore[type-var]
+
+    def __repr__(self) -> str:
+        lines = "" if self.points is None else f", {self.points} lines a face"
+        (low, high), (softest, stiffest) = self.slenderness_range, self.k_n_range
+        return f"<DampingLaw {self.name}: h/b {low:g} to {high:g}, k_n {softest:g} to {stiffest:g} N/m3{lines}>"
+
+    def __call__(
+        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+    ) -> tuple[float, float]:
+        """Damping ratios of base and side [-]; the published law depends on neither `k_side` nor `amplitude`.
+
+        Args:
+            wall: the wall.
+            e: the restitution asked for.
+            k_n: interface stiffness of the base [N/m3].
+            k_side: interface stiffness of the side [N/m3]; that of the base where it is None.
+            amplitude: rotation over alpha that the wall comes from [-], in (0, 1].
+
+        Raises:
+            ValueError: for a value outside its range, or if `e.side` is zero (its logarithm has no value).
+        """
+        require_kind("wall", wall, Block)
+        require_kind("e", e, Restitution)
+        k_n = require_stiffness("k_n", k_n)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
+        if e.side == 0:
+            raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
+        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
+        groups = Groups.of(wall, e, k_n, k_side, amplitude)
+        outside = self._outside(wall, e, k_n, k_side)
+        if outside:
+            warnings.warn(f"{self.name}: outside the range of the fit: {'; '.join(outside)}", stacklevel=2)
+        xi_base = float(self.base.xi(groups, groups.base_loss))
+        if self.scalable:
+            lowest, highest = self.reach(wall, k_n, amplitude)
+            if not lowest <= e.base <= highest:
+                warnings.warn(
+                    f"{self.name}: no damping of this base makes e_2s = {e.base:.4g}; it reaches {lowest:.4g} to "
+                    f"{highest:.4g}, and gets the damping that comes closest",
+                    stacklevel=2,
+                )
+            xi_base = min(max(xi_base, LEAST), HIGHEST)
+        return xi_base, float(self.side.xi(groups, groups.side_loss))
+
+    def reach(self, wall: Block, k_n: float, amplitude: float = 0.5) -> tuple[float, float]:
+        """The lowest and the highest e_2s that a base of `k_n` [N/m3] can be given, as far as the law knows.
+
+        They belong to damping ratios of 0.3 and 0.001; the published law knows of no limit.
+        """
+        require_kind("wall", wall, Block)
+        k_n = require_stiffness("k_n", k_n)
+        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
+        loss = getattr(self.base, "loss", None)
+        if loss is None:
+            return 0.0, 1.0
+        groups = Groups.of(wall, Restitution(1.0, -1.0), k_n, amplitude=amplitude)
+        return math.exp(-float(loss(groups, HIGHEST))), math.exp(-float(loss(groups, LEAST)))
+
+    def covers(
+        self, wall: Block, e: Restitution, k_n: float, k_side: float | None = None, amplitude: float = 0.5
+    ) -> bool:
+        """Whether the law can be expected to give what is asked for.
+
+        It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
+        least MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE times as
+        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base.
+
+        Args:
+            wall, e: the wall, and the restitution asked for.
+            k_n, k_side: interface stiffness of base and side [N/m3].
+            amplitude: rotation over alpha that the wall comes from [-].
+        """
+        require_kind("e", e, Restitution)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
+        low, high = self.reach(wall, k_n, amplitude)
+        k_n, amplitude = float(k_n), float(amplitude)
+        margin = MARGIN * (high - low)
+        groups = Groups.of(wall, e, k_n, k_side, amplitude)
+        released = float(wall.potential_energy(amplitude * wall.alpha))
+        rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
+        return (
+            not self._outside(wall, e, k_n, k_side)
+            and low + margin <= e.base <= high - margin
+            and rebound > SIZE * groups.softness
+        )
+
+    def _outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:
+        """The values that lie outside the fitted ranges, in words."""
+        scale = DENSITY * 4 * wall.b * wall.h * wall.base_length / wall.mass if self.scalable else 1.0
+        covered = {
+            "h/b [-]": (wall.slenderness, 1.0, self.slenderness_range),
+            "k_n [N/m3]": (k_n, scale, self.k_n_range),
+        }
+        if self.scalable:
+            covered["k_side [N/m3]"] = (k_n if k_side is None else k_side, scale, self.k_n_range)
+            covered["|e_side| [-]"] = (abs(e.side), 1.0, self.side_range)
+        else:
+            covered = {"R [m]": (wall.R, 1.0, self.R_range)} | covered
+        said = []
+        for name, (value, factor, (low, high)) in covered.items():
+            if not low * (1 - 1e-9) <= value * factor <= high * (1 + 1e-9):
+                same = abs(factor - 1) < 1e-9
+                at = "" if same else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
+                said.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
+        return said
+
+    def save(self, path: str | Path) -> Path:
+        """Write the law as a TOML file that `DampingLaw.load` reads and a text editor shows.
+
+        Raises:
+            OSError: if the file cannot be written.
+        """
+        head = {one.name: getattr(self, one.name) for one in fields(self) if one.name not in ("base", "side", "errors")}
+        lines = [f"{key} = {_toml(value)}" for key, value in head.items() if value is not None]
+        for part, form in (("base", self.base), ("side", self.side)):
+            lines += ["", f"[{part}]", f'form = "{type(form).__name__}"']
+            errors = self.errors.get(part, {})
+            for key, value in asdict(form).items():  # type: ignore[call-overload]
+                note = f"  # +- {errors[key]:.2g}" if key in errors else ""
+                lines.append(f"{key} = {_toml(value)}{note}")
+            if errors:
+                lines += ["", f"[errors.{part}]", *(f"{key} = {_toml(value)}" for key, value in errors.items())]
+        return write_text(require_path("path", path), "\n".join(lines) + "\n")
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read a law that `save` wrote.
+
+        Raises:
+            OSError: if the file cannot be read.
+            ValueError: if it is no law: not TOML, a formula that there is not, or a coefficient missing or too many.
+        """
+        path = require_path("path", path)
+        try:
+            text = tomllib.loads(path.read_text(encoding="utf-8"))
+            made: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
+            for part in ("base", "side"):
+                given = dict(text[part])
+                name = given.pop("form")
+                if name not in FORMS:
+                    raise ValueError(f"form = {name!r} is none of {', '.join(FORMS)}")
+                made[part] = FORMS[name](**given)
+            return cls(**made)
+        except KeyError as error:
+            raise ValueError(f"{path} is not a damping law: {error} is missing") from None
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{path} is not a damping law: {error}") from None
+
+
+def _toml(value: object) -> str:
+    """A value as TOML; numbers at full precision."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(_toml(item) for item in value)}]"
+    if isinstance(value, float) and math.isnan(value):
+        return "nan"
+    if isinstance(value, bool | str):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(value)
+
+
+PUBLISHED = DampingLaw(
+    name="PUBLISHED",
+    source="Dynamic simulation of one-sided rocking masonry facades using an energy-consistent viscous damping model, "
+    "Eqs. 5-6 and Table 1. Eq. 5 is printed with the exponent 0.935 on k_n,b as well; 0.343 is the one that returns "
+    "Figure 3's 5.3 % and the six xi_b of Table 2 to the printed digit (tests/validation/test_table2.py).",
+    base=PowerLaw(coefficient=0.000292, slenderness_exponent=0.935, stiffness_exponent=0.343, r_squared=0.978),
+    side=PowerLaw(coefficient=0.0807, slenderness_exponent=0.2548, stiffness_exponent=-0.1283, r_squared=0.994),
+    R_range=(1.4, 2.8),
+    slenderness_range=(4.0, 15.0),
+    k_n_range=(0.5e8, 30e8),
+)
+"""The law of the paper (Eqs. 5-6), fitted there in a finite element code with its own contact discretisation."""
+
+LAWS = Path(__file__).with_name("laws")
+"""Folder of the laws that come with the package."""
+
+CALIBRATED = DampingLaw.load(LAWS / "calibrated.toml")
+"""The law for two corner lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+
+CALIBRATED_BED = DampingLaw.load(LAWS / "calibrated_bed.toml")
+"""The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+
+NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
+"""The laws that come with the package, by name."""
+
+
+def law_named(name: str) -> DampingLaw:
+    """The law of that name, in any case of letters, with a hyphen or a blank for the underscore too.
+
+    Raises:
+        ValueError: if there is none.
+    """
+    spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
+    if spelt not in NAMED:
+        raise ValueError(f"law = {name!r} is none of {', '.join(NAMED)}")
+    return NAMED[spelt]

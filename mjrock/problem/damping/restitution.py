@@ -1,0 +1,114 @@
+"""Coefficients of restitution of classical rocking theory."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...quantities import keep, require_real, require_within
+from ..wall.block import Block
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """What is left of the angular velocity after an impact.
+
+    Args:
+        base: e_2s, one impact on the base, two-sided rocking [-], in (0, 1].
+        side: e_side, the impact on the side stop [-], in [-1, 1]; negative where the wall rebounds.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    base: float
+    side: float
+
+    def __post_init__(self) -> None:
+        keep(self, base=require_real("base restitution", self.base), side=require_real("side restitution", self.side))
+        if not 0 < self.base <= 1:
+            raise ValueError(f"base restitution = {self.base:g} is outside the valid range 0 < e <= 1")
+        if not -1 <= self.side <= 1:
+            raise ValueError(f"side restitution = {self.side:g} is outside the valid range -1 to 1")
+
+    @property
+    def lumped(self) -> float:
+        """e_1s = e_2s e_side e_2s: base, side, base in quick succession (Eq. 4) [-]."""
+        return self.base**2 * self.side
+
+    def require_rebound(self) -> None:
+        """Raise ValueError unless the wall rebounds from the side stop."""
+        if self.side >= 0:
+            raise ValueError(f"side restitution = {self.side:g} is no rebound; the valid range is -1 <= e_side < 0")
+
+    @classmethod
+    def from_geometry(cls, wall: Block | float, stop_top: float | None = None) -> Restitution:
+        """Conservation of angular momentum through each impact (Eqs. 2-3).
+
+        Eqs. 2-3 are written for a full rectangle. With the centroid at the height z, its distances d_1 from the edge
+        before the impact and d_2 from the edge after it, and I about the centroid, the momentum about the new edge
+        gives I + m (z^2 - d_1 d_2) over I + m (z^2 + d_2^2). Where d_1 and d_2 differ, e_2s is the root of the product
+        of both directions, which is the root of the energy that is left in either. About the highest point of a side
+        stop that reaches to H_s, at the distance d_s of the inner face, it gives e_side =
+        [I + m (d_2 d_s + z (z - H_s))] / [I + m (d_s^2 + (z - H_s)^2)].
+
+        Args:
+            wall: the wall, or alpha = arctan(b/h) [rad] of a full rectangle whose edges are not inset.
+            stop_top: height that the side stop reaches [m], up to that of the wall, which None stands for. A stop that
+                reaches less than about two thirds of the height gives an e_side above 0: the wall turns on over it.
+
+        Raises:
+            ValueError: if alpha is too large for Eq. 2 to leave any velocity, that is from 54.7 degrees, or the stop
+                does not end on the wall, or is so low that e_side exceeds 1.
+        """
+        if isinstance(wall, Block):
+            if stop_top is not None:
+                stop_top = require_within("top of the side stop", stop_top, 0.01, 2 * wall.h * (1 + 1e-12), "m")
+            if wall.inset or not wall.is_plain or (stop_top is not None and stop_top < 2 * wall.h):
+                top = 2 * wall.h if stop_top is None else stop_top
+                base, side = _base(wall), _side(wall, top)
+                if side > 1:
+                    raise ValueError(
+                        f"top of the side stop = {top:g} m is so low that the wall turns on over it, e_side = "
+                        f"{side:.3g}; it rebounds from about two thirds of its height of {2 * wall.h:g} m on"
+                    )
+                return cls(base, side)
+        elif stop_top is not None:
+            raise TypeError("a side stop needs the wall, and not its alpha alone")
+        alpha = wall.alpha if isinstance(wall, Block) else require_real("alpha", wall)
+        if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
+            raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
+        return cls(base=1 - 1.5 * math.sin(alpha) ** 2, side=1 - 1.5 * math.cos(alpha) ** 2)
+
+    @classmethod
+    def from_lumped(cls, lumped: float, wall: Block | float) -> Restitution:
+        """From a measured e_1s: e_2s by Eq. 2, and the side takes the rest, e_side = e_1s / e_2s^2.
+
+        `wall` is the wall, or its alpha [rad], as in `from_geometry`.
+
+        This is how Table 2 of the paper turns its experiments into damping ratios.
+
+        Raises:
+            ValueError: if the measured value asks more of the side than a perfect rebound.
+        """
+        lumped = require_real("lumped restitution", lumped)
+        base = cls.from_geometry(wall).base
+        if not -(base**2) <= lumped < 0:
+            raise ValueError(
+                f"lumped restitution = {lumped:g} is outside the valid range {-(base**2):.4g} to 0 for this wall"
+            )
+        return cls(base=base, side=lumped / base**2)
+
+
+def _base(wall: Block) -> float:
+    """e_2s of any wall, see `Restitution.from_geometry`."""
+    outer, inner = (wall.half_base - side * wall.centroid_offset for side in (1, -1))
+    kept = wall.inertia + wall.mass * (wall.centroid_height**2 - outer * inner)
+    return kept / math.sqrt(wall.inertia_about(1) * wall.inertia_about(-1))
+
+
+def _side(wall: Block, top: float) -> float:
+    """e_side of any wall against a stop that reaches to `top`, see `Restitution.from_geometry`."""
+    edge, face = wall.half_base + wall.centroid_offset, wall.b + wall.centroid_offset
+    z, below = wall.centroid_height, wall.centroid_height - top
+    return (wall.inertia + wall.mass * (edge * face + z * below)) / (wall.inertia + wall.mass * (face**2 + below**2))

@@ -1,0 +1,98 @@
+"""Interface stiffness k_n [N/m3]: the usual ways to it.
+
+The stiffness of an interface is a pressure over a closing of it [Pa/m = N/m3]. What closes is a mortar joint, the
+masonry near it, or both, and the value spreads over two orders of magnitude between methods: take more than one where
+the result matters. Rocking between impacts does not depend on it. The uplift rotation, the duration of impacts, the
+smallest rebounds and the response to weak earthquakes do. `reference_frequency` gives the frequency that a stiffness
+belongs to. Springs in series add their closings: 1 / k_n = 1 / k_joint + 1 / k_wall.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ...quantities import require_kind, require_stiffness, require_within
+from ..wall.block import Block
+from .interface import reference_frequency
+
+UNIT = 1e8
+"""A stiffness whose frequency is scaled [N/m3]."""
+
+
+def joint_stiffness(E: float, thickness: float) -> float:
+    """k_n = E / t of a mortar joint or of any thin layer, uniaxially compressed [N/m3].
+
+    Use it where the modulus of the mortar is known and the units are much stiffer than it. A mortar of 1 GPa in a
+    joint of 10 mm gives 1e11 N/m3. Real joints, with voids and partial contact, are softer than this.
+
+    Args:
+        E: Young's modulus of the layer [Pa], 1e5 to 1e12. It is not a pressure: mortar has 1e8 to 1e10.
+        thickness: of the layer [m], 1e-4 to 1.
+
+    Raises:
+        ValueError: for a value outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
+
+    Source: Lourenço (1996), Computational strategies for masonry structures, TU Delft, for joints between stiff units.
+    """
+    E = require_within("modulus E", E, 1e5, 1e12, "Pa")
+    return require_stiffness("k_n = E / thickness", E / require_within("thickness", thickness, 1e-4, 1.0, "m"))
+
+
+def wall_stiffness(E: float, wall: Block) -> float:
+    """k_n = E / H of a base that stands for the shortening of the wall above it [N/m3].
+
+    Use it where the wall is taken as rigid and its own elasticity is to be lumped into the base. The vertical stiffness
+    of the base is then that of a column of the height of the wall, E A / H. Masonry of 2 GPa and 4 m gives 5e8 N/m3. It
+    is a lower bound for a wall that presses on one edge: the pressure spreads over less than its height.
+
+    Args:
+        E: Young's modulus of the masonry [Pa], 1e5 to 1e12.
+        wall: the wall.
+
+    Raises:
+        ValueError: for a modulus outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
+    """
+    require_kind("wall", wall, Block)
+    return require_stiffness("k_n = E / H", require_within("modulus E", E, 1e5, 1e12, "Pa") / (2 * wall.h))
+
+
+def layered_stiffness(*stiffnesses: float) -> float:
+    """k_n of layers in series, such as a joint and the wall above it: 1 / k_n is the sum of theirs [N/m3].
+
+    Args:
+        stiffnesses: of each layer [N/m3], at least one, 1e4 to 1e14.
+
+    Raises:
+        ValueError: for a value outside its range, or none.
+    """
+    if not stiffnesses:
+        raise ValueError("stiffnesses is empty; at least one layer is needed")
+    checked = [require_stiffness(f"stiffnesses[{i}]", value) for i, value in enumerate(stiffnesses)]
+    return require_stiffness("k_n of the layers", 1 / sum(1 / value for value in checked))
+
+
+def measured_stiffness(wall: Block, frequency: float, points: int = 2) -> float:
+    """k_n for which the wall, rocking in full contact on its base, has a measured natural frequency [N/m3].
+
+    Use it where the lowest out-of-plane frequency of the detached wall was measured at small amplitude, by ambient
+    vibration or a tap, and its top is free. It is the inverse of omega^2 = (K_rot - m g z) / I_base with K_rot the sum
+    of k_i x_i^2 over the contact lines, z the height of the centroid and I_base the moment of inertia about the middle
+    of the base: the weight works against the springs. It is the most direct way, since it contains all that yields.
+
+    Args:
+        wall: the wall.
+        frequency: in cycles a second [Hz], 1e-3 to 1e4, not in rad/s.
+        points: contact lines a face. The same wall on two corner lines needs a third of the k_n of a uniform bed.
+
+    Raises:
+        ValueError: for a value outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
+
+    Source: Small oscillations of a rigid body on springs; checked against the engine in tests/test_stiffness.py.
+    """
+    require_kind("wall", wall, Block)
+    omega = 2 * math.pi * require_within("frequency", frequency, 1e-3, 1e4, "Hz")
+    unit = reference_frequency(wall, UNIT, points) ** 2 / UNIT
+    arm = math.hypot(wall.centroid_height, wall.centroid_offset)
+    inertia = wall.inertia + wall.mass * arm**2
+    falling = wall.weight * wall.centroid_height / inertia
+    return require_stiffness("k_n of the measured frequency", (omega**2 + falling) / unit)

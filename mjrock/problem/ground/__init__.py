@@ -1,0 +1,1 @@
+"""What moves: records, pulses, ground motions."""

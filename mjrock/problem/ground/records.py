@@ -1,0 +1,255 @@
+"""Text of recorded accelerations: PEER AT2, columns of time and acceleration, the plain text of a SAC set.
+
+Each parser takes the lines of a file and returns its accelerations [m/s2], shape (n,), and its time step [s]. A number
+has ASCII digits and may have a Fortran exponent, 1.5D-02. Nothing on a line of numbers is passed over: what is no
+finite number is an error with the line and the value.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
+
+Record = tuple[Array, float]
+
+FINEST, COARSEST = 1e-5, 1.0
+"""Bounds of the time step of a motion [s]."""
+UNITS = {"m/s2": 1.0, "cm/s2": 1e-2, "mm/s2": 1e-3, "g": GRAVITY, "ft/s2": 0.3048}
+TIME_UNITS = {"s": 1.0, "ms": 1e-3}
+UNEVEN = 0.01
+"""How far a printed time may lie from the even grid, as a share of the time step."""
+
+AS_ASCII = re.ASCII | re.IGNORECASE
+EXPONENT = r"(?:[ed][-+]?\d+)?"
+COUNT, STEP = r"(\d{1,9})", rf"((?:\d+(?:\.\d*)?|\.\d+){EXPONENT})"
+"""No run of digits or blanks can be parted in two ways, so that the time of a search goes with the length of a line."""
+NUMBER = re.compile(rf"[-+]?{STEP}", AS_ASCII)
+POINTED = rf"[-+]?(?:\d+\.\d*|\.\d+){EXPONENT}"
+GLUED = re.compile(rf"{POINTED}(?:(?=[-+]){POINTED})+", AS_ASCII)
+"""Columns of fixed width that a sign sets apart. Each has its decimal point: 1.5-102 is an exponent in Fortran."""
+AT2_UNIT = re.compile(
+    r"\s*acceleration\s+(time\s+(series|history)\s+)?in\s+units\s+of\s+g(\s*[.,;])?\s*(filter\s+points\b.*)?", AS_ASCII
+)
+AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}(\s*(s|sec|seconds))?[\s.,]*", AS_ASCII)
+AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
+SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
+BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
+"""A control character, which could hide a row at the end of a header or comment."""
+COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
+DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
+"""A line of columns whose first letter or digit is a digit of any script, so that a damaged number is no header."""
+FAINT = 1e-3 * GRAVITY
+"""A file whose peak acceleration is below this is probably in another unit [m/s2]."""
+DRIFT = 0.2
+"""A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
+
+
+def checked(accel: ArrayLike, dt: float) -> Record:
+    """Accelerations as an array that cannot be written to, and their time step [s].
+
+    Raises:
+        TypeError: for what are no real numbers.
+        ValueError: unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
+    """
+    values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
+    if values.ndim != 1 or len(values) < 2:
+        raise ValueError(f"accel has the shape {values.shape}; one row of at least 2 accelerations [m/s2] is needed")
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise ValueError(f"accel[{bad[0]}] = {values[bad[0]]} m/s2 is not finite")
+    values.setflags(write=False)
+    return values, require_within("time step dt", dt, FINEST, COARSEST, "s")
+
+
+def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Record:
+    """The record that a parser finds in a file.
+
+    Raises:
+        OSError: if the file cannot be read.
+        TypeError: if the path is none.
+        ValueError: with the name of the file, if it is not one of the format.
+    """
+    path = require_path("path", path)
+    try:
+        return checked(*parse(text_lines(path)))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def text_lines(path: Path) -> list[str]:
+    """The lines of a text file in UTF-8 or Latin-1. Only CR, LF and CR LF end a line. A last ^Z of DOS is dropped.
+
+    Raises:
+        OSError: if the file cannot be read.
+        ValueError: if it is binary or empty.
+    """
+    data = path.read_bytes()
+    if b"\0" in data:
+        raise ValueError("a binary file or one in UTF-16; a text of accelerations in UTF-8 or Latin-1 is needed")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    text = text.removesuffix("\x1a")
+    if not text.strip():
+        raise ValueError("an empty file; a text of accelerations is needed")
+    return re.split(r"\r\n|\r|\n", text)
+
+
+def parse_at2(lines: Sequence[str]) -> Record:
+    """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g.
+
+    Raises:
+        ValueError: for another header, another number of samples than it states, or something that is no number.
+    """
+    if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
+        found = f"line 3 is {_short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
+        raise ValueError(f"{found}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
+    head = AT2_HEAD.fullmatch(lines[3]) or AT2_OLD_HEAD.fullmatch(lines[3])
+    if head is None:
+        raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {_short(lines[3])}")
+    return GRAVITY * _samples(lines, 4, int(head[1])), _step(head[2], 4)
+
+
+def parse_sac(lines: Sequence[str]) -> Record:
+    """The record of a text with a title line, a line that begins with count and time step [s], then values in cm/s2.
+
+    Raises:
+        ValueError: for another header, another number of samples than it states, or something that is no number.
+    """
+    head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
+    if head is None:
+        found = f"line 2 is {_short(lines[1])}" if len(lines) > 1 else "1 line"
+        raise ValueError(
+            f"{found}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
+        )
+    _numbers(head[3] or "", 2)  # what the other columns say is not used
+    return UNITS["cm/s2"] * _samples(lines, 2, int(head[1])), _step(head[2], 2)
+
+
+def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> Record:
+    """The record of two columns, time and acceleration, set apart by commas, semicolons, or blanks and tabs.
+
+    Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped. Between
+    semicolons a comma is a decimal point.
+
+    Raises:
+        ValueError: for an unknown unit, another number of columns, something that is no number, a control character,
+            or uneven times.
+    """
+    scale, time_scale = _factor("unit", unit, UNITS), _factor("time_unit", time_unit, TIME_UNITS)
+    rows: list[list[float]] = []
+    places: list[int] = []
+    for place, line in enumerate(lines, 1):
+        if COMMENT.match(line) or not (rows or DATA.match(line)):
+            if hidden := BREAK.search(line):
+                raise ValueError(f"line {place} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
+            continue
+        row = _columns(line)
+        if len(row) != 2:
+            raise ValueError(
+                f"line {place} has {len(row)} columns, {_short(line)}; two are needed, time and acceleration"
+            )
+        rows.append([_number(word, place) for word in row])
+        places.append(place)
+    if len(rows) < 2:
+        raise ValueError(
+            f"{len(rows)} rows of time and acceleration in {len(lines)} lines, the first of them {_short(lines[0])}; "
+            "at least 2 rows are needed"
+        )
+    time, accel = np.array(rows).T
+    return scale * accel, _even_step(time_scale * time, places)
+
+
+def _columns(line: str) -> list[str]:
+    if ";" in line:
+        line = line.replace(",", ".").replace(";", ",")
+    return [word.strip(" \t") for word in (line.split(",") if "," in line else _words(line))]
+
+
+def _even_step(time: Array, places: Sequence[int]) -> float:
+    steps = np.diff(time)
+    back = np.flatnonzero(steps <= 0)
+    if back.size:
+        i = back[0]
+        raise ValueError(f"line {places[i + 1]}: time does not increase, {time[i]:g} s to {time[i + 1]:g} s")
+    dt = float(time[-1] - time[0]) / len(steps)
+    if np.abs(time - time[0] - dt * np.arange(len(time))).max() > UNEVEN * dt:
+        usual = float(np.median(steps))
+        i = int(np.abs(steps - usual).argmax())
+        raise ValueError(
+            f"line {places[i + 1]}: uneven time steps, {steps[i]:g} s from {time[i]:g} s on where {usual:g} s is usual"
+        )
+    return dt
+
+
+def _factor(name: str, unit: str, units: dict[str, float]) -> float:
+    if not isinstance(unit, str) or unit not in units:
+        raise ValueError(f"{name} = {spelt(unit)} is not one of {', '.join(units)}")
+    return units[unit]
+
+
+def _samples(lines: Sequence[str], header: int, count: int) -> Array:
+    values = [x for place, line in enumerate(lines[header:], header + 1) for x in _numbers(line, place)]
+    if len(values) != count:
+        raise ValueError(f"{len(values)} samples; the header states {count} in line {header}")
+    return np.array(values)
+
+
+def _step(text: str, place: int) -> float:
+    return require_within(f"line {place}: time step dt", _value(text), FINEST, COARSEST, "s")
+
+
+def _numbers(line: str, place: int) -> list[float]:
+    """The numbers of a line, those of glued columns too."""
+    values: list[float] = []
+    for word in _words(line):
+        parts = [part[0] for part in NUMBER.finditer(word)] if GLUED.fullmatch(word) else [word]
+        values += [_number(part, place) for part in parts]
+    return values
+
+
+def _words(line: str) -> list[str]:
+    return [word for word in re.split("[ \t]+", line) if word]
+
+
+def _number(word: str, place: int) -> float:
+    if not NUMBER.fullmatch(word) or not math.isfinite(value := _value(word)):
+        raise ValueError(f"line {place}: {_short(word)} is not a finite number such as -0.015, 1.5E-02 or 1.5D-02")
+    return value
+
+
+def _value(text: str) -> float:
+    return float(text.lower().replace("d", "e"))
+
+
+def _short(text: str) -> str:
+    """A text as it stands in a message: what cannot be seen or is not ASCII is escaped."""
+    return ascii(text if len(text) <= 60 else f"{text[:57]}...")
+
+
+def doubts(name: str, peak: float, final: float, fastest: float) -> list[str]:
+    """What is odd about a record from a file, in words.
+
+    Args:
+        name: of the record.
+        peak: peak acceleration [m/s2].
+        final, fastest: residual and peak velocity [m/s].
+    """
+    found = []
+    if peak < FAINT:
+        found.append(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?")
+    if abs(final) > DRIFT * fastest:
+        found.append(
+            f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
+            "it needs a baseline correction"
+        )
+    return found

@@ -1,0 +1,1 @@
+"""Masonry as a problem: blocks, joints, contact lines, builders, and the case of a run."""

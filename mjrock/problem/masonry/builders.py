@@ -1,0 +1,137 @@
+"""Blocks of masonry that is built often: a stack, an arch, and a wall in running bond."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ...quantities import require_flag, require_kind, require_real, require_whole, require_within, shown
+from ..wall.block import Block
+from ..wall.effects import SideStop
+from .polygon import Polygon
+
+DEEP = 0.25
+"""Depth of the ground that is drawn, over its half width [-]."""
+SMALLEST_PIECE = 0.1
+"""Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
+MOST_BLOCKS = 5000
+"""Most blocks of a wall."""
+
+
+def rectangle(
+    left: float, right: float, low: float, high: float, density: float, length: float, fixed: bool, name: str
+) -> Polygon:
+    """A rectangular block between two x and two z [m]."""
+    corners = [(left, low), (right, low), (right, high), (left, high)]
+    return Polygon(corners, density=density, length=length, fixed=fixed, name=name)
+
+
+def ground_under(left: float, right: float, length: float) -> Polygon:
+    """Fixed ground with its surface at z = 0, twice as wide as what stands on it between two x [m]."""
+    middle, half = 0.5 * (left + right), right - left
+    return rectangle(middle - half, middle + half, -DEEP * half, 0.0, 2000.0, length, True, "ground")
+
+
+def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
+    """Rectangular blocks one on the other, centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
+    require_flag("ground", ground)
+    if not isinstance(blocks, Sequence) or isinstance(blocks, str) or not blocks:
+        raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
+    made, z = [], 0.0
+    for i, block in enumerate(blocks):
+        require_kind(f"blocks[{i}]", block, Block)
+        if block.inset:
+            raise ValueError(f"blocks[{i}]: inset = {block.inset:g} m; a block of a stack has its edges at its faces")
+        fixed = i == 0 and not ground
+        made.append(rectangle(-block.b, block.b, z, z + 2 * block.h, block.density, block.length, fixed, f"block_{i}"))
+        if not math.isclose(made[-1].mass, block.mass, rel_tol=1e-9):
+            raise ValueError(f"blocks[{i}] is not a plain rectangle; a block of a stack is")
+        z += 2 * block.h
+    if ground:
+        b, length = max(block.b for block in blocks), max(block.length for block in blocks)
+        made.insert(0, ground_under(-b, b, length))
+    return made
+
+
+def side_of(blocks: Sequence[Polygon], side_stop: bool | SideStop) -> Polygon | None:
+    """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
+
+    Raises:
+        ValueError: if the stop ends above the stack.
+    """
+    require_kind("side_stop", side_stop, bool, SideStop)
+    if not side_stop:
+        return None
+    face = min(float(block.corners[:, 0].min()) for block in blocks if block.name != "ground")
+    height = max(float(block.corners[:, 1].max()) for block in blocks)
+    top = height
+    if isinstance(side_stop, SideStop):
+        top = require_within("top of the side stop", side_stop.top, 0.01, height, "m")
+    return rectangle(2 * face, face, 0.0, top, 2000.0, max(block.length for block in blocks), True, "side")
+
+
+def voussoirs_of(
+    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float
+) -> list[Polygon]:
+    """An arch from left to right between two fixed abutments, its centre at the origin.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+    radius, thickness = require_within("radius", radius, 0.01, 1e3, "m"), require_real("thickness", thickness)
+    if not 1e-3 <= thickness / radius <= 1:
+        raise ValueError(f"thickness = {thickness:g} m is outside the valid range {1e-3 * radius:g} to {radius:g} m")
+    span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
+    count = require_whole("voussoirs", voussoirs, 1, 1000)
+    inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
+    angles = 0.5 * math.pi + span_angle * (0.5 - np.arange(count + 1) / count)
+    way = np.column_stack([np.cos(angles), np.sin(angles)])
+    made = [
+        Polygon(
+            [outer * way[i], outer * way[i + 1], inner * way[i + 1], inner * way[i]],
+            density=density,
+            length=length,
+            name=f"voussoir_{i}",
+        )
+        for i in range(count)
+    ]
+    for name, at, side in (("left_abutment", way[0], -1.0), ("right_abutment", way[-1], 1.0)):
+        down = thickness * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
+        corners = [inner * at, outer * at, outer * at + down, inner * at + down]
+        made.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
+    return [made[-2], *made[:-2], made[-1]]
+
+
+def bonded(length: float, height: float, unit: tuple[float, float], thickness: float, density: float) -> list[Polygon]:
+    """A wall in running bond seen from its face: courses of units, every other one shifted by half a unit.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+    if not isinstance(unit, tuple | list) or len(unit) != 2:
+        raise TypeError(f"unit = {shown(unit)} is not the length and the height of a unit")
+    long = require_within("unit length", unit[0], 1e-2, 100.0, "m")
+    high = require_within("unit height", unit[1], 1e-2, 100.0, "m")
+    length = require_within("wall length", length, long, 1e3, "m")
+    height = require_within("wall height", height, high, 1e3, "m")
+    thickness = require_within("wall thickness", thickness, 1e-3, 1e3, "m")
+    courses = round(height / high)
+    if not math.isclose(courses * high, height, rel_tol=1e-6):
+        raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
+    if courses * (length / long + 1) > MOST_BLOCKS:
+        count = courses * length / long
+        raise ValueError(
+            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
+        )
+    made = [ground_under(0.0, length, thickness)]
+    for course in range(courses):
+        shift = 0.5 * long if course % 2 else long
+        inner = shift + long * np.arange(math.ceil(length / long))
+        ends = [0.0, *(x for x in inner.tolist() if x < length - SMALLEST_PIECE * long), length]
+        for i, (left, right) in enumerate(pairwise(ends)):
+            name = f"unit_{course}_{i}"
+            made.append(rectangle(left, right, course * high, (course + 1) * high, density, thickness, False, name))
+    return made

@@ -1,0 +1,188 @@
+"""Joints of masonry: where edges of two blocks lie on one another, and the contact lines that they carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...quantities import Array
+from .polygon import Polygon
+
+SHORTEST = 10.0
+"""Length of the shortest joint, over the tolerance [-]. Blocks that share less than this touch at a corner only."""
+PARALLEL = 0.05
+"""Largest sine of the angle between two edges that make a joint [-]."""
+LEVEL = 1e-6
+"""Largest |x| of the normal of a bed joint, and largest |z| of that of a head joint [-]."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Where two blocks meet along a line.
+
+    Args:
+        below, above: numbers of the two blocks. The normal points from `below` to `above`. Of the two blocks of a joint
+            that is not vertical, `above` lies higher. A fixed block is always `below`.
+        start, end: ends of the joint [m], with the normal to the left of the way from start to end.
+        length: length out of the plane, that of the shorter block [m].
+        travel: how far the block above can slide from end to start, and from start to end, before the two edges no
+            longer overlap [m].
+        corners: whether an end is a corner of the block above, for start and end.
+        name: names of the two blocks with a | between them, the one below first.
+    """
+
+    below: int
+    above: int
+    start: tuple[float, float]
+    end: tuple[float, float]
+    length: float
+    travel: tuple[float, float]
+    corners: tuple[bool, bool]
+    name: str
+
+    @cached_property
+    def width(self) -> float:
+        """Length of the joint in the plane [m]."""
+        return float(np.hypot(*np.subtract(self.end, self.start)))
+
+    @property
+    def area(self) -> float:
+        """Area of the joint [m2]."""
+        return self.width * self.length
+
+    @property
+    def middle(self) -> Array:
+        """Middle of the joint [m], shape (2,)."""
+        return 0.5 * np.add(self.start, self.end)
+
+    @cached_property
+    def along(self) -> Array:
+        """Unit vector from start to end, shape (2,)."""
+        return np.subtract(self.end, self.start) / self.width
+
+    @property
+    def normal(self) -> Array:
+        """Unit vector from the block below to the block above, shape (2,)."""
+        x, z = self.along
+        return np.array([-z, x]) + 0.0  # no negative zeros
+
+    @property
+    def is_bed(self) -> bool:
+        """Whether the joint is horizontal."""
+        return bool(abs(self.normal[0]) < LEVEL)
+
+
+def names_of(blocks: Sequence[Polygon]) -> tuple[str, ...]:
+    """Names of the blocks: their own, or `block_` and their number."""
+    return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
+
+
+def find_joints(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...]:
+    """The joints between blocks, in the order of the blocks.
+
+    Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance. The joint
+    lies halfway between them. Two fixed blocks make none.
+
+    Args:
+        blocks: the blocks.
+        tolerance: largest distance between edges that touch, and largest overlap of blocks [m].
+
+    Raises:
+        ValueError: if two blocks overlap by more than the tolerance. The message names both.
+    """
+    names, found = names_of(blocks), []
+    for i, j in _neighbours(blocks, tolerance):
+        deep = _overlap(blocks[i].corners, blocks[j].corners)
+        if deep > tolerance:
+            raise ValueError(
+                f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the tolerance, "
+                f"{tolerance:g} m"
+            )
+        found += list(_between(blocks, i, j, names, tolerance))
+    return tuple(found)
+
+
+def _neighbours(blocks: Sequence[Polygon], tolerance: float) -> list[tuple[int, int]]:
+    """Pairs of blocks, not both fixed, whose bounding boxes touch."""
+    low = np.array([block.corners.min(axis=0) for block in blocks]) - tolerance
+    high = np.array([block.corners.max(axis=0) for block in blocks]) + tolerance
+    pairs: list[tuple[int, int]] = []
+    for i, block in enumerate(blocks):
+        near = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(axis=1)
+        others = (i + 1 + np.flatnonzero(near)).tolist()
+        pairs += [(i, j) for j in others if not (block.fixed and blocks[j].fixed)]
+    return pairs
+
+
+def _normals(corners: Array) -> Array:
+    """Unit normals out of the edges of a counterclockwise outline, shape (n, 2)."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    made: Array = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None]
+    return made
+
+
+def _overlap(one: Array, other: Array) -> float:
+    """Depth by which two convex outlines overlap [m], negative where they are apart: least over the normals."""
+    depths = [
+        (a @ normals.T).max(axis=0) - (b @ normals.T).min(axis=0)
+        for a, b, normals in ((one, other, _normals(one)), (other, one, _normals(other)))
+    ]
+    return float(np.concatenate(depths).min())
+
+
+def _between(blocks: Sequence[Polygon], i: int, j: int, names: Sequence[str], tolerance: float) -> Iterator[Joint]:
+    """The joints between two blocks."""
+    one, other = blocks[i].corners, blocks[j].corners
+    for a, b, n in zip(one, np.roll(one, -1, axis=0), _normals(one), strict=True):
+        for c, d, m in zip(other, np.roll(other, -1, axis=0), _normals(other), strict=True):
+            if n @ m > 0 or abs(n[0] * m[1] - n[1] * m[0]) > PARALLEL:
+                continue
+            way = (b - a) / np.hypot(*(b - a))
+            first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
+            low, high = max(0.0, first), min(float((b - a) @ way), last)
+            if high - low <= SHORTEST * tolerance:
+                continue
+            rise = (c - d) @ n / (last - first)
+            apart = np.array([(d - a) @ n + rise * (s - first) for s in (low, high)])
+            if np.abs(apart).max() > tolerance:
+                continue
+            ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
+            # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
+            travel = (float((b - a) @ way - first), float(last))
+            yield _joint(blocks, i, j, ends, n, names, tolerance, travel)
+
+
+def _joint(
+    blocks: Sequence[Polygon],
+    i: int,
+    j: int,
+    ends: list[Array],
+    n: Array,
+    names: Sequence[str],
+    tolerance: float,
+    travel: tuple[float, float],
+) -> Joint:
+    """The joint between blocks i and j with these ends, n the normal out of block i, which j can travel along."""
+    upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
+    below, above = (i, j) if upwards > 0 else (j, i)
+    if blocks[above].fixed:
+        below, above = above, below
+    start, end = ends
+    normal = n if below == i else -n
+    if normal @ np.array([-(end - start)[1], (end - start)[0]]) < 0:
+        start, end = end, start
+    near = SHORTEST * tolerance
+    corners = tuple(bool(np.hypot(*(blocks[above].corners - place).T).min() < near) for place in (start, end))
+    return Joint(
+        below=below,
+        above=above,
+        start=(float(start[0]), float(start[1])),
+        end=(float(end[0]), float(end[1])),
+        travel=travel,
+        length=min(blocks[i].length, blocks[j].length),
+        corners=(corners[0], corners[1]),
+        name=f"{names[below]}|{names[above]}",
+    )

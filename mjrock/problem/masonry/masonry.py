@@ -1,0 +1,279 @@
+"""Masonry of many blocks: convex blocks, and the joints where their edges touch."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from ...quantities import Array, keep, require_kind, require_stiffness, require_whole, require_within, shown
+from ..damping.contacts import Law
+from ..damping.law import law_named
+from ..wall.block import Block
+from ..wall.effects import SideStop
+from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
+from .joints import Joint, find_joints, names_of
+from .lines import Lines, lines_of, lowest_frequency
+from .of_joint import ByKind, OfJoint
+from .polygon import Polygon
+from .stack_law import retardations
+
+OF_JOINTS = {"k_n": (1e4, 1e14, "N/m3"), "friction": (0.0, 10.0, ""), "xi": (0.0, 100.0, "")}
+"""Lowest and highest value of the properties of a joint, and their unit."""
+
+
+def required(name: str, given: OfJoint) -> OfJoint:
+    """A property of joints, a number as a float within its range, or a function as it is."""
+    return given if callable(given) else require_within(name, given, *OF_JOINTS[name])
+
+
+@dataclass(frozen=True)
+class Masonry:
+    """Rigid convex blocks on compliant joints.
+
+    The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
+    touch at a corner only have no joint. A joint is a few contact lines, like the base of a wall: each is a spring and
+    a dashpot that push only, with Coulomb friction. Lines lie at the ends of the joint and evenly between. A joint that
+    opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
+    `points` and `k_n`, and a structure near its limit can depend on that.
+
+    Blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block does after
+    it has left its joints is therefore not followed: the answer names such blocks, and with steps that fit the motion
+    the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block has
+    turned by 90 degrees.
+
+    Friction that holds is a strong dashpot in MuJoCo. A joint under a sustained force F along it creeps at about
+    F / (3e8 m) [m/s], with m the reduced mass of its two blocks [kg]: an arch at rest by some 0.05 mm in a minute. What
+    stands on one joint alone, as in a stack, is put back to where it stuck.
+
+    Args:
+        blocks: the blocks, at least one fixed and one that is not, at most 5000.
+        k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint.
+        friction: coefficient of friction [-], 0 to 10, or a function of the joint.
+        xi: damping ratio [-], 0 to 100, or a function of the joint. The dashpot of a line is c = (2 xi / omega) k, the
+            stiffness-proportional damping of distinct-element codes.
+        frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed. It is
+            `reference_frequency` for one block on the ground.
+        points: contact lines of each joint, 2 to 1000.
+        tolerance: largest distance between edges that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A joint is
+            longer than ten times that. The joint lies halfway between the edges, and is closed and unloaded as drawn.
+        law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
+            the rigid wall above it, and a fixed block beside the stack as the side stop of the whole, see
+            `Contacts.from_law`. A stack of 2 to 7 blocks that rocks as one then loses more than its wall at an impact:
+            2 to 10 % more on joints of 1e10 N/m3 or stiffer, 4 to 24 % more on 1e9 (h/b of 7, from alpha/2), and 5 to
+            7 % less against a side stop. `matched_masonry` finds the damping with which it loses the same.
+
+    Raises:
+        ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
+    """
+
+    blocks: tuple[Polygon, ...]
+    k_n: OfJoint = 1e10
+    friction: OfJoint = 0.7
+    xi: OfJoint = 0.05
+    frequency: float | None = None
+    points: int = 2
+    tolerance: float = 1e-5
+    law: Law | str | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
+            raise TypeError(f"blocks = {shown(self.blocks)} is not a list of blocks")
+        keep(self, blocks=tuple(self.blocks))
+        for i, block in enumerate(self.blocks):
+            require_kind(f"blocks[{i}]", block, Polygon)
+        if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
+            raise ValueError(
+                f"blocks = {len(self.free)} free and {len(self.blocks) - len(self.free)} fixed; at least one of each "
+                f"and at most {MOST_BLOCKS} are needed"
+            )
+        for name, number in Counter(self.names).items():
+            if number > 1:
+                raise ValueError(f"blocks: {number} of them have the name {name}")
+        keep(
+            self,
+            points=require_whole("points", self.points, 2, 1000),
+            tolerance=require_within("tolerance", self.tolerance, 1e-9, 0.1, "m"),
+        )
+        if self.frequency is not None:
+            keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
+        keep(self, **{name: required(name, getattr(self, name)) for name in OF_JOINTS})
+        if isinstance(self.law, str):
+            keep(self, law=law_named(self.law))
+        elif self.law is not None and not callable(self.law):
+            raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
+        if self.law is not None and self.frequency is not None:
+            raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
+        if not self.joints:
+            raise ValueError("blocks: no two of them touch along an edge")
+        for name in OF_JOINTS:
+            self._of_joints(name)
+        if self.law is not None:
+            _ = self.retardation
+
+    @classmethod
+    def stack(
+        cls,
+        blocks: Sequence[Block],
+        k_n: OfJoint,
+        *,
+        ground: bool = True,
+        side_stop: bool | SideStop = False,
+        k_side: float | None = None,
+        side_friction: float = 0.0,
+        **options: Any,
+    ) -> Self:
+        """Rectangular blocks one on the other, centred, from the lowest upwards.
+
+        A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
+
+        Args:
+            blocks: the blocks, whose insets are zero.
+            k_n: stiffness of the joints [N/m3].
+            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
+            side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
+                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
+                with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
+            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
+            side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
+            options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
+                joints refers to the lowest natural frequency without it.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        made = stacked(blocks, ground)
+        side = side_of(made, side_stop)
+        side_friction = require_within("side_friction", side_friction, 0.0, 10.0)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
+        if side is None:
+            if k_side is not None or side_friction:
+                raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
+            return cls(tuple(made), k_n=k_n, **options)
+        if options.get("law") is None and options.get("frequency") is None:
+            bare = cls(tuple(made), k_n=k_n, **options)
+            options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
+        k_n = required("k_n", k_n)
+        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
+        return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
+
+    @classmethod
+    def arch(
+        cls,
+        radius: float,
+        thickness: float,
+        span_angle: float = math.pi,
+        voussoirs: int = 17,
+        *,
+        density: float = 2000.0,
+        length: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
+
+        Args:
+            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
+            thickness: [m], 0.001 to 1 times the radius.
+            span_angle: angle between the two springings [rad], 0.1 to pi.
+            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
+            density: mass density [kg/m3], 100 to 30000.
+            length: length out of the plane [m], 1e-3 to 1000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(tuple(voussoirs_of(radius, thickness, span_angle, voussoirs, density, length)), **options)
+
+    @classmethod
+    def running_bond(
+        cls,
+        length: float,
+        height: float,
+        unit: tuple[float, float],
+        thickness: float = 1.0,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A wall of units in running bond on the ground, which moves in the plane of its face.
+
+        Args:
+            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
+                is a piece of a unit.
+            unit: length and height of a unit [m], 0.01 to 100.
+            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(tuple(bonded(length, height, unit, thickness, density)), **options)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Name of each block: its own, or `block_` and its number."""
+        return names_of(self.blocks)
+
+    @cached_property
+    def free(self) -> tuple[int, ...]:
+        """Numbers of the blocks that are not fixed, in order."""
+        return tuple(i for i, block in enumerate(self.blocks) if not block.fixed)
+
+    @cached_property
+    def centroids(self) -> Array:
+        """Centroid of each block at rest, fixed ones too [m], shape (blocks, 2)."""
+        made = np.array([block.centroid for block in self.blocks])
+        made.setflags(write=False)
+        return made
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints, in the order of the blocks."""
+        return find_joints(self.blocks, self.tolerance)
+
+    def _of_joints(self, name: str) -> Array:
+        """A property of each joint, shape (joints,)."""
+        given = getattr(self, name)
+        if not callable(given):
+            return np.full(len(self.joints), given)
+        found = []
+        for joint in self.joints:
+            try:
+                found.append(given(joint))
+            except TypeError as error:
+                raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
+        pairs = zip(self.joints, found, strict=True)
+        return np.array([require_within(f"{name} of {joint.name}", one, *OF_JOINTS[name]) for joint, one in pairs])
+
+    @cached_property
+    def joint_stiffness(self) -> Array:
+        """k_n of each joint [N/m3], shape (joints,)."""
+        return self._of_joints("k_n")
+
+    @cached_property
+    def joint_friction(self) -> Array:
+        """Coefficient of friction of each joint [-], shape (joints,)."""
+        return self._of_joints("friction")
+
+    @cached_property
+    def lines(self) -> Lines:
+        """The contact lines of all joints."""
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points)
+
+    @cached_property
+    def retardation(self) -> Array:
+        """c/k of each joint [s], shape (joints,)."""
+        if self.law is not None:
+            return retardations(self.blocks, self.joints, self.joint_stiffness, self.points, self.law)
+        xi = self._of_joints("xi")
+        if not xi.any():
+            return np.zeros(len(xi))
+        omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)
+        made: Array = 2 * xi / omega
+        return made

@@ -1,0 +1,266 @@
+"""The rigid wall: its size, its mass, and the quantities of classical rocking theory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_within, shown
+from .effects import AddedMass
+from .restoring_moment import Restoring, of_force, pose_of
+from .section import Moments, Opening, Profile, moments, require_openings, require_profile
+
+
+@dataclass(frozen=True)
+class Block:
+    """A homogeneous wall that rocks in its plane of thickness and height: a full rectangle, unless parts say otherwise.
+
+    Args:
+        b: half the thickness at the base [m], 1e-3 to 10.
+        h: half the height [m], 5e-3 to 100.
+        length: length along the wall, out of the plane of rocking [m], 1e-3 to 1000. Mass and contact stiffness are
+            both proportional to it, so that no rotation depends on it.
+        density: mass density [kg/m3], 100 to 30000.
+        inset: how far the edges that the wall rocks about lie inside its faces [m], 0 to less than b. Crushed or broken
+            corners move them inwards. Mass and inertia are those of the full wall.
+        openings: doors and windows through the whole thickness. A door shortens the base too.
+        profile: pairs of height and thickness [m] from the base to the top, for a wall that tapers or has storeys of
+            different thickness; linear in between. The inner face is straight. None is a constant thickness.
+        masses: masses that move with the wall.
+
+    Raises:
+        ValueError: for a value outside its range, a wall that is thicker than it is high, or one whose centroid does
+            not lie between its edges.
+    """
+
+    b: float
+    h: float
+    length: float = 1.0
+    density: float = 2000.0
+    inset: float = 0.0
+    openings: tuple[Opening, ...] = ()
+    profile: Profile | None = None
+    masses: tuple[AddedMass, ...] = ()
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            b=require_within("half thickness b", self.b, 1e-3, 10.0, "m"),
+            h=require_within("half height h", self.h, 5e-3, 100.0, "m"),
+            length=require_within("length", self.length, 1e-3, 1e3, "m"),
+            density=require_within("density", self.density, 100.0, 3e4, "kg/m3"),
+            inset=require_real("inset", self.inset),
+        )
+        require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
+        if not 0 <= self.inset < self.b:
+            raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
+        self._require_parts()
+        if not abs(self.centroid_offset) < self.half_base:
+            raise ValueError(
+                f"the centroid of the wall lies {self.centroid_offset:g} m from the middle of the base; the valid "
+                f"range is less than {self.half_base:g} m, where the edges are"
+            )
+        require_within("slenderness h / (b - inset)", self.slenderness, 1.0, 200.0)
+
+    def _require_parts(self) -> None:
+        """Check openings, profile and masses, and keep them as tuples."""
+        for name, kind in (("openings", Opening), ("masses", AddedMass)):
+            parts = getattr(self, name)
+            if not isinstance(parts, Sequence) or isinstance(parts, str):
+                raise TypeError(f"{name} = {shown(parts)} is no sequence of {kind.__name__}")
+            for i, one in enumerate(parts):
+                require_kind(f"{name}[{i}]", one, kind)
+            keep(self, **{name: tuple(parts)})
+        require_openings(self.openings, self.length, 2 * self.h)
+        if self.profile is not None:
+            keep(self, profile=require_profile(self.profile, 2 * self.b, 2 * self.h))
+        for i, mass in enumerate(self.masses):
+            require_within(f"masses[{i}], height", mass.height, 0.0, 2 * self.h * (1 + 1e-12), "m")
+            require_within(f"masses[{i}], offset", mass.offset, -self.b - 3, self.b + 3, "m")
+
+    @classmethod
+    def from_size(
+        cls,
+        thickness: float,
+        height: float,
+        length: float = 1.0,
+        density: float = 2000.0,
+        inset: float = 0.0,
+        openings: Sequence[Opening] = (),
+        profile: Sequence[tuple[float, float]] | None = None,
+        masses: Sequence[AddedMass] = (),
+    ) -> Block:
+        """The wall of full sizes `thickness` 2b at the base, `height` 2h and `length` [m]; the rest as for `Block`."""
+        thickness = require_within("thickness", thickness, 2e-3, 20.0, "m")
+        height = require_within("height", height, max(1e-2, thickness), min(200.0, 200 * thickness), "m")
+        parts = {"openings": openings, "profile": profile, "masses": masses}
+        return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]
+
+    @classmethod
+    def from_slenderness(cls, slenderness: float, R: float, length: float = 1.0, density: float = 2000.0) -> Block:
+        """The wall of a `slenderness` h/b [-] and a half diagonal `R` [m], as Table 1 of the paper lists walls."""
+        slenderness = require_within("slenderness h/b", slenderness, 1.0, 200.0)
+        alpha = math.atan(1 / slenderness)
+        most = min(10 / math.sin(alpha), 100 / math.cos(alpha))
+        R = require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")
+        return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
+
+    def __repr__(self) -> str:
+        parts = [f"{2 * self.b:.6g} x {2 * self.h:.6g} m, {self.length:.6g} m long, {self.density:.6g} kg/m3"]
+        if self.inset:
+            parts.append(f"inset {self.inset:.6g} m")
+        if self.profile:
+            parts.append(f"{self.profile[-1][1]:.6g} m thick at the top")
+        for name, many in (("opening", self.openings), ("added mass", self.masses)):
+            if many:
+                parts.append(f"{len(many)} {name}{'' if len(many) == 1 else 's' if name == 'opening' else 'es'}")
+        return f"<Block {', '.join(parts)}: {self.mass:.6g} kg, alpha = {self.alpha:.4g} rad, p = {self.p:.4g} rad/s>"
+
+    @property
+    def half_base(self) -> float:
+        """Half the distance between the edges that the wall rocks about, b less the inset [m]."""
+        return self.b - self.inset
+
+    @property
+    def base_length(self) -> float:
+        """Length of the base along the wall, without its doors [m]."""
+        return self.length - sum(one.width for one in self.openings if one.sill == 0)
+
+    @cached_property
+    def _parts(self) -> Moments:
+        """Mass and its moments of all that is not a plain rectangle [kg, kg m, kg m2]."""
+        profile = self.profile or ((0.0, 2 * self.b), (2 * self.h, 2 * self.b))
+        total = [self.density * value for value in moments(profile, self.length, self.openings)]
+        for one in self.masses:
+            x, z = one.offset, one.height
+            for i, value in enumerate((1.0, x, z, x * x, z * z)):
+                total[i] += one.mass * value
+        return Moments(*total)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the wall is a full rectangle without parts."""
+        return not (self.openings or self.profile or self.masses)
+
+    @property
+    def centroid_height(self) -> float:
+        """Height of the centroid above the base [m]; h for a full rectangle."""
+        return self.h if self.is_plain else self._parts.z / self._parts.volume
+
+    @property
+    def centroid_offset(self) -> float:
+        """Distance of the centroid from the middle of the base, outwards [m]; 0 for a full rectangle."""
+        return 0.0 if self.is_plain or not (self.profile or self.masses) else self._parts.x / self._parts.volume
+
+    @property
+    def lever(self) -> float:
+        """Horizontal distance of the centroid from the outer edge [m]; b for a full rectangle."""
+        return self.half_base - self.centroid_offset
+
+    @property
+    def slenderness(self) -> float:
+        """h/b [-] as Eqs. 5-6 and Table 1 of the paper use it, with the height of the centroid for h and its distance
+        from the outer edge for b."""
+        return self.centroid_height / self.lever
+
+    @property
+    def alpha(self) -> float:
+        """Angle of the line from the outer edge to the centroid, arctan(b/h) [rad]; a static tilt beyond it overturns
+        the wall.
+
+        The paper prints arctan(h/b) below Eq. 1; its own example (Figure 3) needs arctan(b/h) in Eq. 2.
+        """
+        return math.atan2(self.lever, self.centroid_height)
+
+    @property
+    def R(self) -> float:
+        """Distance from the centroid to the outer edge that the wall rocks about [m]; half the diagonal of a
+        rectangle."""
+        return math.hypot(self.lever, self.centroid_height)
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return 4 * self.b * self.h * self.length * self.density if self.is_plain else self._parts.volume
+
+    @property
+    def weight(self) -> float:
+        """Weight [N]."""
+        return self.mass * GRAVITY
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about the centroid [kg m2]."""
+        if self.is_plain:
+            return self.mass * (self.b**2 + self.h**2) / 3
+        about_base = self._parts.xx + self._parts.zz
+        return about_base - self.mass * (self.centroid_offset**2 + self.centroid_height**2)
+
+    @property
+    def toe_inertia(self) -> float:
+        """Moment of inertia about the outer toe, I_0 of Eq. 1 [kg m2]."""
+        return self.inertia + self.mass * self.R**2
+
+    def inertia_about(self, side: float) -> float:
+        """Moment of inertia about the outer toe (+1) or the inner toe (-1) [kg m2]."""
+        lever = self.half_base - math.copysign(1.0, side) * self.centroid_offset
+        return self.inertia + self.mass * (lever**2 + self.centroid_height**2)
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter sqrt(m g R / I_0) of Eq. 1 [rad/s]."""
+        return math.sqrt(self.weight * self.R / self.toe_inertia)
+
+    @cached_property
+    def restoring(self) -> Restoring:
+        """The restoring moments of the weight about the two toes."""
+        return of_force(self.centroid_offset, self.centroid_height, 0.0, self.weight, self.half_base)
+
+    def potential_energy(self, theta: Real) -> Real:
+        """Energy of the rigid wall tilted by `theta` [rad] about its toe, above the wall at rest [J]."""
+        return self.restoring.energy(theta)
+
+    def rotation_at(self, energy: float) -> float:
+        """The rotation in [0, alpha] whose `potential_energy` is `energy` [J]; the inverse of that function.
+
+        Raises:
+            ValueError: if the wall has more energy than it takes to overturn it.
+        """
+        return self.restoring.outer.rotation_at(energy)
+
+    def pose(self, theta: Array) -> Array:
+        """Displacement (x, z) of the centroid [m] and rotation [rad] of the rigid wall turned about its toe.
+
+        Args:
+            theta: rotations [rad], shape (n,).
+
+        Returns:
+            x away from the side stop, z upwards, and theta, shape (n, 3).
+        """
+        return pose_of(theta, self.centroid_offset, self.centroid_height, self.half_base)
+
+    def turning(self, theta: Real, direction: Real) -> Array:
+        """Rate of `pose` per unit of angular velocity, the wall turning about the toe in `direction`, +1 or -1;
+        (..., 3)."""
+        toe, z = direction * self.half_base - self.centroid_offset, self.centroid_height
+        sine, cosine = np.sin(theta), np.cos(theta)
+        return np.stack([z * cosine + toe * sine, toe * cosine - z * sine, np.ones_like(sine)], axis=-1)
+
+    def motion(self, theta: Array, omega: Array) -> tuple[Array, Array]:
+        """Pose and velocity of the rigid wall that rocks, shape (n, 1, 3) each; see `pose` and `turning`."""
+        outwards = np.where(theta == 0, omega, theta) >= 0
+        velocity = omega[:, None] * self.turning(theta, np.where(outwards, 1.0, -1.0))
+        return self.pose(theta)[:, None], velocity[:, None]
+
+    @property
+    def outline(self) -> Array:
+        """Corners of the section about the centroid, counter-clockwise from the inner edge of the base [m], (n, 2)."""
+        b, h = self.b, self.h
+        corners = [(-b, 0.0), (b, 0.0), (b, 2 * h), (-b, 2 * h)]
+        if self.profile:
+            corners = [(-b, 0.0), *((thickness - b, z) for z, thickness in self.profile), (-b, 2 * h)]
+        return np.array(corners) - (self.centroid_offset, self.centroid_height)

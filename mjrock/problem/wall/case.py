@@ -1,0 +1,236 @@
+"""The physical problem that every solver is asked."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+
+from ...quantities import ON_ITS_FACE, Array, Flags, keep, require_flag, require_kind, require_within, shown
+from ..ground.motion import GroundMotion
+from .block import Block
+from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
+from .restoring_moment import Restoring, of_force
+from .ties_on_wall import Pull, stored, taken, yielded
+
+Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A wall released, tilted, on its base.
+
+    Args:
+        block: the wall.
+        theta0: rotation at release [rad]; positive opens away from the side stop.
+        duration: how long to follow the motion [s].
+        side_stop: whether a stop behind the inner face keeps the rotation from becoming negative (one-sided rocking):
+            True over the whole face, or a `SideStop` that reaches only so high.
+        omega0: angular velocity at release [rad/s], the wall turning about its toe.
+        motion: horizontal acceleration of the base, or None for a base at rest. Responses are motions as seen from the
+            base.
+        vertical: vertical acceleration of the base, positive upwards, or None.
+        effects: ties, thrusts, loads and added masses, as many as there are.
+
+    Raises:
+        ValueError: for a rotation beyond 90 degrees or into the side stop, a duration that is not positive, a motion
+            that is none, an effect that is not on the wall, or effects that overturn the wall as it stands.
+    """
+
+    block: Block
+    theta0: float
+    duration: float
+    side_stop: bool | SideStop = True
+    omega0: float = 0.0
+    motion: GroundMotion | None = None
+    vertical: GroundMotion | None = None
+    effects: tuple[Effect, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_kind("block", self.block, Block)
+        if isinstance(self.side_stop, SideStop):
+            top = self.side_stop.top
+            require_within("top of the side stop", top, 0.01, 2 * self.block.h * (1 + 1e-12), "m")
+        else:
+            keep(self, side_stop=require_flag("side_stop", self.side_stop))
+        lowest = 0.0 if self.side_stop else -ON_ITS_FACE
+        keep(
+            self,
+            theta0=require_within("release rotation theta0", self.theta0, lowest, ON_ITS_FACE, "rad"),
+            duration=require_within("duration", self.duration, 1e-6, 1e6, "s"),
+            omega0=require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s"),
+        )
+        if abs(self.theta0) > 2 * self.block.alpha:
+            warnings.warn(
+                f"theta0 = {self.theta0:g} rad is {abs(self.theta0) / self.block.alpha:.3g} alpha: "
+                "the wall overturns from 1 alpha; rotations are radians",
+                stacklevel=3,
+            )
+        for name in ("motion", "vertical"):
+            value = getattr(self, name)
+            if not (value is None or isinstance(value, GroundMotion)):
+                raise TypeError(f"{name} = {shown(value)} is not a GroundMotion")
+        self._require_effects()
+
+    def _require_effects(self) -> None:
+        """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""
+        given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
+        if not isinstance(given, Sequence) or isinstance(given, str):
+            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load or AddedMass")
+        keep(self, effects=tuple(given))
+        if not self.effects:
+            return
+        top, b = 2 * self.block.h * (1 + 1e-12), self.block.b * (1 + 1e-12)
+        for i, one in enumerate(self.effects):
+            if isinstance(one, SideStop):
+                raise TypeError(f"effects[{i}] = {shown(one)}: give it as side_stop")
+            require_kind(f"effects[{i}]", one, *KINDS)
+            if one.block:
+                raise ValueError(f"effects[{i}], block = {one.block}, is outside the valid range: a wall has block 0")
+            require_within(f"effects[{i}], height of the {type(one).__name__}", one.height, 0.0, top, "m")
+            if isinstance(one, Load):
+                require_within(f"effects[{i}], offset of the Load", one.offset, -b, b, "m")
+        for side, name in ((1.0, "outwards"), (-1.0, "inwards")):
+            held = side > 0 and self.overturning_rotation > 0  # by ties
+            if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not held:
+                raise ValueError(
+                    f"the loads and thrusts overturn the wall {name} as it stands: their moment about the toe and "
+                    f"that of the weight is {self.restoring.towards(side).P:.4g} N m, and no tie makes up for it; the "
+                    "valid range is above 0: lower the thrust, or give a tie that can hold it"
+                )
+
+    def __repr__(self) -> str:
+        stop = "no side stop" if self.stop_top is None else "side stop"
+        if isinstance(self.side_stop, SideStop):
+            stop += f" up to {self.side_stop.top:.6g} m"
+        share = self.theta0 / self.wall.alpha
+        parts = [f"theta0 = {self.theta0:.4g} rad = {share:.3g} alpha", f"{self.duration:.6g} s", stop]
+        if self.omega0:
+            parts.append(f"omega0 = {self.omega0:.4g} rad/s")
+        for name, motion in (("motion", self.motion), ("vertical", self.vertical)):
+            if motion is not None:
+                parts.append(f"{name} {motion.name!r}")
+        parts += [type(one).__name__ for one in self.effects]
+        return f"<Case of {self.block!r}: {', '.join(parts)}>"
+
+    def each(self, kind: type[Kind]) -> tuple[Kind, ...]:
+        """The effects of one kind, in their order."""
+        return tuple(one for one in self.effects if isinstance(one, kind))
+
+    @cached_property
+    def wall(self) -> Block:
+        """The wall with the masses that the case adds to it."""
+        masses = self.each(AddedMass)
+        return replace(self.block, masses=self.block.masses + masses) if masses else self.block
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether there is a side stop."""
+        return bool(self.side_stop)
+
+    @property
+    def stop_top(self) -> float | None:
+        """Height that the side stop reaches [m], or None without one."""
+        if isinstance(self.side_stop, SideStop):
+            return min(self.side_stop.top, 2 * self.block.h)
+        return 2 * self.block.h if self.side_stop else None
+
+    @cached_property
+    def restoring(self) -> Restoring:
+        """The restoring moments of weight, loads and thrusts about the two toes; ties come on top."""
+        half_base = self.block.half_base
+        forces = [of_force(one.offset, one.height, 0.0, one.force, half_base) for one in self.each(Load)]
+        forces += [of_force(0.0, one.height, one.force, 0.0, half_base) for one in self.each(Thrust)]
+        return self.wall.restoring.plus(forces) if forces else self.wall.restoring
+
+    @cached_property
+    def pulls(self) -> tuple[Pull, ...]:
+        """The ties, in the geometry of the wall."""
+        return tuple(Pull.of(tie, self.block.b, self.block.half_base) for tie in self.each(Tie))
+
+    @property
+    def pressing(self) -> float:
+        """Weight and loads that press on the base [N]."""
+        return self.wall.weight + sum(one.force for one in self.each(Load))
+
+    @property
+    def shaken(self) -> bool:
+        """Whether the base moves."""
+        return self.motion is not None or self.vertical is not None
+
+    @property
+    def lopsided(self) -> bool:
+        """Whether the wall rocks to both sides, and not alike."""
+        return not self.side_stop and self.restoring.outer != self.restoring.inner
+
+    def peak_energies(self, peaks: Array) -> tuple[Array, Array]:
+        """Energy at the rotation peaks of a base at rest [J], shape (n,): on leaving each, and on the way to it.
+
+        The second is larger by what ties have taken on the way there.
+
+        Args:
+            peaks: rotation maxima with their sign [rad], shape (n,).
+        """
+        energy = np.asarray(self.restoring.energy(peaks), dtype=float)
+        if not self.pulls:
+            return energy, energy
+        plastic = yielded(self.pulls, peaks)
+        energy = energy + stored(self.pulls, peaks, plastic)
+        return energy, energy + np.diff(taken(self.pulls, plastic), prepend=0.0)
+
+    @cached_property
+    def overturning_rotation(self) -> float:
+        """Largest rotation from which weight, loads, thrusts and ties still bring the wall back [rad].
+
+        It is alpha of a wall without loads, thrusts and ties. Each tie is taken as one that is stretched for the first
+        time.
+        """
+        moment = self.restoring.outer
+        if not self.pulls:
+            return max(moment.alpha, 0.0)
+        phi = np.linspace(0.0, ON_ITS_FACE, 2001)[1:]
+        held = moment.at(phi) + sum(pull.moment(phi) for pull in self.pulls)
+        back = np.flatnonzero(held > 0)
+        return float(phi[back[-1]]) if back.size else 0.0
+
+    def returns_from(self, theta: Array) -> Flags:
+        """Whether the wall may still come back from rotations of either sign [rad], shape (n,)."""
+        inwards = ON_ITS_FACE if self.side_stop else self.restoring.inner.alpha
+        found: Flags = (theta <= self.overturning_rotation) & (theta >= -inwards)
+        return found
+
+    def energy(self, theta: Array, omega: Array) -> Array:
+        """Kinetic and potential energy of the rigid wall, above the wall at rest [J], without ties; shape (n,)."""
+        outwards = np.where(theta == 0, omega, theta) >= 0
+        inertia = np.where(outwards, self.wall.inertia_about(1), self.wall.inertia_about(-1))
+        energy: Array = self.restoring.energy(theta) + 0.5 * inertia * omega**2
+        return energy
+
+    @cached_property
+    def release_energy(self) -> float:
+        """Kinetic and potential energy of the rigid wall at release, above the wall at rest [J], without ties."""
+        inertia = self.wall.inertia_about(self.direction)
+        return float(self.restoring.energy(self.theta0)) + 0.5 * inertia * self.omega0**2
+
+    @property
+    def direction(self) -> float:
+        """Sign of the rotation that the wall is released to, +1 or -1; a side stop leaves only +1."""
+        return 1.0 if self.side_stop else math.copysign(1.0, self.theta0 if self.theta0 else self.omega0)
+
+    @property
+    def released_outwards(self) -> bool:
+        """Whether the wall is released on its way out, so that its first rotation maximum is still to come."""
+        return self.direction * self.omega0 > 0
+
+    @property
+    def release_peak(self) -> float:
+        """The rotation from which the wall would have had to fall to be released as it is [rad], at most alpha."""
+        if self.omega0 == 0:
+            return abs(self.theta0)
+        moment = self.restoring.towards(self.direction)
+        return moment.rotation_at(min(self.release_energy, float(moment.energy(moment.alpha))))

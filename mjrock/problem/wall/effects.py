@@ -1,0 +1,186 @@
+"""Effects that a case may carry: ties, thrusts, loads, added masses, and a side stop that reaches only so high.
+
+Heights are measured from the base. Offsets are measured from the middle of the base, positive outwards, away from the
+side stop. A wall of many blocks names the block that an effect belongs to; a single wall is block 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...quantities import keep, require_real, require_whole, require_within
+
+HIGHEST = 200.0
+"""Largest height of a wall, and so of an effect [m]."""
+BLOCKS = 100_000
+"""Largest number of a block."""
+
+
+@dataclass(frozen=True)
+class Tie:
+    """A tie that holds the inner face of the wall back: it pulls, never pushes, and yields plastically.
+
+    The tie runs horizontally from the inner face to an anchor behind the wall, unless `anchor_height` says otherwise.
+    Its force is min(strength, stiffness times elongation), the elongation beyond the slack and beyond what has yielded.
+
+    Args:
+        height: where it holds the wall [m].
+        stiffness: E A over its length [N/m], 1 to 1e12.
+        slack: elongation before it pulls [m], 0 to 10.
+        strength: force at which it yields [N], above 0; infinite for one that does not.
+        length: distance from the inner face to the anchor [m], 0.01 to 1000.
+        anchor_height: height of the anchor [m]; None is that of the tie.
+        block: the block that it holds.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    height: float
+    stiffness: float
+    slack: float = 0.0
+    strength: float = math.inf
+    length: float = 5.0
+    anchor_height: float | None = None
+    block: int = 0
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            height=require_within("height of the tie", self.height, 0.0, HIGHEST, "m"),
+            stiffness=require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m"),
+            slack=require_within("slack of the tie", self.slack, 0.0, 10.0, "m"),
+            strength=require_real("strength of the tie", self.strength),
+            length=require_within("length of the tie", self.length, 0.01, 1000.0, "m"),
+            block=require_whole("block of the tie", self.block, 0, BLOCKS),
+        )
+        if not self.strength > 0:
+            raise ValueError(
+                f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
+            )
+        if self.anchor_height is not None:
+            anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
+            keep(self, anchor_height=anchored)
+
+    @property
+    def rise(self) -> float:
+        """How much higher the anchor is than the point that is held [m]."""
+        return 0.0 if self.anchor_height is None else self.anchor_height - self.height
+
+    @property
+    def reach(self) -> float:
+        """Length up to which the tie is slack [m]."""
+        return math.hypot(self.length, self.rise) + self.slack
+
+    @property
+    def stretch(self) -> float:
+        """Elastic elongation at which it yields [m]."""
+        return self.strength / self.stiffness
+
+
+@dataclass(frozen=True)
+class Thrust:
+    """A horizontal force that keeps its size and direction: the thrust of an arch, a vault or a rafter.
+
+    Args:
+        height: where it acts, on the middle of the wall [m].
+        force: its size on the whole length of the wall, positive outwards [N], -1e9 to 1e9.
+        block: the block that it pushes.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    height: float
+    force: float
+    block: int = 0
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            height=require_within("height of the thrust", self.height, 0.0, HIGHEST, "m"),
+            force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"),
+            block=require_whole("block of the thrust", self.block, 0, BLOCKS),
+        )
+
+
+@dataclass(frozen=True)
+class Load:
+    """A vertical force on the wall that has weight but no mass of its own here: a floor or roof that rests on it.
+
+    Args:
+        force: its size on the whole length of the wall, downwards [N], 0 to 1e9.
+        height: where it acts [m].
+        offset: from the middle of the base, outwards [m], -10 to 10.
+        block: the block that it rests on.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    force: float
+    height: float
+    offset: float = 0.0
+    block: int = 0
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            force=require_within("force of the load", self.force, 0.0, 1e9, "N"),
+            height=require_within("height of the load", self.height, 0.0, HIGHEST, "m"),
+            offset=require_within("offset of the load", self.offset, -10.0, 10.0, "m"),
+            block=require_whole("block of the load", self.block, 0, BLOCKS),
+        )
+
+
+@dataclass(frozen=True)
+class AddedMass:
+    """A mass that moves with the wall: a cornice, a balcony, a roof that is fixed to it.
+
+    Args:
+        mass: the mass, as a point [kg], 0 to 1e8.
+        height: where it is [m].
+        offset: from the middle of the base, outwards [m], -13 to 13.
+        block: the block that it moves with.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    mass: float
+    height: float
+    offset: float = 0.0
+    block: int = 0
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            mass=require_within("added mass", self.mass, 0.0, 1e8, "kg"),
+            height=require_within("height of the added mass", self.height, 0.0, HIGHEST, "m"),
+            offset=require_within("offset of the added mass", self.offset, -13.0, 13.0, "m"),
+            block=require_whole("block of the added mass", self.block, 0, BLOCKS),
+        )
+
+
+@dataclass(frozen=True)
+class SideStop:
+    """A stop behind the inner face that reaches from the base up to a height, as side walls do.
+
+    Args:
+        top: the height that it reaches [m], 0.01 to the height of the wall.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    top: float
+
+    def __post_init__(self) -> None:
+        keep(self, top=require_within("top of the side stop", self.top, 0.01, HIGHEST, "m"))
+
+
+Effect = Tie | Thrust | Load | AddedMass
+"""What `Case.effects` may hold."""
+KINDS = (Tie, Thrust, Load, AddedMass)
+"""The same, as classes."""

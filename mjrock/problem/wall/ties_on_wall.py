@@ -1,0 +1,92 @@
+"""Ties on a rigid wall: how far they are stretched, and the lever of their force about the toe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...compiled import jitable
+from ...quantities import Array
+from .effects import Tie
+
+
+class Pull(NamedTuple):
+    """A tie on a rigid wall, as numbers for compiled functions.
+
+    Args:
+        offset, height: the point that it holds, from the middle of the base, outwards and upwards [m].
+        length, rise: horizontal distance of the anchor behind that point, and how much higher it is [m].
+        half_base: distance of either toe of the wall from the middle of the base [m].
+        reach: length up to which the tie is slack [m].
+        stiffness: [N/m].
+        strength: force at which it yields [N].
+    """
+
+    offset: float
+    height: float
+    length: float
+    rise: float
+    half_base: float
+    reach: float
+    stiffness: float
+    strength: float
+
+    @classmethod
+    def of(cls, tie: Tie, b: float, half_base: float) -> Pull:
+        """A tie that holds the inner face of a wall of half thickness `b` and half base `half_base` [m]."""
+        return cls(-b, tie.height, tie.length, tie.rise, half_base, tie.reach, tie.stiffness, tie.strength)
+
+    def moment(self, phi: Array) -> Array:
+        """Restoring moment at rotations about the outer toe, stretched for the first time [N m], shape (n,)."""
+        elongation, lever = pulled(self, phi, 1.0)
+        moment: Array = np.minimum(self.strength, self.stiffness * np.maximum(elongation, 0.0)) * lever
+        return moment
+
+
+@jitable
+def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
+    """Elongation of a tie beyond its slack [m], and its lever [m]: the rate of its length with the rotation theta.
+
+    Args:
+        tie: the tie.
+        theta: rotation [rad]; a number, or an array outside compiled functions.
+        side: the toe that the wall turns about, +1 for the outer one.
+    """
+    d, z = side * tie.half_base - tie.offset, tie.height
+    sine, cosine = np.sin(theta), np.cos(theta)
+    # from the anchor to the point that is held
+    x = tie.length + d * (1 - cosine) + z * sine
+    up = d * sine - z * (1 - cosine) - tie.rise
+    length = np.sqrt(x * x + up * up)
+    return length - tie.reach, (x * (d * sine + z * cosine) + up * (d * cosine - z * sine)) / length
+
+
+def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
+    """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties)."""
+    found = np.zeros((len(theta), len(pulls)))
+    for i, pull in enumerate(pulls):
+        found[:, i] = np.maximum(np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness), 0.0)
+    return found
+
+
+def stored(pulls: Sequence[Pull], theta: Array, plastic: Array) -> Array:
+    """Elastic energy of the ties [J], shape (n,), at rotations and plastic elongations of shapes (n,), (n, ties)."""
+    energy = np.zeros(len(theta))
+    for pull, gone in zip(pulls, plastic.T, strict=True):
+        energy += 0.5 * pull.stiffness * np.maximum(_elongation(pull, theta) - gone, 0.0) ** 2
+    return energy
+
+
+def taken(pulls: Sequence[Pull], plastic: Array) -> Array:
+    """Energy that all ties have taken by yielding so far [J], shape (n,), for plastic elongations (n, ties)."""
+    return sum(
+        (pull.strength * gone for pull, gone in zip(pulls, plastic.T, strict=True) if gone.any()),
+        np.zeros(len(plastic)),
+    )
+
+
+def _elongation(pull: Pull, theta: Array) -> Array:
+    found: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
+    return found
