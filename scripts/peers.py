@@ -96,7 +96,7 @@ class Point:
     note: str = ""
 
 
-class Setting:
+class Problem:
     """One case at several releases: what is asked of everyone, and what is right."""
 
     def __init__(self, label: str, *, side_stop: bool, quick: bool) -> None:
@@ -164,19 +164,19 @@ class Setting:
         return restitution_of(*peak_energies(case, np.array([size for _, size in kept])))
 
 
-def ours(setting: Setting, setup: Setup, accuracy: float) -> Point:
+def ours(problem: Problem, setup: Setup, accuracy: float) -> Point:
     """`simulate`, on the contacts of the reference or on stiff ones that rebound as theory does."""
-    contacts = mr.as_theory(FIGURE_3, setting.e) if setup.variant else problem.contacts
+    contacts = mr.as_theory(FIGURE_3, problem.e) if setup.variant else problem.contacts
     runs = [mr.simulate(case, contacts, accuracy=accuracy) for case in problem.cases]
-    seconds = min(mr.simulate(setting.cases[0], contacts, accuracy=accuracy).stats["wall_time"] for _ in range(20))
+    seconds = min(mr.simulate(problem.cases[0], contacts, accuracy=accuracy).stats["wall_time"] for _ in range(20))
     return problem.point(setup, accuracy, seconds, [run.restitution for run in runs])
 
 
-def theirs(setting: Setting, setup: Setup, h: float) -> Point:
+def theirs(problem: Problem, setup: Setup, h: float) -> Point:
     """A peer at one step, in its own process."""
-    nothing = Point(setting.label, setup, h, math.nan, math.nan, math.nan, ())
+    nothing = Point(problem.label, setup, h, math.nan, math.nan, math.nan, ())
     with tempfile.TemporaryDirectory() as folder:
-        task = Task(setup.code, setup.variant, h, setting.questions(), str(Path(folder) / "answers.npz"))
+        task = Task(setup.code, setup.variant, h, problem.questions(), str(Path(folder) / "answers.npz"))
         command, text = [sys.executable, "-m", "peer.worker"], task.text
         try:
             subprocess.run(
@@ -188,7 +188,7 @@ def theirs(setting: Setting, setup: Setup, h: float) -> Point:
             said = [line for line in error.stderr.splitlines() if "Error: " in line]
             return replace(nothing, note=(said or ["failed"])[-1].split("Error: ")[-1])
         with np.load(task.file) as answers:
-            pairs = enumerate(setting.cases)
+            pairs = enumerate(problem.cases)
             found = [problem.restitution(case, answers[f"motion_{i}"]) for i, case in pairs]
             return problem.point(setup, h, float(answers["seconds"]), found)
 
@@ -210,13 +210,13 @@ def missing() -> dict[str, str]:
     return {code: f"{name} is not installed: skipped (pip install 'mjrock[peers]')" for code, name in absent.items()}
 
 
-def points(problems: Sequence[Setting], absent: dict[str, str], quick: bool) -> Iterator[Point]:
+def points(problems: Sequence[Problem], absent: dict[str, str], quick: bool) -> Iterator[Point]:
     """Every setup at every step."""
     todo = [
         (p, s, h) for p in problems for s in SETUPS if s.code not in absent for h in s.steps[: 2 if quick else None]
     ]
     for problem, setup, step in tqdm(todo, desc="peers", disable=None, leave=False):
-        yield (theirs if setup.code else ours)(setting, setup, step)
+        yield (theirs if setup.code else ours)(problem, setup, step)
 
 
 def quickest(found: Sequence[Point], measure: str) -> Point | None:
@@ -267,7 +267,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     absent = missing()
     sides = (("one-sided", True), ("two-sided", False))
-    problems = [Setting(label, side_stop=side_stop, quick=args.quick) for label, side_stop in sides]
+    problems = [Problem(label, side_stop=side_stop, quick=args.quick) for label, side_stop in sides]
     found = list(points(problems, absent, args.quick))
     header = ["case", "setup", "given", "step [s] or accuracy [-]", "wall time / simulated time [-]"]
     header += ["error against the law [-]", "error against theory [-]", "|e| of the first two rebounds", "note"]
@@ -283,7 +283,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     cli.write_text(out / "peers.csv", cli.csv_text(header, plain))
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
     plotting.save(plotting.peers(drawn), out / "peers.png")
-    lines = [summary(setting.label, found) for problem in problems]
+    lines = [summary(problem.label, found) for problem in problems]
     lines.append(
         "\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()])
     )
