@@ -10,7 +10,7 @@ import peers
 
 @pytest.fixture(scope="module")
 def two_sided():
-    return peers.Setting("two-sided", side_stop=False, quick=True)
+    return peers.Problem("two-sided", side_stop=False, quick=True)
 
 
 def setup_of(label):
