@@ -1,30 +1,31 @@
 """The store of a campaign under several writers, and after damage to its file."""
 
+import os
 import shutil
 import sqlite3
 import subprocess
 import sys
-import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from campaign_tasks import Square
 
 import mjrock as mr
-from mjrock.study import lock
 from mjrock.study.store import Store
 
 TAKER = """
-import importlib.util, os, sys, time
+import os, sys, time
 from pathlib import Path
-spec = importlib.util.spec_from_file_location("lock", sys.argv[1])  # without the rest of the package, which takes long
-module = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(module)
-store = Path(sys.argv[2])
-inside, end, taken, met = store.with_name("inside"), float(sys.argv[3]), 0, 0
-while time.time() < end:
+from mjrock.study.store import Store
+folder = Path(sys.argv[1])
+folder.joinpath(f"ready {os.getpid()}").touch()
+while len(list(folder.glob("ready *"))) < 3:
+    time.sleep(0.01)
+inside, end, taken, met = folder / "inside", time.monotonic() + 2, 0, 0
+while time.monotonic() < end:
     try:
-        lock = module.Lock(store)
+        store = Store(folder / "c.sqlite", writing=True)
     except OSError:
         continue
     taken += 1
@@ -34,19 +35,57 @@ while time.time() < end:
         met += 1
     time.sleep(0.0002)
     inside.unlink(missing_ok=True)
-    lock.release()
+    store.close()
 print(taken, met)
 """
 
 
 def test_the_lock_is_exclusive(tmp_path):
-    """Three processes take the lock again and again for two seconds; nobody ever meets another one inside."""
-    command = [sys.executable, "-c", TAKER, lock.__file__, str(tmp_path / "c.sqlite"), str(time.time() + 2.0)]
+    """Three processes open the store again and again for two seconds; nobody ever meets another one inside."""
+    command = [sys.executable, "-c", TAKER, str(tmp_path)]
     takers = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(3)]
     counts = [[int(number) for number in taker.communicate()[0].split()] for taker in takers]
     assert sum(taken for taken, _ in counts) > 100
     assert sum(taken > 0 for taken, _ in counts) > 1
     assert sum(met for _, met in counts) == 0
+    assert not (tmp_path / "c.sqlite.lock").exists()
+
+
+HOLDER = """
+import sys, time
+from mjrock.study.store import Store
+store = Store(sys.argv[1], writing=True)
+print("held", flush=True)
+time.sleep(60)
+"""
+
+
+def test_a_killed_process_frees_the_lock(tmp_path):
+    path = tmp_path / "c.sqlite"
+    holder = subprocess.Popen([sys.executable, "-c", HOLDER, str(path)], stdout=subprocess.PIPE, text=True)
+    with holder.stdout:
+        assert holder.stdout.readline() == "held\n"
+    with pytest.raises(OSError, match=r"c\.sqlite: another campaign is writing to it"):
+        Store(path, writing=True)
+    holder.kill()
+    holder.wait()
+    assert (tmp_path / "c.sqlite.lock").exists()
+    Store(path, writing=True).close()
+    assert [file.name for file in tmp_path.iterdir()] == ["c.sqlite"]
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="the superuser writes anywhere")
+def test_a_read_only_folder_is_named(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(OSError, match=r"c\.sqlite: unable to open .*c\.sqlite\.lock: Permission denied"):
+        Store(tmp_path / "c.sqlite", writing=True)
+    tmp_path.chmod(0o700)
+
+
+def test_a_missing_folder_is_named_and_not_made(tmp_path):
+    with pytest.raises(OSError, match=r"c\.sqlite: unable to open .*c\.sqlite\.lock: No such file or directory"):
+        Store(tmp_path / "nowhere" / "c.sqlite", writing=True)
+    assert not (tmp_path / "nowhere").exists()
 
 
 def test_a_symbolic_link_is_the_same_store(tmp_path):
@@ -153,10 +192,11 @@ def test_an_error_of_the_system_is_no_damage(tmp_path, whole):
 
 
 def test_the_lock_is_released(tmp_path):
-    first = lock.Lock(tmp_path / "c.sqlite")
-    first.release()
-    first.release()
-    lock.Lock(tmp_path / "c.sqlite").release()
+    first = Store(tmp_path / "c.sqlite", writing=True)
+    with ThreadPoolExecutor(1) as other:
+        other.submit(first.close).result()
+    first.close()
+    Store(tmp_path / "c.sqlite", writing=True).close()
 
 
 @pytest.mark.parametrize("value", [10**30, [1, 2], "\ud800", 1j])

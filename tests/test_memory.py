@@ -1,10 +1,13 @@
 """The engine's memory is proved before anything is written to it."""
 
 import ctypes
+import sys
 
 import mujoco
 import numpy as np
 import pytest
+from mujoco.introspect.ast_nodes import ArrayType, StructDecl, StructFieldDecl, ValueType
+from mujoco.introspect.structs import STRUCTS
 
 import mjrock as mr
 from mjrock.engine import memory
@@ -31,11 +34,41 @@ def test_the_options_are_where_they_should_be(model):
 def test_options_elsewhere_are_refused_and_nothing_is_written(model, monkeypatch):
     options = (ctypes.c_char * 512).from_address(model.opt.gravity.ctypes.data - 56)
     before = bytes(options)
-    for wrong in (48, 64, 512):
-        monkeypatch.setattr(memory, "BEFORE_GRAVITY", wrong)
+    right = memory.places()
+    for name, wrong in (("gravity", 48), ("gravity", 64), ("gravity", 512), ("impratio", 16), ("timestep", 8)):
+        monkeypatch.setattr(memory, "places", lambda there=right | {name: wrong}: there)
         with pytest.raises(RuntimeError, match=r"does not keep opt\.timestep and opt\.impratio where"):
             Memory.of(model, mujoco.MjData(model))
     assert bytes(options) == before
+
+
+def test_places_are_those_of_the_description(monkeypatch):
+    """Of the one that MuJoCo 4.0 has, and of another with an integer and arrays before, and impratio not beside."""
+    assert memory.places() == {"timestep": 0, "impratio": 8, "gravity": 56}
+    number, whole = ValueType("mjtNum"), ValueType("int")
+    types = {"flag": whole, "impratio": number, "table": ArrayType(number, (2, 3)), "flags": ArrayType(whole, (3,))}
+    types |= {"timestep": number, "gravity": ArrayType(number, (3,))}
+    assert described(monkeypatch, types) == {"impratio": 8, "timestep": 80, "gravity": 88}
+    for kinds, complaint in (
+        ({"odd": ValueType("short")} | types, "KeyError: 'short'"),
+        ({"timestep": number, "gravity": number}, "AttributeError: .*'impratio'"),
+        ({"timestep": number, "gravity": number, "impratio": number}, "KeyError: 'gravity comes first'"),
+    ):
+        with pytest.raises(RuntimeError, match=rf"describes mjOption in a way that mjrock does not know \({complaint}"):
+            described(monkeypatch, kinds)
+
+
+def described(monkeypatch, types):
+    """The places for a description with fields of these names and types."""
+    fields = [StructFieldDecl(name, kind, "") for name, kind in types.items()]
+    monkeypatch.setitem(STRUCTS, "mjOption", StructDecl("mjOption", "struct mjOption_", fields))
+    return memory.places.__wrapped__()
+
+
+def test_a_missing_description_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco.introspect.structs", None)
+    with pytest.raises(RuntimeError, match=r"lacks its module mujoco\.introspect\.structs.*reinstall mujoco"):
+        memory.places.__wrapped__()
 
 
 def test_a_step_by_address_is_a_step(model):

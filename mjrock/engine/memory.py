@@ -1,9 +1,9 @@
 """The engine's own memory: `mj_step` by its address, and the arrays and options of a model that steps change.
 
 The compiled loop calls the functions of MuJoCo's library directly, with the addresses of a model and its data. The
-arrays are the views of MuJoCo's Python bindings. `opt.timestep` and `opt.impratio` have no such view. They are doubles
-that lie 56 and 48 bytes before `opt.gravity`, which has one. This is proved for every model, by writing through the
-bindings and reading at the address, before anything is written there.
+arrays are the views of MuJoCo's Python bindings. `opt.timestep` and `opt.impratio` have no such view. `opt.gravity` has
+one, and MuJoCo's own description of its structures says how far before it they lie. This is proved for every model, by
+writing through the bindings and reading at the address, before anything is written there.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from .rows import Rows
 
 TIMESTEP, IMPRATIO = 0, 1
 """Places of the two options in `Memory.options`."""
-BEFORE_GRAVITY = 56
-"""Bytes from `opt.timestep` to `opt.gravity` in MuJoCo's mjOption."""
+TYPES = {"mjtNum": ctypes.c_double, "int": ctypes.c_int}
+"""Types of C by their names in MuJoCo's description of mjOption."""
 LIBRARIES = {"linux": "libmujoco.so.*", "darwin": "libmujoco.*.dylib", "win32": "mujoco.dll"}
 """File names of MuJoCo's library in its Python package, by `sys.platform`."""
 
@@ -120,10 +120,51 @@ def library_file(folder: Path) -> Path:
     return found[0]
 
 
+@cache
+def places() -> dict[str, int]:
+    """Bytes from the start of MuJoCo's mjOption to its timestep, impratio and gravity, by its own description.
+
+    Raises:
+        RuntimeError: if the description is missing, lacks one of these fields, has types that mjrock does not know, or
+            has gravity before the other two.
+    """
+    try:
+        from mujoco.introspect.structs import STRUCTS  # a tenth of a second, once a process that simulates
+    except ImportError as error:
+        raise RuntimeError(
+            f"MuJoCo {mujoco.__version__} lacks its module mujoco.introspect.structs, which says where its options lie "
+            f"in memory ({error}); reinstall mujoco"
+        ) from None
+    try:
+        fields = [(field.name, _type(field.type)) for field in STRUCTS["mjOption"].fields]
+        described: Any = type("mjOption", (ctypes.Structure,), {"_fields_": fields})
+        at = {name: getattr(described, name).offset for name in ("timestep", "impratio", "gravity")}
+        if at["gravity"] != max(at.values()):
+            raise KeyError("gravity comes first")
+    except (AttributeError, KeyError) as error:
+        raise RuntimeError(
+            f"mujoco.introspect.structs of MuJoCo {mujoco.__version__} describes mjOption in a way that mjrock does "
+            f"not know ({type(error).__name__}: {error}); use a version of MuJoCo that mjrock has been tested with"
+        ) from None
+    return at
+
+
+def _type(described: Any) -> Any:
+    """The type of ctypes for a number or an array of MuJoCo's description."""
+    if not hasattr(described, "extents"):
+        return TYPES[described.name]
+    made = _type(described.inner_type)
+    for extent in reversed(described.extents):
+        made *= extent
+    return made
+
+
 def _options(model: mujoco.MjModel) -> Array:
     """A view of timestep and impratio in the memory of the model, once it is proved to be one."""
-    address = model.opt.gravity.ctypes.data - BEFORE_GRAVITY
-    view = np.ctypeslib.as_array((ctypes.c_double * 2).from_address(address))
+    at = places()
+    address = model.opt.gravity.ctypes.data - at["gravity"]
+    held = np.ctypeslib.as_array((ctypes.c_ubyte * at["gravity"]).from_address(address))
+    view = np.ndarray(2, float, held, at["timestep"], strides=(at["impratio"] - at["timestep"],))
     before = model.opt.timestep, model.opt.impratio
     proved = True
     for probe in ((0.123, 45.6), (7.89e-5, 0.321)):
@@ -133,6 +174,7 @@ def _options(model: mujoco.MjModel) -> Array:
     if not proved:
         raise RuntimeError(
             f"MuJoCo {mujoco.__version__} does not keep opt.timestep and opt.impratio where mjrock expects them, "
-            f"{BEFORE_GRAVITY} bytes before opt.gravity; use a version of MuJoCo that mjrock has been tested with"
+            f"{at['gravity'] - at['timestep']} and {at['gravity'] - at['impratio']} bytes before opt.gravity; use a "
+            "version of MuJoCo that mjrock has been tested with"
         )
     return view

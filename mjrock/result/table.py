@@ -24,10 +24,13 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise ValueError(f"two columns have the name {twice[0]!r}")
+    return written([names, *([_cell(value) for value in row] for row in rows)])
+
+
+def written(rows: Iterable[Sequence[object]]) -> str:
+    """Rows as CSV text. Text that a spreadsheet would take for a formula has an apostrophe before it."""
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(names)
-    writer.writerows([_cell(value) for value in row] for row in rows)
+    csv.writer(text, lineterminator="\n").writerows(map(_guarded, row) for row in rows)
     return text.getvalue()
 
 
@@ -41,10 +44,10 @@ def _without(name: str) -> str:
 def _cell(value: object) -> object:
     if not isinstance(value, str):
         return value
-    return guarded(value.replace(",", ";").replace("#", "no. ").replace('"', "'"))
+    return value.replace(",", ";").replace("#", "no. ").replace('"', "'")
 
 
-def guarded(value: object) -> object:
+def _guarded(value: object) -> object:
     """A cell that no spreadsheet computes: text that begins like a formula, and is no number, gets an apostrophe."""
     if not isinstance(value, str) or not value.startswith(FORMULA):
         return value

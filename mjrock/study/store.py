@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -12,12 +11,12 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from ..quantities import require_path, spelt
-from ..result.table import guarded
-from .lock import Lock
+from ..result.table import written
 from .values import checksum, plain, shown
 
 if TYPE_CHECKING:
     import pandas
+    from filelock import BaseFileLock
 
 APPLICATION = 0x6D6A726B
 """SQLite's application_id of a campaign, "mjrk"."""
@@ -63,12 +62,12 @@ class Store:
         return f"<Store {self.path}>"
 
     def __init__(self, path: str | Path, *, writing: bool = False) -> None:
-        self._lock: Lock | None = None
+        self._lock: BaseFileLock | None = None
         self.path = require_path("path", path)
         if not writing and not self.path.is_file():
             raise FileNotFoundError(f"{self.path}: there is no such campaign")
         if writing:
-            self._lock = Lock(self.path)
+            self._lock = locked(self.path)
         try:
             try:
                 self._rows = sqlite3.connect(self.path, isolation_level=None)
@@ -166,6 +165,8 @@ class Store:
             ):  # every row is committed; the journal is taken up at the next opening
                 self._rows.close()
         if self._lock is not None:
+            with contextlib.suppress(OSError):  # Windows deletes it as it is released; the file may stay
+                os.unlink(self._lock.lock_file)
             self._lock.release()
             self._lock = None
 
@@ -270,17 +271,38 @@ class Store:
         Text that a spreadsheet would take for a formula has an apostrophe before it.
         """
         names = [name for name in self.columns if timings or name != "seconds"]
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(map(guarded, names))
-        writer.writerows([guarded(row[name]) for name in names] for row in self.rows())
-        return text.getvalue()
+        return written([names, *([row[name] for name in names] for row in self.rows())])
 
     def frame(self) -> pandas.DataFrame:
         """The rows as a frame of pandas, which the extra `frames` installs."""
         import pandas
 
         return pandas.DataFrame(self.rows(), columns=self.columns)
+
+
+def locked(store: Path) -> BaseFileLock:
+    """The lock of a store, taken. One process at a time can hold it, and the system frees it however the process ends.
+
+    It is held on an empty file beside the store, `<store>.lock`. Whoever holds it deletes the file before the lock is
+    released; one that gets the lock of a file that was deleted in between tries again. A process that is killed leaves
+    the file behind, which locks nothing. Symbolic links to one store share one lock.
+
+    Raises:
+        OSError: if another process holds the lock, or the file beside the store cannot be made.
+    """
+    import filelock  # 30 ms, which only those who write need
+
+    path = Path(os.path.realpath(store) + ".lock")
+    try:
+        path.parent.stat()  # a missing folder is an error; filelock would make it
+        # Any thread may close the store. Without locks of the system there is an error, as a lock would outlive a kill.
+        lock = filelock.FileLock(path, blocking=False, thread_local=False, fallback_to_soft=False)
+        lock.acquire()
+    except filelock.Timeout:
+        raise OSError(f"{store}: another campaign is writing to it") from None
+    except OSError as error:
+        raise OSError(f"{store}: unable to open {path}: {error.strerror}") from None
+    return lock
 
 
 def readable(path: Path) -> list[dict[str, Any]]:
