@@ -29,6 +29,7 @@ from .problem.masonry.masonry import Masonry
 from .problem.masonry.polygon import Polygon
 from .problem.wall.block import Block
 from .problem.wall.case import Case
+from .problem.wall.damper import Damper
 from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
 from .problem.wall.section import Opening
 from .quantities import GRAVITY
@@ -65,6 +66,7 @@ __all__ = [
     "Comparison",
     "ContactParameters",
     "Contacts",
+    "Damper",
     "DampingLaw",
     "Grid",
     "GroundMotion",

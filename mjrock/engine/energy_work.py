@@ -20,6 +20,7 @@ from ..geometry.kinematics import along, gap
 from ..quantities import Array, Integers
 from ..result.ledger import Ledger
 from ..scene.course import Course
+from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
 from ..scene.potential import spring_energy
 from ..scene.scene import Scene
@@ -78,12 +79,15 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
     groups, dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
+    record = steps.record
+    dampers = taken_by_dampers(scene.dampers, record.pose, windows.mean, windows.width, record.damping)
+    dashpots = np.concatenate([dashpots, dampers], axis=1)
     return Ledger(
         t=windows.t,
         kinetic=stored[:, 0],
         potential=stored[:, 1],
         elastic=stored[:, 2],
-        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate(groups)},
+        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate((*groups, *scene.damper_names))},
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, course, steps)),
         ties=dict(zip(scene.tie_names, (taken - taken[0]).T, strict=True)),

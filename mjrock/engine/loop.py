@@ -139,9 +139,10 @@ def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array,
             record.friction[n, i] = sliding.force[i] if sliding.slides[i] else math.nan
         give_rows_back(memory, sliding)
     else:
-        push(memory, setting, t)
+        push(memory, setting, frames, t)
         memory.step(memory.model, memory.data)
         record.friction[n, :] = math.nan
+    copied(setting.damping, record.damping[n])
     copied(memory.velocity, record.after[n])
 
 
@@ -232,7 +233,7 @@ def fixed_loop(
     """
     last = max(1, round(setting.duration / h))
     for n in range(len(record.t)):
-        if sliding.coulomb:
+        if sliding.coulomb or len(setting.dampers.c) > 0:
             take_frames(memory.pose, frames, setting.points.places.axes)
         record.t[n], record.h[n] = h * (first + n), h
         make_step(memory, setting, sliding, frames, record, n)

@@ -12,6 +12,7 @@ origin.)
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
@@ -111,7 +112,7 @@ def scene_mjcf(
         *(f"  {site}" for site in _sites(scene, GROUND)),
         "</worldbody>",
         *section("contact", _pairs(scene, fixed.rows)),
-        *section("tendon", _ties(scene)),
+        *section("tendon", chain(_ties(scene), _dampers(scene))),
         *section("actuator", _forces(scene)),
         *section("custom", _records(scene, newmark_beta)),
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
@@ -134,17 +135,18 @@ class Keyframe(NamedTuple):
 
 
 class FixedRows(NamedTuple):
-    """The rows of all pairs at one step, and the impratio of the model [-]."""
+    """The rows of all pairs at one step, the impratio of the model [-], and the dampers [N s/m], shape (d,)."""
 
     rows: Rows
     impratio: float
+    damping: Array
 
 
 def pair_rows(scene: Scene, timestep: float, newmark_beta: float, method: Method = METHOD) -> FixedRows:
     """The rows of a scene at a fixed step."""
     points, m = points_of(scene, method), len(scene.k)
     rows, step = Rows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
-    return FixedRows(rows, set_rows(points.law, points.inertia, step, rows))
+    return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.damper_c)
 
 
 def _world(scene: Scene) -> Iterator[str]:
@@ -184,6 +186,8 @@ def _sites(scene: Scene, body: int) -> Iterator[str]:
     ends = (
         (scene.tie_names, scene.tie_body, scene.tie_point),
         ([f"{name}_anchor" for name in scene.tie_names], scene.anchor_body, scene.anchor),
+        (scene.damper_names, scene.damper_body, scene.damper_point),
+        ([f"{name}_anchor" for name in scene.damper_names], np.full(len(scene.damper_c), GROUND), scene.damper_anchor),
         (scene.force_names, scene.force_body, scene.force_point),
     )
     raised = scene.radius if body == GROUND else 0.0
@@ -202,6 +206,13 @@ def _ties(scene: Scene) -> Iterator[str]:
         spring = {"springlength": (0, scene.tie_length[i]), "stiffness": scene.tie_k[i], **yields}
         ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
         yield "  " + tag("spatial", ends, name=name, **spring)
+
+
+def _dampers(scene: Scene) -> Iterator[str]:
+    """The dampers: tendons that resist the rate of their length."""
+    for name, c in zip(scene.damper_names, scene.damper_c, strict=True):
+        ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
+        yield "  " + tag("spatial", ends, name=name, damping=c)
 
 
 def _forces(scene: Scene) -> Iterator[str]:

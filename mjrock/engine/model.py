@@ -74,13 +74,14 @@ class Engine:
             raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")
         data = mujoco.MjData(model)
         require_room(model, data)
-        return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv, model.npair))
+        return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv, model.npair, len(scene.damper_c)))
 
     def follow(self, timestep: float, fixed: FixedRows) -> None:
         """Set the step and the rows of all contacts."""
         self.model.opt.timestep, self.model.opt.impratio = timestep, fixed.impratio
         for values, wanted in zip(self.memory.rows, fixed.rows, strict=True):
             values[:] = wanted
+        self.model.tendon_damping[len(self.model.tendon_damping) - len(fixed.damping) :] = fixed.damping
 
     def place(self, course: Course) -> None:
         """Set pose and velocity of the start.

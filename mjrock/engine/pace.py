@@ -27,6 +27,7 @@ from ..geometry.kinematics import Ties
 from ..method import METHOD, Method
 from ..quantities import Array
 from ..scene.course import Course
+from ..scene.dampers import damping_rate
 from ..scene.scene import Scene
 from .contact import longest_step
 from .points import Reach, inverse_weights, points_of
@@ -66,7 +67,8 @@ class Pace(NamedTuple):
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
         represented = min(longest_step(k, W) for k, W in zip(scene.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        longest = max(short, min(rocking, represented, stable, *course.sampling))
+        damped = math.sqrt(method.dashpot * accuracy) / max(damping_rate(scene.dampers, scene.masses), 1e-300)
+        longest = max(short, min(rocking, represented, stable, damped, *course.sampling))
         damped = scene.c / (longest * scene.k) if scene.damped_joints else 0.0
         ringing = np.where(scene.bears > 0, np.maximum(method.ringing_borne - damped, 0.0), method.ringing_open)
         return cls(

@@ -32,6 +32,7 @@ class Record(NamedTuple):
         pose: of each body [m, m, rad], shape (steps, n nq).
         before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (steps, n nv).
         friction: friction of each contact that slides by Coulomb's law, NaN for one that has its row [N], (steps, m).
+        damping: force of each damper [N], shape (steps, d).
     """
 
     t: Array
@@ -40,13 +41,14 @@ class Record(NamedTuple):
     before: Array
     after: Array
     friction: Array
+    damping: Array
 
     @classmethod
-    def of(cls, steps: int, coordinates: int, contacts: int) -> Record:
+    def of(cls, steps: int, coordinates: int, contacts: int, dampers: int = 0) -> Record:
         """Room for a number of steps."""
         t, h = np.empty((2, steps))
         pose, before, after = np.empty((3, steps, coordinates))
-        return cls(t, h, pose, before, after, np.empty((steps, contacts)))
+        return cls(t, h, pose, before, after, np.empty((steps, contacts)), np.empty((steps, dampers)))
 
     def first(self, n: int) -> Record:
         """A copy of the first n steps."""

@@ -106,7 +106,7 @@ def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: A
     """Write the force of the moving ground and the friction of what slides into the applied forces."""
     places = setting.points.places
     memory.applied[:] = 0.0
-    push(memory, setting, t)
+    push(memory, setting, frames, t)
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
@@ -193,5 +193,5 @@ def find_acceleration(memory: Memory, setting: Setting, sliding: Sliding, frames
         memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
         give_rows_back(memory, sliding)
     else:
-        push(memory, setting, t)
+        push(memory, setting, frames, t)
         memory.forward(memory.model, memory.data)

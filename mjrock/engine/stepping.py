@@ -46,6 +46,7 @@ def fitted_steps(
     """
     memory, setting, pace = engine.memory, Setting.of(scene, course, method), Pace.of(scene, course, accuracy, method)
     places, released_on = setting.points.places, engine.closed
+    engine.model.tendon_damping[:] = 0.0  # dampers act as applied forces, at the velocity of the pose
     for i in range(len(setting.ties.k)):
         stretch(setting.ties, i, frames_of(memory.pose, places.freedom), memory.velocity, places.axes)
     sliding = Sliding.of(setting.points, coulomb=coulomb, method=method)
@@ -87,7 +88,7 @@ def fixed_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, setting, done = engine.memory, Setting.of(scene, course, method), 0
+    memory, setting, done = engine.memory, Setting.of(scene, course, method, damps=False), 0
     sliding, released_on = Sliding.of(setting.points, coulomb=coulomb, method=method), engine.closed
     frames = frames_of(memory.pose, setting.points.places.freedom)
     if sliding.coulomb:

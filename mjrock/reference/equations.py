@@ -14,8 +14,10 @@ from scipy.optimize import brentq, fsolve
 
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.case import Case
+from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import GRAVITY, Array
+from .dampers import damper_force
 
 
 class Wall:
@@ -47,6 +49,7 @@ class Wall:
         self.forces = [(one.offset - off, one.height - self.up, 0.0, -one.force) for one in case.each(Load)]
         self.forces += [(-off, one.height - self.up, one.force, 0.0) for one in case.each(Thrust)]
         self.ties = [(tie.height - self.up, tie) for tie in case.each(Tie)]
+        self.dampers = case.each(Damper)
         self.rest = self._rest()
 
     def base_gap(self, z: Any, theta: Any) -> Any:
@@ -175,6 +178,7 @@ class Wall:
             for px, pz, stretched, nx, nz, tie in pulls
             if (pull := tie.stiffness * max(stretched, 0.0)) > 0
         ]
+        applied += [damper_force(damper, self.face, self.up, y) for damper in self.dampers]
         sine, cosine = math.sin(theta), math.cos(theta)
         for px, pz, fx, fz in applied:
             Fx, Fz = Fx + fx, Fz + fz

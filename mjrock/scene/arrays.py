@@ -32,13 +32,17 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
     "tie_k": ("tie_names",),
     "tie_length": ("tie_names",),
     "tie_strength": ("tie_names",),
+    "damper_body": ("damper_names",),
+    "damper_point": ("damper_names", 2),
+    "damper_anchor": ("damper_names", 2),
+    "damper_c": ("damper_names",),
     "force_body": ("force_names",),
     "force_point": ("force_names", 2),
     "force": ("force_names", 2),
 }
 """Shape of each array: the names whose number is its length, and two for vectors."""
 POSITIVE = ("mass", "inertia", "k", "tie_k", "tie_length", "tie_strength")
-NOT_NEGATIVE = ("c", "friction")
+NOT_NEGATIVE = ("c", "friction", "damper_c")
 CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
 """Where the body of a face or an anchor stands, and the body that must be another one."""
 
@@ -84,7 +88,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
         if not (made[name] >= 0).all():
             raise ValueError(f"{name} = {made[name].min():g} is outside the valid range, which starts at 0")
     bodies = len(given["names"])
-    for name in ("point_body", "tie_body", "force_body"):
+    for name in ("point_body", "tie_body", "damper_body", "force_body"):
         if not ((made[name] >= 0) & (made[name] < bodies)).all():
             raise ValueError(f"{name} is outside the valid range 0 to {bodies - 1}")
     for name, carrier in CARRIERS.items():
@@ -92,7 +96,8 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
             raise ValueError(f"{name} is another body, 0 to {bodies - 1}, or {GROUND} for the ground")
     if not np.allclose(np.hypot(*made["normal"].T), 1.0):
         raise ValueError("normal holds a vector that is not of unit length")
-    names = (*given["names"], *dict.fromkeys(given["group"]), *given["tie_names"], *given["force_names"])
+    names = (*given["names"], *dict.fromkeys(given["group"]), *given["tie_names"], *given["damper_names"])
+    names += tuple(given["force_names"])
     for name, number in Counter(names).items():
         if number > 1:
             raise ValueError(

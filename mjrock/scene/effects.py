@@ -1,4 +1,4 @@
-"""Ties, loads and thrusts on bodies, as arrays of a scene."""
+"""Ties, dampers, loads and thrusts on bodies, as arrays of a scene."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from ..problem.wall.effects import Effect, Load, Thrust, Tie
 from ..quantities import Array
 from .arrays import GROUND
+from .dampers import damper_fields
 
 
 def attachments(
@@ -24,7 +25,7 @@ def attachments(
         body, x: of an effect, the body that it acts on, and where it does from the origin of the world, at rest [m].
         centroids: of the bodies at rest [m], shape (bodies, 2).
     """
-    made: dict[str, Any] = {}
+    made = damper_fields(effects, body, x, centroids)
     ties = [one for one in effects if isinstance(one, Tie)]
     loads = [one for one in effects if isinstance(one, Load)]
     thrusts = [one for one in effects if isinstance(one, Thrust)]
@@ -34,7 +35,7 @@ def attachments(
 
     if ties:
         bodies, points = placed(ties)
-        made = {
+        made |= {
             "tie_names": tuple(f"tie_{i}" for i in range(len(ties))),
             "tie_body": bodies,
             "tie_point": points - centroids[bodies],

@@ -11,6 +11,7 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.lines import Lines
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.statics import falling, friction_lacking, slippery
+from ..problem.wall.damper import Damper
 from ..problem.wall.effects import AddedMass, Effect, Load, Thrust, Tie
 from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .arrays import GROUND
@@ -70,7 +71,7 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
 def placed(masonry: Masonry, effect: Effect) -> tuple[float, float]:
     """Where an effect acts on its block, from the origin of the world [m]."""
     block = masonry.blocks[effect.block]
-    if isinstance(effect, Tie):
+    if isinstance(effect, Tie | Damper):
         return block.left_at(effect.height), effect.height
     return float(block.centroid[0]) + getattr(effect, "offset", 0.0), effect.height
 

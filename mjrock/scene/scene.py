@@ -19,7 +19,8 @@ import numpy as np
 from ..geometry.frames import PLANE
 from ..geometry.kinematics import Forces, Places, Ties, gaps
 from ..quantities import GRAVITY, Array, Flags, Integers
-from .arrays import checked, frozen, nothing
+from .arrays import GROUND, checked, frozen, nothing
+from .dampers import Dampers
 from .equilibrium import lowered, settled
 from .potential import Potential, Structure, energies
 
@@ -56,6 +57,10 @@ class Scene:
         tie_k: stiffness of each tie [N/m], shape (t,).
         tie_length: length up to which it is slack [m], shape (t,).
         tie_strength: force at which it yields [N], infinite for one that does not, shape (t,).
+        damper_names: names of the d viscous dampers, which are anchored in the ground.
+        damper_body, damper_point: the body that each damper holds, and where, from its centroid [m], (d,) and (d, 2).
+        damper_anchor: its other end, from the origin of the world [m], shape (d, 2).
+        damper_c: its damping coefficient [N s/m], shape (d,).
         force_names: names of the f constant forces. They keep their direction and follow their points.
         force_body, force_point: the body that each force acts on, and where, from its centroid [m], (f,) and (f, 2).
         force: its x and z component [N], shape (f, 2).
@@ -95,6 +100,11 @@ class Scene:
     tie_k: Array = field(default_factory=nothing)
     tie_length: Array = field(default_factory=nothing)
     tie_strength: Array = field(default_factory=nothing)
+    damper_names: tuple[str, ...] = ()
+    damper_body: Integers = field(default_factory=nothing)
+    damper_point: Array = field(default_factory=nothing)
+    damper_anchor: Array = field(default_factory=nothing)
+    damper_c: Array = field(default_factory=nothing)
     force_names: tuple[str, ...] = ()
     force_body: Integers = field(default_factory=nothing)
     force_point: Array = field(default_factory=nothing)
@@ -188,6 +198,13 @@ class Scene:
             reach=self.tie_length,
             stretch=frozen(self.tie_strength / self.tie_k),
         )
+
+    @cached_property
+    def dampers(self) -> Dampers:
+        """The dampers for the compiled functions."""
+        on_ground = np.full(len(self.damper_c), GROUND)
+        between = self._between(self.damper_body, self.damper_point, on_ground, self.damper_anchor)
+        return Dampers(self.damper_body, self.damper_point, between, self.damper_c)
 
     @cached_property
     def forces(self) -> Forces:

@@ -10,6 +10,7 @@ from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
+from ..problem.wall.damper import Damper
 from ..problem.wall.effects import AddedMass, Effect, Tie
 from ..quantities import Array, require_kind
 from .arrays import GROUND
@@ -101,7 +102,7 @@ def standing_wall(
         friction = np.concatenate([friction, np.full(side.points, side.friction or 0.0)])
         facts |= {"k_n_side": side.k_n, "xi_side": side.xi}
     facts |= {"reference_frequency": base.frequency, "law": contacts.law}
-    even = wall.centroid_offset == 0 and not set(map(type, effects)) - {AddedMass}
+    even = wall.centroid_offset == 0 and not set(map(type, effects)) - {AddedMass, Damper}
     return Scene(
         names=("wall",),
         mass=np.array([wall.mass]),
@@ -127,8 +128,8 @@ def standing_wall(
 
 
 def _place(effect: Effect, wall: Block) -> float:
-    """Where an effect acts, from the middle of the base outwards [m]: a tie holds the inner face."""
-    return -wall.b if isinstance(effect, Tie) else getattr(effect, "offset", 0.0)
+    """Where an effect acts, from the middle of the base outwards [m]: ties and dampers hold the inner face."""
+    return -wall.b if isinstance(effect, Tie | Damper) else getattr(effect, "offset", 0.0)
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

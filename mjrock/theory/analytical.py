@@ -12,6 +12,7 @@ import numpy as np
 
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.case import Case
+from ..problem.wall.damper import Damper
 from ..problem.wall.ties_on_wall import stored
 from ..quantities import GRAVITY, Array, require_kind, require_size, require_within
 from ..result.response import Outcome, Plastic, Response, describe
@@ -101,6 +102,8 @@ def _require_solvable(case: Case, e: Restitution) -> None:
         raise ValueError(
             f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{low}"
         )
+    if case.each(Damper):
+        raise ValueError("rocking theory has no dampers; simulate and solve_compliant do")
     if case.restoring.outer.P <= 0:
         raise ValueError(
             "the thrust tilts the wall until its ties hold it, and rocking theory knows no rest but upright; "

@@ -64,7 +64,7 @@ class MasonryCase:
         """Check that each effect is on a block that is not fixed, and keep them as a tuple."""
         given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
-            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load or AddedMass")
+            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
         keep(self, effects=tuple(given))
         for i, one in enumerate(self.effects):
             require_kind(f"effects[{i}]", one, *KINDS)

@@ -14,11 +14,12 @@ import numpy as np
 from ...quantities import ON_ITS_FACE, Array, Flags, keep, require_flag, require_kind, require_within, shown
 from ..ground.motion import GroundMotion
 from .block import Block
+from .damper import Damper
 from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
 from .restoring_moment import Restoring, of_force
 from .ties_on_wall import Pull, stored, taken, yielded
 
-Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass)
+Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass, Damper)
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ class Case:
         """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""
         given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
-            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load or AddedMass")
+            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
         keep(self, effects=tuple(given))
         if not self.effects:
             return

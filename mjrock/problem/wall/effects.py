@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from ...quantities import keep, require_real, require_whole, require_within
+from .damper import Damper
 
 HIGHEST = 200.0
 """Largest height of a wall, and so of an effect [m]."""
@@ -180,7 +181,7 @@ class SideStop:
         keep(self, top=require_within("top of the side stop", self.top, 0.01, HIGHEST, "m"))
 
 
-Effect = Tie | Thrust | Load | AddedMass
+Effect = Tie | Thrust | Load | AddedMass | Damper
 """What `Case.effects` may hold."""
-KINDS = (Tie, Thrust, Load, AddedMass)
+KINDS = (Tie, Thrust, Load, AddedMass, Damper)
 """The same, as classes."""

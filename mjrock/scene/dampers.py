@@ -1,0 +1,129 @@
+"""Dampers of a scene: viscous, between a point of a body and an anchor on the ground.
+
+A damper resists the rate of its length in both directions. Its force in a step is that at the velocity of the pose,
+which the leapfrog keeps half a step earlier and carries forward by the last acceleration.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled, inlined, jitable
+from ..geometry.frames import PLANE, displaced, frames_of, linear, place, push_body, spin, swung, take_frames
+from ..geometry.vectors import Vector, dot, plus, scaled, spun, vector
+from ..problem.wall.damper import Damper
+from ..problem.wall.effects import Effect
+from ..quantities import Array, Integers
+
+PLANE_AXES = PLANE.axes
+
+
+class Dampers(NamedTuple):
+    """Dampers as arrays for compiled functions.
+
+    Args:
+        body: the body that each damper holds, shape (d,).
+        at: the point that it holds, from the centroid of that body, at rest [m], shape (d, 2).
+        between: vector from the anchor to that point, at rest [m], shape (d, 2).
+        c: damping coefficient [N s/m], shape (d,).
+    """
+
+    body: Integers
+    at: Array
+    between: Array
+    c: Array
+
+
+class Stroke(NamedTuple):
+    """A damper at a pose: arm to its point from the centroid [m], and its direction away from the anchor."""
+
+    arm: Vector
+    direction: Vector
+
+
+def damper_fields(
+    effects: Sequence[Effect], body: Callable[[Effect], int], x: Callable[[Effect], float], centroids: Array
+) -> dict[str, Any]:
+    """Fields of a scene for its dampers, named `damper_0` and so on; see `attachments`."""
+    dampers = [effect for effect in effects if isinstance(effect, Damper)]
+    if not dampers:
+        return {}
+    bodies = np.array([body(damper) for damper in dampers])
+    points = np.array([(x(damper), damper.height) for damper in dampers])
+    return {
+        "damper_names": tuple(f"damper_{i}" for i in range(len(dampers))),
+        "damper_body": bodies,
+        "damper_point": points - centroids[bodies],
+        "damper_anchor": points - [(damper.length, 0.0) for damper in dampers],
+        "damper_c": np.array([damper.c for damper in dampers]),
+    }
+
+
+@inlined
+def stroke(dampers: Dampers, i: int, frames: Array, axes: tuple[int, ...]) -> Stroke:
+    """Damper i at a pose."""
+    body, at = dampers.body[i], vector(dampers.at, i, axes)
+    between = plus(vector(dampers.between, i, axes), place(frames, body, axes))
+    across = displaced(between, frames, body, at)
+    return Stroke(plus(at, swung(frames, body, at)), scaled(1 / math.sqrt(dot(across, across)), across))
+
+
+@inlined
+def stretching(dampers: Dampers, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> float:
+    """Rate of the length of damper i [m/s]."""
+    now, body = stroke(dampers, i, frames, axes), dampers.body[i]
+    return dot(now.direction, plus(linear(v, body, axes), spun(spin(frames, v, body, axes), now.arm)))
+
+
+@jitable
+def damping_forces(dampers: Dampers, frames: Array, v: Array, axes: tuple[int, ...], force: Array) -> None:
+    """Write the force of every damper along its direction [N], shape (d,)."""
+    for i in range(len(force)):
+        force[i] = -dampers.c[i] * stretching(dampers, i, frames, v, axes)
+
+
+@jitable
+def damp(dampers: Dampers, frames: Array, force: Array, axes: tuple[int, ...], total: Array) -> None:
+    """Add the forces of the dampers [N], shape (d,), to generalised forces."""
+    for i in range(len(force)):
+        now = stroke(dampers, i, frames, axes)
+        push_body(frames, dampers.body[i], now.arm, scaled(force[i], now.direction), total)
+
+
+def damping_rate(dampers: Dampers, masses: Array) -> float:
+    """The highest rate at which a damper alone slows the bodies down [1/s], zero without dampers."""
+    frames, rates = frames_of(np.zeros_like(masses)), [0.0]
+    for i, c in enumerate(dampers.c):
+        way = np.zeros_like(masses)
+        now = stroke(dampers, i, frames, PLANE.axes)
+        push_body(frames, dampers.body[i], now.arm, now.direction, way)
+        rates.append(float(c * (way**2 / masses).sum()))
+    return max(rates)
+
+
+def taken_by_dampers(dampers: Dampers, pose: Array, mean: Array, width: Array, force: Array) -> Array:
+    """What each damper takes in the window of each step [J], shape (steps, d).
+
+    Args:
+        dampers: the dampers.
+        pose: of the steps, shape (steps, n nq).
+        mean, width: mean velocity in each window, shape (steps, n nv), and its length [s].
+        force: of each damper in each step [N], shape (steps, d).
+    """
+    taken = np.zeros_like(force)
+    if len(dampers.c):
+        _taken(dampers, pose, mean, PLANE.frames(pose.shape[1] // PLANE.nq), taken)
+    work: Array = -taken * force * width[:, None]
+    return work
+
+
+@compiled
+def _taken(dampers: Dampers, pose: Array, mean: Array, frames: Array, rates: Array) -> None:
+    for n in range(len(pose)):
+        take_frames(pose[n], frames, PLANE_AXES)
+        for i in range(len(dampers.c)):
+            rates[n, i] = stretching(dampers, i, frames, mean[n], PLANE_AXES)
