@@ -51,6 +51,7 @@ CALLS = {
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
     "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.4, "wall": WALL}),
     "Opening": (mr.Opening, {"width": 0.5, "height": 1.0, "sill": 0.5}),
+    "Damper": (mr.Damper, {"height": 3.0, "c": 1e4, "length": 5.0, "block": 0}),
     "Tie": (
         mr.Tie,
         {

@@ -67,8 +67,8 @@ class Pace(NamedTuple):
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
         represented = min(longest_step(k, W) for k, W in zip(scene.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        damped = math.sqrt(method.dashpot * accuracy) / max(damping_rate(scene.dampers, scene.masses), 1e-300)
-        longest = max(short, min(rocking, represented, stable, damped, *course.sampling))
+        slowed = math.sqrt(method.dashpot * accuracy) / max(damping_rate(scene.dampers, scene.masses), 1e-300)
+        longest = max(short, min(rocking, represented, stable, slowed, *course.sampling))
         damped = scene.c / (longest * scene.k) if scene.damped_joints else 0.0
         ringing = np.where(scene.bears > 0, np.maximum(method.ringing_borne - damped, 0.0), method.ringing_open)
         return cls(
