@@ -57,6 +57,17 @@ def test_a_damped_wall_is_that_of_scipy(side_stop, options, within):
     assert run.ledger.dashpots["damper_0"][-1] > 0.1 * run.energy[0]
 
 
+def test_a_shaken_wall_is_damped_too():
+    """The ground and the damper push on the same joints."""
+    motion = mr.GroundMotion.sine(3.0, 0.8)
+    contacts = mr.Contacts.from_law(WALL, E, k_base=5e8, k_side=5e8)
+    case = mr.Case(WALL, 0.0, 1.5, motion=motion, effects=mr.Damper(3.0, C))
+    exact, run = mr.solve_compliant(case, contacts), mr.simulate(case, contacts, ledger=True)
+    assert mr.compare(exact, run).rms < 1e-3
+    assert run.ledger.dashpots["damper_0"][-1] > 0.1 * run.ledger.ground[-1] > 0
+    assert np.abs(run.energy_residual).max() < 5e-3 * run.ledger.ground.max()
+
+
 def test_the_twin_without_the_damper_is_another_motion():
     contacts = mr.Contacts.from_law(WALL, E, k_base=5e8, k_side=5e8)
     damped, bare = mr.simulate(wall_case(), contacts), mr.simulate(wall_case(0.0), contacts)

@@ -50,6 +50,7 @@ CALLS = {
     "Restitution, stop": (lambda top: mr.Restitution.from_geometry(WALL, top), {"top": 3}),
     "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.25, "wall": 0.5}),
     "Opening": (mr.Opening, {"width": 100, "height": 100, "sill": 100}),
+    "Damper": (mr.Damper, {"height": 100, "c": 100, "length": 100, "block": 100}),
     "Tie": (
         mr.Tie,
         {
@@ -129,10 +130,6 @@ CALLS = {
     ),
     "simulate, masonry, fitted": (
         lambda **given: mr.simulate(SHAKEN, **given), {"accuracy": 2.0**-10, "output_step": 2.0**-7},
-    ),
-    "simulate_batch": (
-        lambda **given: mr.simulate_batch([SHORT], CONTACTS, **given)[0],
-        {"timestep": 2.0**-10, "newmark_beta": 1, "output_step": 2.0**-7},
     ),
     "solve_analytical": (
         lambda **given: mr.solve_analytical(CASE, E, **given),

@@ -60,7 +60,7 @@ def push(memory: Memory, setting: Setting, frames: Array, t: float) -> None:
         for j in range(len(memory.applied)):
             memory.applied[j] = memory.velocity[j] + (ahead * memory.acceleration[j] if setting.damps else 0.0)
         damping_forces(dampers, frames, memory.applied, axes, setting.damping)
-        memory.applied[:] = 0.0
-        if setting.damps:
-            damp(dampers, frames, setting.damping, axes, memory.applied)
+    memory.applied[:] = 0.0
+    if setting.damps:
+        damp(dampers, frames, setting.damping, axes, memory.applied)
     push_ground(setting.ground, setting.masses, t, memory.options[TIMESTEP], memory.applied)

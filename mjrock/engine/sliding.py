@@ -105,7 +105,6 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
 def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Write the force of the moving ground and the friction of what slides into the applied forces."""
     places = setting.points.places
-    memory.applied[:] = 0.0
     push(memory, setting, frames, t)
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:

@@ -71,12 +71,12 @@ def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
 
 @jitable
 def push_ground(ground: Ground, masses: Array, t: float, h: float, applied: Array) -> None:
-    """Write the force of the moving ground on every body into `applied` [N], shape (3 n,)."""
+    """Add the force of the moving ground on every body to `applied` [N], shape (3 n,)."""
     if len(ground.x.accel) > 0:
         mean = mean_acceleration(ground.x, t, h)
         for j in range(0, len(masses), 3):
-            applied[j] = -masses[j] * mean
+            applied[j] -= masses[j] * mean
     if len(ground.z.accel) > 0:
         mean = mean_acceleration(ground.z, t, h)
         for j in range(1, len(masses), 3):
-            applied[j] = -masses[j] * mean
+            applied[j] -= masses[j] * mean
