@@ -26,25 +26,29 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-MARKS = b"\n@compiled\n", b"\n@jitable\n"
+MARKS = b"\n@compiled\n", b"\n@jitable\n", b"\n@inlined\n"
 """What stands before a compiled function."""
-OTHERS = ("engine/contact.py", "engine/run.py", "engine/rest.py", "engine/masonry.py", "result/history.py")
+OTHERS = ("engine/contact.py", "engine/run.py", "scene/equilibrium.py", "scene/masonry.py", "result/history.py")
 """Modules of the method without compiled functions."""
-TOOLS = ("contact", "pair", "pairing", "geompair", "mixing", "inspection")
+TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 OWN = {
-    **{f"engine/{name}.py": ("contact", "pair", "pairing", "inspection") for name in TOOLS},
-    "engine/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),
-    "engine/rest.py": ("rest", "masonry_statics", "masonry_effects"),
-    "engine/levers.py": ("levers",),
-    "engine/masonry_run.py": ("masonry_motion", "masonry"),
-    "engine/sliding.py": ("sliding",),
-    "engine/tilted.py": ("pushover",),
-    "problem/pile.py": ("pile",),
-    "problem/polygon.py": ("polygon",),
-    "problem/pulling.py": ("effects", "pushover"),
-    "study/matched_masonry.py": ("matched_masonry",),
+    **{f"anymodel/{name}.py": ("contact", "pair", "pairing", "inspection") for name in TOOLS},
+    "geometry/frames.py": ("frames", "kinematics"),
+    "geometry/kinematics.py": ("kinematics", "frames", "slipping"),
+    "geometry/vectors.py": ("frames", "kinematics"),
+    "scene/dampers.py": ("damper",),
+    "scene/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),
+    "scene/equilibrium.py": ("potential", "masonry_statics", "masonry_effects"),
+    "scene/potential.py": ("potential", "kinematics", "masonry_statics"),
+    "engine/joint_motion.py": ("masonry_motion", "masonry"),
+    "engine/sliding.py": ("slipping", "sliding"),
+    "problem/masonry/pile.py": ("pile",),
+    "problem/masonry/polygon.py": ("polygon",),
+    "problem/wall/ties_on_wall.py": ("effects", "pushover"),
+    "study/masonry_by_matching.py": ("matched_masonry",),
     "study/pushover.py": ("pushover",),
+    "study/tilted.py": ("pushover",),
     "theory/forced.py": ("forced", "analytical"),
     "theory/impact.py": ("impact",),
     "theory/law.py": ("forced", "analytical"),
@@ -65,11 +69,11 @@ SWAPPED = {
 }
 """Operators, as they are written and what takes their place."""
 EQUIVALENT = {
-    "accounts.py: dashpots[n, number[i]] += drag * rate * width[n] if law > 1 else given": (
+    "energy_work.py: work.dashpots[n, number[i]] += drag.dashpot * opened if pressed > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
-    "accounts.py: if points.held[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
-    "pace.py: return 0 if h * pace.frequency <= SMOOTH else 1": "no step meets the limit to the last bit",
+    "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
+    "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""
 
