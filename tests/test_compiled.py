@@ -81,13 +81,15 @@ def test_stored_once_and_made_anew_when_a_source_changes(tmp_path):
     """The first run says that it compiles, the second does not; a change in a file that the loop only calls is seen."""
     copy = tmp_path / "mjrock"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    stored = copy / "engine" / "__pycache__"
+    stored = copy / "geometry" / "__pycache__"
     line = f"mjrock: compiling the loops, which takes about half a minute, once; they are stored in {stored}"
     assert run(tmp_path / "a.npz", home=tmp_path).splitlines() == [line]
     assert run(tmp_path / "b.npz", home=tmp_path) == ""
     same(tmp_path / "a.npz", tmp_path / "b.npz")
     pace = copy / "engine" / "pace.py"
-    pace.write_text(pace.read_text().replace("CHANGE = 2.0", "CHANGE = 0.5"))
+    rule = "(pace.method.change * pace.accuracy)"
+    assert rule in pace.read_text()
+    pace.write_text(pace.read_text().replace(rule, "(0.25 * pace.method.change * pace.accuracy)"))
     assert run(tmp_path / "c.npz", home=tmp_path).splitlines() == [line]
     with np.load(tmp_path / "a.npz") as a, np.load(tmp_path / "c.npz") as c:
         assert c["steps"][0] > a["steps"][0]
