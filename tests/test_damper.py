@@ -110,8 +110,8 @@ def test_a_damper_on_masonry():
     ("asked", "complaint"),
     [
         (lambda: mr.Damper(-1.0, 1e3), "height of the damper = -1 m is outside the valid range 0 to 200 m"),
-        (lambda: mr.Damper(1.0, -1e3), "coefficient of the damper = -1000 N s/m is outside the valid range"),
-        (lambda: mr.Damper(1.0, math.nan), "coefficient of the damper = nan N s/m is outside"),
+        (lambda: mr.Damper(1.0, -1e3), "coefficient c of the damper = -1000 N s/m is outside the valid range"),
+        (lambda: mr.Damper(1.0, math.nan), "coefficient c of the damper = nan N s/m is outside"),
         (lambda: mr.Damper(1.0, 1e3, length=0.0), "length of the damper = 0 m is outside the valid range"),
         (lambda: mr.Case(WALL, 0.0, 1.0, effects=mr.Damper(5.0, 1e3)), "height of the Damper = 5 m is outside"),
         (lambda: mr.solve_analytical(wall_case(), E), "rocking theory has no dampers"),

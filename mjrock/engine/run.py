@@ -64,7 +64,7 @@ class Run:
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
         reading = asked.read(scene, course, steps, energy)
         work = ground_work(scene, course, steps)[: reading.count]
-        scale = float(energy[0]) + float(np.abs(work).sum()) + float(scene.rest_energies[2])
+        scale = max(float(energy[0]), 0.0) + float(np.abs(work).sum()) + float(scene.rest_energies[2])
         require_no_gain(scene, steps, work, reading.marks, scale)
         return cls(asked, scene, course, steps, energy, taken, reading, scale)
 

@@ -37,7 +37,7 @@ class Damper:
         keep(
             self,
             height=require_within("height of the damper", self.height, 0.0, HIGHEST, "m"),
-            c=require_within("coefficient of the damper", self.c, 0.0, 1e9, "N s/m"),
+            c=require_within("coefficient c of the damper", self.c, 0.0, 1e9, "N s/m"),
             length=require_within("length of the damper", self.length, 0.01, 1000.0, "m"),
             block=require_whole("block of the damper", self.block, 0, BLOCKS),
         )
