@@ -18,16 +18,7 @@ from .numbers import ContactNumbers
 class PairContact(ContactNumbers):
     """A spring and dashpot between two geoms that never pull, and the numbers with which MuJoCo has them.
 
-    Args:
-        geom1, geom2: names of the geoms; an empty name is a geom without one.
-        ids: the numbers of the geoms.
-        k, c: spring [N/m] and dashpot [N s/m] of each contact point.
-        mass: effective mass that each contact point stops [kg].
-        inverse_weight: W of the pair [1/kg], the sum of `body_invweight0` of both bodies.
-        timestep, integrator: step [s] and integrator of MuJoCo for which the numbers hold.
-        contacts: contact points that share the mass, or None where it was not said.
-        solref, solimp, solreffriction, friction, condim: what the `<pair>` carries.
-        impratio: smallest impratio of the model with which the friction holds [-]; 1 without friction.
+    Its numbers are those of `ContactNumbers`.
     """
 
     @property

@@ -1,4 +1,4 @@
-"""Tables: the arrays that describe a scene, their shapes, and the values that they may hold."""
+"""The arrays that describe a scene, their shapes, and the values that they may hold."""
 
 from __future__ import annotations
 

@@ -19,8 +19,6 @@ from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Effect
 from ..quantities import Array, Integers
 
-PLANE_AXES = PLANE.axes
-
 
 class Dampers(NamedTuple):
     """Dampers as arrays for compiled functions.
@@ -114,16 +112,17 @@ def taken_by_dampers(dampers: Dampers, pose: Array, mean: Array, width: Array, f
         mean, width: mean velocity in each window, shape (steps, n nv), and its length [s].
         force: of each damper in each step [N], shape (steps, d).
     """
-    taken = np.zeros_like(force)
+    rates = np.zeros_like(force)
     if len(dampers.c):
-        _taken(dampers, pose, mean, PLANE.frames(pose.shape[1] // PLANE.nq), taken)
-    work: Array = -taken * force * width[:, None]
+        _rates(dampers, pose, mean, PLANE.frames(pose.shape[1] // PLANE.nq), PLANE.axes, rates)
+    work: Array = -rates * force * width[:, None]
     return work
 
 
 @compiled
-def _taken(dampers: Dampers, pose: Array, mean: Array, frames: Array, rates: Array) -> None:
+def _rates(dampers: Dampers, pose: Array, mean: Array, frames: Array, axes: tuple[int, ...], rates: Array) -> None:
+    """Write the rate of the length of each damper in the window of each step [m/s], shape (steps, d)."""
     for n in range(len(pose)):
-        take_frames(pose[n], frames, PLANE_AXES)
+        take_frames(pose[n], frames, axes)
         for i in range(len(dampers.c)):
-            rates[n, i] = stretching(dampers, i, frames, mean[n], PLANE_AXES)
+            rates[n, i] = stretching(dampers, i, frames, mean[n], axes)

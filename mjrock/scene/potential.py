@@ -111,7 +111,7 @@ class Potential:
 
     def openings(self, pose: Array) -> Array:
         """Gaps of the contacts and slack of the ties [m], shape (m + t,)."""
-        places, ties, _, _, masses = self._parts
+        places, ties, masses = self.structure.places, self.structure.ties, self.structure.masses
         values, none = np.empty(len(places.body) + len(ties.k)), np.zeros_like(masses)
         _openings(places, ties, frames_of(pose, places.freedom), none, values)
         return values
@@ -123,21 +123,21 @@ class Potential:
 
     def rates(self, pose: Array) -> Array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
-        places, ties, _, _, masses = self._parts
+        places, ties, masses = self.structure.places, self.structure.ties, self.structure.masses
         rates, none = np.zeros((len(places.body) + len(ties.k), len(masses))), np.zeros_like(masses)
         _rates(places, ties, frames_of(pose, places.freedom), np.zeros_like(masses), none, rates)
         return rates
 
     def slip_rates(self, pose: Array) -> Array:
         """Rates at which the points move along their faces for unit velocities, shape (m, n nv)."""
-        places, _, _, _, masses = self._parts
+        places, masses = self.structure.places, self.structure.masses
         rates = np.zeros((len(places.body), len(masses)))
         _slip_rates(places, frames_of(pose, places.freedom), np.zeros_like(masses), rates)
         return rates
 
     def load(self, pose: Array) -> Array:
         """Generalised force of the weight and of the constant forces, shape (n nv,)."""
-        places, _, forces, _, masses = self._parts
+        places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
         axes, freedom = places.axes, places.freedom
         total, frames, upwards = np.zeros_like(masses), frames_of(pose, freedom), freedom.translations - 1
         total[upwards :: freedom.nv] = -GRAVITY * masses[upwards :: freedom.nv]
@@ -148,7 +148,7 @@ class Potential:
 
     def energy(self, pose: Array) -> float:
         """Energy of springs, weight and constant forces [J]."""
-        places, _, forces, _, masses = self._parts
+        places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
         elastic = 0.5 * float(self.springs @ self.pressed(pose) ** 2)
         weight = weight_energy(masses, pose, places.axes)
         return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom), places.axes))
@@ -170,7 +170,8 @@ class Potential:
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
         takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise.
         """
-        places, ties, forces, _, masses = self._parts
+        places, ties = self.structure.places, self.structure.ties
+        forces, masses = self.structure.forces, self.structure.masses
         frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
         curvature = np.zeros((len(masses), len(masses)))
         _curvatures(places, ties, frames, none, self.springs * self.pressed(pose), curvature)
@@ -185,11 +186,6 @@ class Potential:
         closed = self.openings(pose) < 0
         hessian: Array = self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
         return hessian
-
-    @property
-    def _parts(self) -> tuple[Places, Ties, Forces, Array, Array]:
-        structure = self.structure
-        return structure.places, structure.ties, structure.forces, structure.k, structure.masses
 
 
 @inlined

@@ -85,7 +85,7 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry)
         try:
-            _carry_out(run, tasks, executor, count, total, time_limit)
+            _carry_out(run, tasks, executor, count, time_limit)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
@@ -108,22 +108,17 @@ def _carry_out(
     tasks: Iterable[Task],
     executor: Executor | None,
     count: int,
-    total: int | None,
     limit: float | None,
 ) -> None:
     """Run the tasks where they are to run."""
     pending = run.pending(tasks)
     if executor is not None:
         run.across(pending, executor, getattr(executor, "_max_workers", count))
-    elif limit is not None:
-        Dispatch(run, pending, count, limit, script=True).go()
-    elif count == 1 and current_process().daemon:
+    elif limit is None and count == 1 and current_process().daemon:
         for job in pending:
             run.here(job, "this process may not start others")
-    elif count == 1:
-        Dispatch(run, pending, 1, None, script=False).go()
     else:
-        Dispatch(run, pending, count, None, script=True).go()
+        Dispatch(run, pending, count, limit, script=count > 1 or limit is not None).go()
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:

@@ -5,11 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...quantities import keep, require_whole, require_within
-
-HIGHEST = 200.0
-"""Largest height of a damper [m]."""
-BLOCKS = 100_000
-"""Largest number of a block."""
+from .limits import BLOCKS, HIGHEST
 
 
 @dataclass(frozen=True)

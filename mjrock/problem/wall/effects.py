@@ -11,11 +11,7 @@ from dataclasses import dataclass
 
 from ...quantities import keep, require_real, require_whole, require_within
 from .damper import Damper
-
-HIGHEST = 200.0
-"""Largest height of a wall, and so of an effect [m]."""
-BLOCKS = 100_000
-"""Largest number of a block."""
+from .limits import BLOCKS, HIGHEST
 
 
 @dataclass(frozen=True)
