@@ -136,6 +136,7 @@ def test_the_regression_recovers_a_law_from_what_it_predicts(form):
         regress(type(form), tasks[:3], rows[:3])
 
 
+@pytest.mark.slow
 def test_a_second_run_carries_on_from_the_store(tmp_path, monkeypatch):
     tasks = [Match(one, mr.Restitution.from_geometry(one.wall.alpha)) for one in combinations(3, 7)]
     first = completed(tasks[:2], tmp_path / "a.sqlite", workers=1)
@@ -148,6 +149,7 @@ def test_a_second_run_carries_on_from_the_store(tmp_path, monkeypatch):
     assert {case.block for case in asked} == {tasks[2].combination.wall}
 
 
+@pytest.mark.slow
 def test_a_search_that_broke_down_is_an_error(tmp_path):
     tasks = [Match(Combination(k_base=1e4), mr.Restitution(0.95, -0.5))]
     with pytest.raises(RuntimeError, match=r"1 of 1 tasks failed, the first with ValueError: base stiffness"):

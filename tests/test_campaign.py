@@ -47,6 +47,7 @@ def build(wall, e, contacts):
     return make
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_grid_of_analyses(tmp_path, build, contacts, workers):
     grid = mr.Grid(build, solver=["analytical", "MuJoCo"], scale=[0.5, 1.0, 4.0], polarity=[0, 1])
@@ -73,6 +74,7 @@ def test_a_grid_of_analyses(tmp_path, build, contacts, workers):
     assert len({row["peak_over_alpha"] for row in rows}) > 6
 
 
+@pytest.mark.slow
 def test_the_same_table_whoever_does_it(tmp_path):
     tables = []
     for name, options in {
@@ -126,12 +128,14 @@ def test_results_are_those_of_the_tasks_asked(tmp_path):
     assert [row and row["square"] for row in rows] == [49, None, 4]
 
 
+@pytest.mark.slow
 def test_tasks_may_have_other_labels_than_the_first(tmp_path):
     tasks = [Square(1, labels={"name": "a"}), Square(2, labels={"size": 3.5})]
     path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=1)
     assert [(row["name"], row["size"]) for row in mr.results(tasks, path)] == [("a", None), (None, 3.5)]
 
 
+@pytest.mark.slow
 def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):
     path = mr.campaign([Square(-1)], tmp_path / "c.sqlite", workers=1)
     monkeypatch.setattr(Square, "__call__", lambda self, history=None: {"square": 1})
@@ -142,6 +146,7 @@ def test_failures_are_tried_again_when_asked(tmp_path, monkeypatch):
     assert ",failed," not in table(path)
 
 
+@pytest.mark.slow
 def test_another_version_makes_other_rows(tmp_path, monkeypatch):
     path = mr.campaign(squares(tmp_path, 3), tmp_path / "c.sqlite", workers=1)
     monkeypatch.setattr("mjrock.study.campaign_task.VERSION", "mjrock 99")
@@ -149,6 +154,7 @@ def test_another_version_makes_other_rows(tmp_path, monkeypatch):
     assert len(table(path).splitlines()) == 7
 
 
+@pytest.mark.slow
 def test_a_killed_worker_is_replaced(tmp_path):
     """Two cases kill their worker, one once and one always."""
     tasks = squares(tmp_path, 12)
@@ -213,6 +219,7 @@ def test_kill_and_resume(tmp_path):
     assert table(path) == expected
 
 
+@pytest.mark.slow
 def test_runs_with_a_fixed_step(tmp_path, wall, contacts):
     """Runs of one geometry: the same rows by processes, and one by one."""
 
@@ -228,6 +235,7 @@ def test_runs_with_a_fixed_step(tmp_path, wall, contacts):
     assert len(one_by_one.splitlines()) == 1 + 24
 
 
+@pytest.mark.slow
 def test_a_campaign_of_several_solvers(tmp_path, wall, e, contacts):
     case = mr.Case(wall, 0.02, 0.5)
     tasks = [mr.Analysis(case, contacts=contacts, options={"timestep": h}) for h in (1e-3, 5e-4)]
@@ -259,6 +267,7 @@ def test_bad_campaigns(tmp_path):
         mr.campaign([Square(1, labels={"seconds": 3})], tmp_path / "c.sqlite", workers=1)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_dask_survives_the_death_of_a_worker(tmp_path):
     distributed = pytest.importorskip("distributed")
@@ -282,6 +291,7 @@ def test_dask_survives_the_death_of_a_worker(tmp_path):
         assert [r["square"] for r in store.rows()] == [i**2 for i in range(40)]
 
 
+@pytest.mark.slow
 def test_a_point_that_cannot_be_built_is_a_row(tmp_path, wall, e):
     def build(slenderness):
         return mr.Analysis(mr.Case(mr.Block(b=2.1 / slenderness, h=2.1), 0.01, 1.0), "analytical", e=e)
@@ -311,6 +321,7 @@ print([row.get("square") or row.get("double") for row in mr.results(tasks, mr.ca
 """
 
 
+@pytest.mark.slow
 def test_one_worker_needs_no_guard(tmp_path):
     """Nor is the script imported again. Types that it defines are known to its own process only, as in a notebook."""
     (tmp_path / "unguarded.py").write_text(UNGUARDED)
@@ -330,6 +341,7 @@ def test_in_a_process_that_may_start_no_other(tmp_path, monkeypatch, capsys):
     assert "this process may not start others" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_script_without_its_guard_is_told_so(tmp_path):
     script = tmp_path / "unguarded.py"
     script.write_text(

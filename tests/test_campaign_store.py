@@ -40,6 +40,7 @@ print(taken, met)
 """
 
 
+@pytest.mark.slow
 def test_the_lock_is_exclusive(tmp_path):
     """Three processes open the store again and again for two seconds; nobody ever meets another one inside."""
     command = [sys.executable, "-c", TAKER, str(tmp_path)]
@@ -60,6 +61,7 @@ time.sleep(60)
 """
 
 
+@pytest.mark.slow
 def test_a_killed_process_frees_the_lock(tmp_path):
     path = tmp_path / "c.sqlite"
     holder = subprocess.Popen([sys.executable, "-c", HOLDER, str(path)], stdout=subprocess.PIPE, text=True)
@@ -120,6 +122,7 @@ def damaged(content, rng):
     return bytes(changed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("writing", [False, True])
 def test_damage_is_never_another_table(tmp_path, whole, writing):
     """Of 300 damaged copies each has the same content, or ends in one error that names the file."""
@@ -141,6 +144,7 @@ def test_damage_is_never_another_table(tmp_path, whole, writing):
     assert all(error.count(str(copy)) for error in errors)
 
 
+@pytest.mark.slow
 def test_rows_are_rescued(tmp_path, whole):
     path, rows = whole
     content = bytearray(path.read_bytes())
@@ -162,6 +166,7 @@ def test_rows_are_rescued(tmp_path, whole):
         mr.campaign([Square(1)], copy, workers=1)
 
 
+@pytest.mark.slow
 def test_a_damaged_page_leaves_the_rows_around_it(tmp_path, whole):
     path, rows = whole
     content = bytearray(path.read_bytes())
@@ -177,6 +182,7 @@ def test_a_damaged_page_leaves_the_rows_around_it(tmp_path, whole):
         assert all(row in rows for row in store.rows())
 
 
+@pytest.mark.slow
 def test_an_error_of_the_system_is_no_damage(tmp_path, whole):
     copy = tmp_path / "copy.sqlite"
     shutil.copy(whole[0], copy)

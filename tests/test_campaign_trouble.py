@@ -32,7 +32,13 @@ ERRORS = [
 ]
 
 
-@pytest.mark.parametrize("where", [{"workers": 1}, {"workers": 2}, {"executor": ThreadPoolExecutor(2)}])
+@pytest.mark.parametrize(
+    "where",
+    [
+        {"workers": 1},
+        *(pytest.param(w, marks=pytest.mark.slow) for w in ({"workers": 2}, {"executor": ThreadPoolExecutor(2)})),
+    ],
+)
 def test_whatever_a_task_raises_is_a_row(tmp_path, where):
     tasks = [Misbehave(kind) for kind in KINDS]
     rows = mr.results(tasks, mr.campaign(tasks, tmp_path / "c.sqlite", **where))
@@ -47,6 +53,7 @@ DEATHS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals, and the library of C, are those of POSIX")
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
@@ -75,6 +82,7 @@ def nothing():
     """Something that has no content to hash."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_tasks_that_cannot_be_run_are_rows(tmp_path, workers):
     """Labels that no table holds, contents that cannot be hashed, and things that are no tasks."""
@@ -95,6 +103,7 @@ def test_tasks_that_cannot_be_run_are_rows(tmp_path, workers):
         assert len(store) == 5
 
 
+@pytest.mark.slow
 def test_a_task_that_cannot_be_pickled_is_a_row(tmp_path):
     tasks = [Square(1), Square(5, marks=lambda: 0), Square(2)]
     rows = mr.results(tasks, mr.campaign(tasks, tmp_path / "c.sqlite", workers=2))
@@ -112,6 +121,7 @@ def build(n):
     return None if n == 4 else Square(int(n))
 
 
+@pytest.mark.slow
 def test_a_point_that_fails_to_build_is_a_row(tmp_path):
     grid = mr.Grid(build, n=np.arange(7))
     with mr.Store(mr.campaign(grid, tmp_path / "c.sqlite", workers=1)) as store:
@@ -163,6 +173,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_ctrl_c(tmp_path, workers):
     """It ends behind a task of a minute, in two seconds and without a traceback, and leaves no process."""
@@ -194,6 +205,7 @@ def rows_of(path):
         return 0
 
 
+@pytest.mark.slow
 def test_ctrl_c_in_the_library(tmp_path):
     def tasks():
         yield Square(1)
@@ -203,6 +215,7 @@ def test_ctrl_c_in_the_library(tmp_path):
         mr.campaign(tasks(), tmp_path / "c.sqlite", workers=2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_time_limit(tmp_path, workers):
     tasks = [Misbehave("", {"n": 0}), Misbehave("sleep", {"n": 1}), Misbehave("last", {"n": 2})]
@@ -226,6 +239,7 @@ def test_bad_limits(tmp_path, options, complaint):
         mr.campaign([], tmp_path / "c.sqlite", **options)
 
 
+@pytest.mark.slow
 def test_without_a_terminal_lines_say_how_far_it_is(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(progress, "EVERY", 0.0)
     path = tmp_path / "c.sqlite"
@@ -239,6 +253,7 @@ def test_without_a_terminal_lines_say_how_far_it_is(tmp_path, monkeypatch, capsy
     assert again[1].startswith("campaign: 3 of 3 cases, ")
 
 
+@pytest.mark.slow
 def test_halves_of_histories_are_removed(tmp_path, wall, e):
     """What kill -9 leaves of a history is not taken for one, and the case that is run again removes it."""
     task = mr.Analysis(mr.Case(wall, 0.01, 0.5), "analytical", e=e)

@@ -58,12 +58,14 @@ def same(left, right):
             np.testing.assert_allclose(a[name], b[name], rtol=1e-9, atol=1e-9 * np.abs(a[name]).max())
 
 
+@pytest.mark.slow
 def test_plain_python_gives_the_same(tmp_path):
     assert "compiling" not in run(tmp_path / "plain.npz", NUMBA_DISABLE_JIT="1")
     run(tmp_path / "compiled.npz")
     same(tmp_path / "plain.npz", tmp_path / "compiled.npz")
 
 
+@pytest.mark.slow
 def test_without_numba_there_is_one_line_and_the_same_result(tmp_path):
     """As on a Python for which numba has no wheel: a module of its name that cannot be imported."""
     (tmp_path / "numba").mkdir()
@@ -141,6 +143,7 @@ def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):
     assert capfd.readouterr().err == f"mjrock: compiling the loops, which takes about half a minute, {ANEW}\n"
 
 
+@pytest.mark.slow
 def test_the_folder_of_the_environment_comes_first(tmp_path):
     script = "from mjrock.engine import loop; print(loop.fitted_loop._cache.cache_path)"
     run = subprocess.run(

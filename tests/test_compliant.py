@@ -12,6 +12,7 @@ def test_without_damping_energy_is_conserved(wall):
     np.testing.assert_allclose(response.energy, response.energy[0], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_energy_never_rises(two_sided, one_sided, contacts):
     for case in (two_sided, one_sided):
         energy = mr.solve_compliant(case, contacts).energy
@@ -24,6 +25,7 @@ def test_a_wall_at_rest_stays_at_rest(wall, contacts):
     assert response.outcome is mr.Outcome.AT_REST
 
 
+@pytest.mark.slow
 def test_tolerance_does_not_change_the_rebounds(one_sided, contacts):
     loose = mr.solve_compliant(one_sided, contacts)
     tight = mr.solve_compliant(one_sided, contacts, rtol=1e-11, atol=1e-13)
@@ -51,6 +53,7 @@ def test_reference_frequency_evidence(wall, e):
     assert mr.solve_compliant(case, weaker).restitution[0] > e.base + 0.01
 
 
+@pytest.mark.slow
 def test_overturning(wall, contacts):
     assert mr.solve_compliant(mr.Case(wall, 1.01 * wall.alpha, 5.0), contacts).outcome is mr.Outcome.OVERTURNED
     assert mr.solve_compliant(mr.Case(wall, 0.97 * wall.alpha, 5.0), contacts).outcome is not mr.Outcome.OVERTURNED

@@ -57,6 +57,7 @@ def test_a_damped_wall_is_that_of_scipy(side_stop, options, within):
     assert run.ledger.dashpots["damper_0"][-1] > 0.1 * run.energy[0]
 
 
+@pytest.mark.slow
 def test_a_shaken_wall_is_damped_too():
     """The ground and the damper push on the same joints."""
     motion = mr.GroundMotion.sine(3.0, 0.8)

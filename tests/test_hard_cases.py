@@ -7,9 +7,16 @@ import mjrock as mr
 import trouble
 from trouble import Scene
 
+LONG = {"a thousand impacts", "an hour at rest"}
+"""Cases that take some seconds."""
+
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize("case", hard_cases.ALL, ids=lambda c: c.name.replace(" ", "-"))
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(c, marks=pytest.mark.slow) if c.name in LONG else c for c in hard_cases.ALL],
+    ids=lambda c: c.name.replace(" ", "-"),
+)
 def test_hard_case(case):
     kept, result = case.check()
     assert kept, f"{case.promise}: {result}"

@@ -25,6 +25,7 @@ def pulse(wall, e):
     return of
 
 
+@pytest.mark.slow
 def test_peaks_of_one_record(tmp_path, pulse, wall):
     scales = [0.5, 1.5, 2.5, 6.0]
     found = mr.ida(pulse(), scales, tmp_path / "ida.sqlite", workers=1)
@@ -40,6 +41,7 @@ def test_peaks_of_one_record(tmp_path, pulse, wall):
     assert repr(found) == "<IncrementalAnalysis of 1 records at 4 scales from 0.5 to 6: 1 records overturn the wall>"
 
 
+@pytest.mark.slow
 def test_several_records_and_what_is_stored(tmp_path, pulse, monkeypatch):
     builds = {"out": pulse(1.0), "long": pulse(1.0, 1.2), "short": pulse(1.0, 0.1)}
     scales = np.array([1.2, 1.8, 5.0])
@@ -63,6 +65,7 @@ def test_several_records_and_what_is_stored(tmp_path, pulse, monkeypatch):
         mr.ida({"out": pulse(1.0)}, [1.2, 1.3, 1.8, 3.1, 5.0, 5.1], tmp_path / "ida.sqlite", executor=here)
 
 
+@pytest.mark.slow
 def test_labels_of_the_user_stay(tmp_path, pulse):
     def build(scale):
         return replace(pulse()(scale), labels={"scale": 10 * scale, "site": "rock"})
@@ -155,6 +158,7 @@ def build_column(scale):
     return mr.MasonryAnalysis(mr.MasonryCase(masonry, 1.5, motion=mr.GroundMotion.half_sine(scale, 0.6)))
 
 
+@pytest.mark.slow
 def test_masonry_is_taken_as_a_wall_is(tmp_path):
     found = mr.ida(build_column, [0.5, 2.0, 6.0], tmp_path / "ida.sqlite", workers=1)
     assert found.peaks[0, 0] < found.peaks[0, 1] < found.peaks[0, 2] == math.inf

@@ -50,7 +50,9 @@ print(interrupted)
 """
 
 
-@pytest.mark.parametrize("solver", ["wall", "fixed", "theory", "arch", "stack"])
+@pytest.mark.parametrize(
+    "solver", ["wall", *(pytest.param(name, marks=pytest.mark.slow) for name in ("fixed", "theory", "arch", "stack"))]
+)
 def test_ten_interruptions_end_the_run_and_nothing_else(solver):
     run = subprocess.run([sys.executable, "-c", SCRIPT, solver], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stdout.strip()) == (0, "10"), run.stderr[-2000:]

@@ -15,6 +15,7 @@ def analysis(peak, blocks=2, **options):
     return mr.MasonryAnalysis(case, options, labels={"peak": peak})
 
 
+@pytest.mark.slow
 def test_rows_and_histories(tmp_path):
     tasks = [analysis(2.0), analysis(-2.0)]
     path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=1, histories=tmp_path / "histories")

@@ -202,6 +202,7 @@ def test_a_restitution_of_ones_own():
     assert rebound(matched, 0.3, 1e-4) == pytest.approx(0.966, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_side_stop_drawn_by_hand_on_the_right():
     parts = [box(-0.3, 0.3, 0, 2.1), box(-0.3, 0.3, 2.1, 4.2)]
     masonry = mr.Masonry(
@@ -243,6 +244,7 @@ def test_values_outside_their_range(options):
         mr.matched_masonry(stack(2), **options)
 
 
+@pytest.mark.slow
 def test_matched_masonry_is_a_task_of_a_campaign():
     one, other = (mr.matched_masonry(stack(2, side_stop=True)) for _ in range(2))
     assert one == other

@@ -13,13 +13,21 @@ import mjrock as mr
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
+EVERY_DAY = {"figure3_one_sided"}
+"""The model that the everyday tests run. The long tests run the others."""
+
+
+def models(these):
+    return [model if model.name in EVERY_DAY else pytest.param(model, marks=pytest.mark.slow) for model in these]
+
+
 def reference(folder):
     with open(folder / "reference.csv") as file:
         rows = list(csv.reader(file))
     return rows[0], np.array(rows[1:], dtype=float)
 
 
-@pytest.mark.parametrize("model", [*make_models.ALL, *make_models.MASONRY], ids=lambda m: m.name)
+@pytest.mark.parametrize("model", models([*make_models.ALL, *make_models.MASONRY]), ids=lambda m: m.name)
 def test_a_model_is_what_the_script_makes(model):
     folder = make_models.MODELS / model.name
     made = model.files()
@@ -40,7 +48,7 @@ def test_a_model_is_what_the_script_makes(model):
     np.testing.assert_allclose(again / abs(stored).max(0), stored / abs(stored).max(0), atol=1e-4)
 
 
-@pytest.mark.parametrize("model", make_models.ALL, ids=lambda m: m.name)
+@pytest.mark.parametrize("model", models(make_models.ALL), ids=lambda m: m.name)
 def test_stock_mujoco_follows_the_reference(model):
     """Load, reset to the keyframe, step: no mjrock in between."""
     folder = make_models.MODELS / model.name
@@ -65,7 +73,7 @@ def test_stock_mujoco_follows_the_reference(model):
     assert peaks[0] == pytest.approx(peaks[1], rel=0.1, abs=1e-3 * alpha)
 
 
-@pytest.mark.parametrize("model", make_models.ALL, ids=lambda m: m.name)
+@pytest.mark.parametrize("model", models(make_models.ALL), ids=lambda m: m.name)
 def test_the_text_is_the_simulation(model):
     """Stock MuJoCo, from the keyframe, is `simulate` at the step of the text, to 1e-9 alpha at every step."""
     engine = mujoco.MjModel.from_xml_path(str(make_models.MODELS / model.name / "scene.xml"))

@@ -84,7 +84,7 @@ def test_another_unit_is_noticed():
         mr.GroundMotion([0.0, 300.0], 0.01)
 
 
-@pytest.mark.parametrize("amplitude", [-3.0, 3.0])
+@pytest.mark.parametrize("amplitude", [-3.0, pytest.param(3.0, marks=pytest.mark.slow)])
 def test_mujoco_follows_the_contact_law_under_a_pulse(contacts, amplitude):
     """Outward first and inward first: two different motions of a one-sided wall, both as the contact law has them."""
     case = mr.Case(FIGURE_3, 0.0, 2.0, motion=mr.GroundMotion.sine(amplitude, 0.8))

@@ -70,6 +70,15 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "panel",
     "masonry_precision",
     "stack_losses",
+    "convergence",
+    "validate_contacts",
+    "pushover",
+    "layouts",
+    "friction",
+    "figure3",
+    "trouble",
+    "animate",
+    "sliding",
 }
 """Scripts that take a while even with --quick."""
 
@@ -127,6 +136,7 @@ def test_bad_input_is_an_error_without_a_traceback(options, complaint, tmp_path,
     assert printed.out == ""
 
 
+@pytest.mark.slow
 def test_an_error_ends_the_process_with_its_code(tmp_path):
     command = [sys.executable, str(SCRIPTS / "compare_wall.py"), "--timestep", "-1", "--out", str(tmp_path)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -232,7 +232,7 @@ def test_energy_from_nowhere_is_noticed_on_a_shaken_base(wall, contacts, monkeyp
         mr.simulate(case, contacts)
 
 
-@pytest.mark.parametrize("points", [16, 64])
+@pytest.mark.parametrize("points", [16, pytest.param(64, marks=pytest.mark.slow)])
 def test_friction_holds_a_two_sided_bed(points):
     """However many lines share the load of an edge, the base stays where it is."""
     soft = mr.Block.from_slenderness(4.0, 2.1)

@@ -37,6 +37,7 @@ class TestVerification:
         assert found.restitution[0, 1] == pytest.approx(found.restitution[0, 0], rel=0.01)
         assert found.rms <= 0.003
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("points", [4, 8])
     def test_beds(self, wall, e, points):
         contacts = mr.Contacts.from_law(wall, e, k_base=K_N, k_side=K_N, law="PUBLISHED", points=points)

@@ -67,6 +67,7 @@ def test_mujoco_on_a_stiff_base(wall, make):
     assert 0.98 < found / rigid < 1.0
 
 
+@pytest.mark.slow
 def test_the_difference_is_the_yielding_of_the_base():
     """It falls with the root of uplift rotation over alpha: h/b 50 feels 3e9 N/m3 as h/b 7 feels 6e7."""
     expected = HALF_SINE[6]

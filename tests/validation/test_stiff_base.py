@@ -16,7 +16,7 @@ def wall_on(k_n):
     return mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 2.2), contacts
 
 
-@pytest.mark.parametrize("k_n", [5e8, 5e9, 5e10, pytest.param(5e11, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("k_n", [5e8, *(pytest.param(k_n, marks=pytest.mark.slow) for k_n in (5e9, 5e10, 5e11))])
 def test_every_rebound_is_that_of_the_contact_law(k_n):
     """Within 1e-3 at the default accuracy, and within 1e-4 at 1e-4, up to 5e10 N/m3.
 
