@@ -14,12 +14,12 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
 from ..result.history import rocking_history
+from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion, fallen_blocks
 from ..result.response import Outcome, ending, masonry_ending
 from ..result.rocking import Rocking
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .joint_motion import joint_motion
 from .record import Steps
 
 MARKS = 1000
@@ -104,7 +104,7 @@ class AskedMasonry:
         structure that is falling has less energy than at rest, and is not quiet.
         """
         masonry, t = self.case.masonry, steps.t
-        motion = joint_motion(masonry, scene, steps)
+        motion = joint_motion(masonry, scene.places, scene.group, scene.at_rest.ravel(), steps.pose)
         sizes = np.array([masonry.blocks[i].size for i in masonry.free])
         drop = (scene.at_rest[:, 1] - steps.pose[:, 1::3]) / sizes
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)

@@ -23,7 +23,7 @@ from .reading import Asked, AskedMasonry, AskedWall
 from .record import StepError
 from .run import Run, explained, sound_timestep
 from .run_warnings import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
-from .start import required_start
+from ..result.start import required_start
 from .stepping import fitted_steps, fixed_steps
 
 

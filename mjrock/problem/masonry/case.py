@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,10 +13,11 @@ from ...quantities import Array, keep, require_array, require_kind, require_whol
 from ..ground.motion import GroundMotion
 from ..wall.effects import KINDS, Effect, Load
 from .masonry import Masonry
+from .support import Support, supports_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-COMPARED = ("masonry", "duration", "motion", "vertical", "effects")
+COMPARED = ("masonry", "duration", "motion", "vertical", "effects", "supports")
 """What two equal cases share, beside the velocity."""
 
 
@@ -36,6 +38,8 @@ class MasonryCase:
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
             turns to the right.
 
+        supports: displacement histories of fixed blocks, by name, (t, dx, dz) in s and m, for `solve_explicit`.
+
     Raises:
         ValueError: for a value outside its range, velocities of another shape, or an effect that is not on its block.
     """
@@ -46,6 +50,7 @@ class MasonryCase:
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
     effects: tuple[Effect, ...] = ()
+    supports: tuple[Support, ...] | Mapping[str, Any] = ()
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
@@ -59,6 +64,7 @@ class MasonryCase:
             velocity.setflags(write=False)
             keep(self, velocity=velocity)
         self._require_effects()
+        keep(self, supports=supports_of(self.masonry, self.supports))
 
     def _require_effects(self) -> None:
         """Check that each effect is on a block that is not fixed, and keep them as a tuple."""
@@ -88,4 +94,4 @@ class MasonryCase:
         )
 
     def __hash__(self) -> int:
-        return hash((self.masonry, self.duration, self.motion, self.vertical, self.effects))
+        return hash((self.masonry, self.duration, self.motion, self.vertical, self.effects, self.supports))

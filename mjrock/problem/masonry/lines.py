@@ -65,6 +65,18 @@ def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, poi
     return Lines(joint_of, body, face, np.reshape(at, (-1, 2)), np.reshape(normal, (-1, 2)), np.array(k))
 
 
+def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
+    """Where the edge of a block that makes a joint ends, from the middle of the joint along it [m]."""
+    corners = block.corners - joint.middle
+    edges = np.roll(corners, -1, axis=0) - corners
+    ways = edges / np.hypot(*edges.T)[:, None]
+    apart = np.abs(corners[:, 0] * ways[:, 1] - corners[:, 1] * ways[:, 0])
+    low, high = np.sort([corners @ joint.along, (corners + edges) @ joint.along], axis=0)
+    crossed = np.where((low <= 0) & (high >= 0) & (np.abs(ways @ joint.along) > 0.9), apart, np.inf)
+    edge = int(np.argmin(crossed))
+    return float(low[edge]), float(high[edge])
+
+
 def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
     """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
 

@@ -23,13 +23,20 @@ from .of_joint import ByKind, OfJoint
 from .polygon import Polygon
 from .stack_law import retardations
 
-OF_JOINTS = {"k_n": (1e4, 1e14, "N/m3"), "friction": (0.0, 10.0, ""), "xi": (0.0, 100.0, "")}
+OF_JOINTS = {
+    "k_n": (1e4, 1e14, "N/m3"),
+    "friction": (0.0, 10.0, ""),
+    "xi": (0.0, 100.0, ""),
+    "k_s": (1e4, 1e16, "N/m3"),
+}
 """Lowest and highest value of the properties of a joint, and their unit."""
 
 
 def required(name: str, given: OfJoint) -> OfJoint:
-    """A property of joints, a number as a float within its range, or a function as it is."""
-    return given if callable(given) else require_within(name, given, *OF_JOINTS[name])
+    """A property of joints, a number as a float within its range, or a function as it is; k_s may be None."""
+    if callable(given) or (name == "k_s" and given is None):
+        return given
+    return require_within(name, given, *OF_JOINTS[name])
 
 
 @dataclass(frozen=True)
@@ -42,8 +49,8 @@ class Masonry:
     opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
     `points` and `k_n`, and a structure near its limit can depend on that.
 
-    Blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block does after
-    it has left its joints is therefore not followed: the answer names such blocks, and with steps that fit the motion
+    In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
+    does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the motion
     the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block has
     turned by 90 degrees.
 
@@ -67,6 +74,8 @@ class Masonry:
             `Contacts.from_law`. A stack of 2 to 7 blocks that rocks as one then loses more than its wall at an impact:
             2 to 10 % more on joints of 1e10 N/m3 or stiffer, 4 to 24 % more on 1e9 (h/b of 7, from alpha/2), and 5 to
             7 % less against a side stop. `matched_masonry` finds the damping with which it loses the same.
+        k_s: shear stiffness of the joints [N/m3], 1e4 to 1e16, or a function of the joint, for `solve_explicit`. None
+            lets them stick rigidly, up to their friction, as they always do in MuJoCo.
 
     Raises:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
@@ -80,6 +89,7 @@ class Masonry:
     points: int = 2
     tolerance: float = 1e-5
     law: Law | str | None = None
+    k_s: OfJoint | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
@@ -241,7 +251,7 @@ class Masonry:
         """A property of each joint, shape (joints,)."""
         given = getattr(self, name)
         if not callable(given):
-            return np.full(len(self.joints), given)
+            return np.full(len(self.joints), np.inf if given is None else given)
         found = []
         for joint in self.joints:
             try:
@@ -260,6 +270,11 @@ class Masonry:
     def joint_friction(self) -> Array:
         """Coefficient of friction of each joint [-], shape (joints,)."""
         return self._of_joints("friction")
+
+    @cached_property
+    def joint_shear(self) -> Array:
+        """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
+        return self._of_joints("k_s")
 
     @cached_property
     def lines(self) -> Lines:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +12,7 @@ from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import Places, along, depth
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from ..result.joints import LOST
-from ..scene.scene import Scene
-from .record import Steps
+from .joints import LOST
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
@@ -34,23 +33,27 @@ class Followed(NamedTuple):
     lost: Flags
 
 
-def joint_motion(masonry: Masonry, scene: Scene, steps: Steps) -> Followed:
-    """What the joints of masonry did."""
+def joint_motion(masonry: Masonry, places: Places, group: Sequence[str], start: Array, pose: Array) -> Followed:
+    """What the joints of masonry did.
+
+    Args:
+        masonry: the masonry.
+        places, group: its contact lines, and the name of the joint of each.
+        start: pose at rest, shape (n nq,).
+        pose: of the steps or samples, shape (steps, n nq).
+    """
     joints = masonry.joints
     number = {joint.name: i for i, joint in enumerate(joints)}
-    of, widths = np.array([number[name] for name in scene.group]), np.array([joint.width for joint in joints])
+    of, widths = np.array([number[name] for name in group]), np.array([joint.width for joint in joints])
     opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
-    lost, (back, forth) = np.zeros((len(steps.t), len(joints)), dtype=bool), np.array([j.travel for j in joints]).T
-    start = scene.at_rest.ravel()
-    frames = frames_of(start, scene.places.freedom)
-    at_rest = np.array(
-        [along(scene.places, i, frames, start).place for i in range(len(of))]
-    )  # of each line on its face
+    lost, (back, forth) = np.zeros((len(pose), len(joints)), dtype=bool), np.array([j.travel for j in joints]).T
+    frames = frames_of(start, places.freedom)
+    at_rest = np.array([along(places, i, frames, start).place for i in range(len(of))])  # of each line on its face
     size = max(1, AT_ONCE // max(1, len(joints)))
-    for first in range(0, len(steps.t), size):
-        pose = steps.pose[first : first + size]
-        room = np.empty((2, len(pose), len(joints)))
-        deepest = max(deepest, _look(scene.places, Lines(of, at_rest), pose, frames, np.empty(len(joints)), *room))
+    for first in range(0, len(pose), size):
+        some = np.ascontiguousarray(pose[first : first + size])
+        room = np.empty((2, len(some), len(joints)))
+        deepest = max(deepest, _look(places, Lines(of, at_rest), some, frames, np.empty(len(joints)), *room))
         opening, sliding = np.maximum(opening, room[0].max(axis=0)), np.maximum(sliding, np.abs(room[1]).max(axis=0))
         lost[first : first + size] = (room[0] > LOST * widths) | (room[1] > forth) | (room[1] < -back)
     return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))

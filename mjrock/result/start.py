@@ -10,7 +10,7 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effects import Tie
 from ..quantities import ON_ITS_FACE, require_array, require_within, shown
-from ..result.response import State
+from .response import State
 
 PARTS = ("pose", "velocity")
 """What a state is made of."""

@@ -1,0 +1,179 @@
+"""A contact line at a pose: where it presses, how fast, and with what force.
+
+The force along the normal is max(0, -(k g + c g')) while the gap g is negative, so never a tension. The dashpot takes
+the velocity half a step before the pose. Along the face a spring of stiffness k_s slips where its force would pass the
+friction, as in distinct-element codes, or the line sticks rigidly, see `friction`.
+
+A line has moved past the end of its face where the block above overhangs. There the corner of the face presses on the
+edge of the block above, and past the end of that edge too nothing is left of the contact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ..compiled import inlined, jitable
+from ..quantities import Array
+from .system import Books, Rows, Supports, System
+
+OPEN = 1.0
+"""Gap of a line that has left its face [m]."""
+OVERHANG = 0.02
+"""Overhang, over the length of the face, from which the edge of the block above gives the normal, and no longer the
+face [-]. A block that stands flush has its points at the very end of the face, and they move to and fro there."""
+
+
+class Meeting(NamedTuple):
+    """A line at a pose.
+
+    Args:
+        gap: [m].
+        nx, nz: normal out of the face.
+        rx, rz: from the centroid of the body to the line [m].
+        sx, sz: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
+    """
+
+    gap: float
+    nx: float
+    nz: float
+    rx: float
+    rz: float
+    sx: float
+    sz: float
+
+
+@inlined
+def meeting(bodies: Rows, line: Rows, supports: Supports) -> Meeting:
+    """Where a line is."""
+    body, nx, nz = bodies[line.body], line.normal_x, line.normal_z
+    swung_x = line.at_z * body.sine - line.at_x * body.versine
+    swung_z = -line.at_x * body.sine - line.at_z * body.versine
+    rx, rz = line.at_x + swung_x, line.at_z + swung_z
+    dx, dz = line.between_x + body.x + swung_x, line.between_z + body.z + swung_z
+    sx, sz = rx, rz
+    if line.face >= 0:
+        face = bodies[line.face]
+        dx -= face.x + line.origin_z * face.sine - line.origin_x * face.versine
+        dz -= face.z - line.origin_x * face.sine - line.origin_z * face.versine
+        nx, nz = (
+            nx + line.normal_z * face.sine - line.normal_x * face.versine,
+            nz - line.normal_x * face.sine - line.normal_z * face.versine,
+        )
+        sx, sz = (body.x0 - face.x0) + (body.x - face.x), (body.z0 - face.z0) + (body.z - face.z)
+    elif line.support >= 0:
+        dx, dz = dx - supports.moved[line.support, 0], dz - supports.moved[line.support, 1]
+    gap = nx * dx + nz * dz
+    if gap < 0:
+        place = nz * dx - nx * dz
+        if place < line.low or place > line.high:
+            end = line.low if place < line.low else line.high
+            dx, dz = dx - end * nz, dz + end * nx
+            mx = line.normal_x + line.normal_z * body.sine - line.normal_x * body.versine
+            mz = line.normal_z - line.normal_x * body.sine - line.normal_z * body.versine
+            back = mx * dz - mz * dx
+            gap = OPEN if back < line.back or back > line.forth else mx * dx + mz * dz
+            rx, rz = rx + back * mz, rz - back * mx
+            share = min(abs(place - end) / (OVERHANG * (line.high - line.low)), 1.0)
+            nx, nz = nx + share * (mx - nx), nz + share * (mz - nz)
+            size = math.sqrt(nx * nx + nz * nz)
+            nx, nz = nx / size, nz / size
+    if line.face >= 0:
+        sx, sz = sx + rx, sz + rz
+    return Meeting(gap, nx, nz, rx, rz, sx, sz)
+
+
+@inlined
+def relative(bodies: Rows, line: Rows, supports: Supports, meet: Meeting) -> tuple[float, float]:
+    """Velocity of the point of a line over the face [m/s]."""
+    body = bodies[line.body]
+    ux, uz = body.vx + body.w * meet.rz, body.vz - body.w * meet.rx
+    if line.face >= 0:
+        face = bodies[line.face]
+        ux, uz = ux - face.vx - face.w * meet.sz, uz - face.vz + face.w * meet.sx
+    elif line.support >= 0:
+        ux, uz = ux - supports.moving[line.support, 0], uz - supports.moving[line.support, 1]
+    return ux, uz
+
+
+@inlined
+def add_force(body: Rows, rx: float, rz: float, fx: float, fz: float) -> None:
+    """Add a force at an arm from the centroid of a body [N]."""
+    body.fx += fx
+    body.fz += fz
+    body.moment += rz * fx - rx * fz
+
+
+@inlined
+def sprung_friction(line: Rows, push: float, slip: float, h: float) -> float:
+    """Force of the shear spring with its slider and dashpot [N]. The last velocity has stretched the spring."""
+    most = line.friction * push
+    stretched = line.grip + h * slip
+    drag = -line.k_s * stretched - line.c_s * slip
+    if abs(drag) > most:
+        drag = math.copysign(most, drag)
+        stretched = -drag / line.k_s
+    line.grip = stretched
+    return drag
+
+
+@jitable
+def press_lines(system: System, books: Books, h: float, kick: float) -> int:
+    """Add the forces of all lines but rigid friction, and list the lines that stick rigidly.
+
+    Args:
+        system, books: the bodies and their lines, and the accounts.
+        h: length of the step that led to the pose [s], zero at the start.
+        kick: time for which the forces act on the velocities [s].
+
+    Returns:
+        How many lines stick rigidly.
+    """
+    bodies, lines, supports, active = system.bodies, system.lines, system.supports, 0
+    for p in range(len(lines)):
+        line = lines[p]
+        meet = meeting(bodies, line, supports)
+        if meet.gap >= 0:
+            line.widest = max(line.widest, meet.gap)
+            if line.pressed == 0 and line.dragged == 0:
+                line.grip = 0.0
+                continue
+        ux, uz = relative(bodies, line, supports, meet)
+        rate, slip = meet.nx * ux + meet.nz * uz, meet.nz * ux - meet.nx * uz
+        sprung = -line.k * min(meet.gap, 0.0)
+        push = max(0.0, sprung - line.c * rate) if meet.gap < 0 else 0.0
+        books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
+        line.pressed = push - sprung
+        middle, drag = -0.5 * min(meet.gap, 0.0), 0.0  # friction rubs halfway into the overlap
+        if push == 0:
+            line.grip = 0.0
+        elif line.k_s < math.inf:
+            drag = sprung_friction(line, push, slip, h)
+            books.friction[0] -= 0.5 * h * (line.dragged + drag) * slip
+        elif line.friction > 0:
+            books.active[active] = p
+            active += 1
+            list_rigid(bodies, line, meet, kick * line.friction * push)
+        line.dragged = drag
+        fx, fz, turning = push * meet.nx + drag * meet.nz, push * meet.nz - drag * meet.nx, middle * drag
+        add_force(bodies[line.body], meet.rx, meet.rz, fx, fz)
+        bodies[line.body].moment += turning
+        if line.face >= 0:
+            add_force(bodies[line.face], meet.sx, meet.sz, -fx, -fz)
+            bodies[line.face].moment -= turning
+        elif line.support >= 0:
+            books.friction[1] += h * (fx * supports.moving[line.support, 0] + fz * supports.moving[line.support, 1])
+    return active
+
+
+@inlined
+def list_rigid(bodies: Rows, line: Rows, meet: Meeting, most: float) -> None:
+    """Prepare the row of a line that sticks rigidly: way and levers of its friction, its most, and what it moves."""
+    middle, body = -0.5 * meet.gap, bodies[line.body]
+    line.way_x, line.way_z, line.most = meet.nz, -meet.nx, most
+    line.lever = meet.rz * meet.nz + meet.rx * meet.nx + middle
+    line.light = 1 / body.mass + body.ease * line.lever**2
+    if line.face >= 0:
+        face = bodies[line.face]
+        line.other = meet.sz * meet.nz + meet.sx * meet.nx + middle
+        line.light += 1 / face.mass + face.ease * line.other**2

@@ -1,0 +1,171 @@
+"""Reading: the response of a run by explicit steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.uplift import Uplift
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..quantities import Array
+from ..result.history import rocking_history
+from ..result.joint_motion import joint_motion
+from ..result.joints import JointMotion, fallen_blocks
+from ..result.ledger import Ledger
+from ..result.response import Plastic, Response, ending, masonry_ending
+from ..result.rocking import Rocking
+from ..scene.course import Course
+from ..scene.scene import Scene
+from .system import Books, Samples, System
+
+ENERGY_GAIN = 1e-3
+"""Most energy that may appear from nowhere, as a share of what was there and what the ground put in [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and how far apart [s]."""
+
+    case: Case | MasonryCase
+    contacts: Contacts | None
+    scene: Scene
+    course: Course
+    system: System
+    books: Books
+    samples: Samples
+    spacing: float
+
+    @property
+    def t(self) -> Array:
+        """Times of the samples [s]."""
+        return self.spacing * np.arange(len(self.samples.pose))
+
+    @property
+    def energy(self) -> Array:
+        """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
+        total: Array = self.samples.energy.sum(axis=1) - self.scene.rest_energies.sum()
+        return total - self._preloaded
+
+    @property
+    def _preloaded(self) -> float:
+        """Energy in the shear springs that carry masonry at rest [J]."""
+        return float(self.samples.energy[0].sum() - self.scene.rest_energies.sum() - self.course.energy(self.scene))
+
+
+def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
+    """The response of a run.
+
+    Args:
+        run: the run.
+        ledger: whether it has the accounts of a ledger.
+        stride: every how many samples are returned.
+        stats: what the run took.
+
+    Raises:
+        RuntimeError: if energy has appeared from nowhere.
+    """
+    reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
+    count = reading.pop("count")
+    require_no_gain(run, count)
+    samples = run.samples
+    return Response(
+        case=run.case,
+        solver="explicit",
+        t=run.t[::stride],
+        pose=samples.pose[::stride],
+        velocity=samples.velocity[::stride],
+        energy=run.energy[::stride],
+        plastic={
+            name: Plastic(float(taken / strength), float(taken))
+            for name, taken, strength in zip(run.scene.tie_names, run.books.ties, run.scene.tie_strength, strict=True)
+        },
+        ledger=ledger_of(run, stride) if ledger else None,
+        stats=reading.pop("stats") | stats,
+        end=(samples.pose[-1].copy(), samples.velocity[-1].copy()),
+        **reading,
+    )
+
+
+def wall_reading(run: Run) -> dict[str, Any]:
+    """Peaks and impacts of a wall, and up to which sample it can still come back."""
+    case, contacts = run.case, run.contacts
+    assert isinstance(case, Case)
+    assert contacts is not None
+    uplift = Uplift.of(case, contacts)
+    theta, omega = run.samples.pose[:, 0, 2], run.samples.velocity[:, 0, 2]
+    _, peaks, impacts = rocking_history(case, run.t, theta, omega, run.energy, uplift, released=run.course.released)
+    standing = np.flatnonzero(case.returns_from(theta))
+    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy)
+    slip = run.samples.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
+    return {
+        "rocking": Rocking(impacts, peaks),
+        "outcome": outcome,
+        "message": message,
+        "count": int(standing[-1]) + 1 if standing.size else 1,
+        "stats": {"base_displacement": float(slip[-1] - slip[0])},
+    }
+
+
+def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
+    """Openings, slidings and falls of masonry, and the sample at which the first block falls."""
+    masonry, scene, pose = case.masonry, run.scene, run.samples.pose
+    flat = pose.reshape(len(pose), -1)
+    motion = joint_motion(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
+    sizes = np.array([masonry.blocks[i].size for i in masonry.free])
+    fallen = fallen_blocks(masonry, run.t, motion.lost, (scene.at_rest[:, 1] - pose[:, :, 1]) / sizes)
+    quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
+    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]))
+    opening = motion.opening.copy()
+    number = {joint.name: i for i, joint in enumerate(masonry.joints)}
+    of = [number[name] for name in scene.group]
+    np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])
+    return {
+        "joints": JointMotion(opening, motion.sliding, fallen),
+        "outcome": outcome,
+        "message": message,
+        "count": int(np.searchsorted(run.t, next(iter(fallen.values()), np.inf))),
+        "stats": {"deepest": motion.deepest},
+    }
+
+
+def require_no_gain(run: Run, count: int) -> None:
+    """Make sure that no energy appears from nowhere up to a sample.
+
+    Raises:
+        RuntimeError: if it does, or if the motion is not finite.
+    """
+    if not np.isfinite(run.samples.energy[-1]).all():
+        raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
+    work = run.samples.work[: max(count, 1), 1]
+    own = run.energy[: len(work)] - work
+    scale = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    gains = own - np.minimum.accumulate(own)
+    worst = int(gains.argmax())
+    if not gains[worst] <= ENERGY_GAIN * scale:
+        raise RuntimeError(
+            f"{gains[worst]:.3g} J, {gains[worst] / scale:.2%} of the energy there was, appeared from nowhere by "
+            f"t = {run.t[worst]:.4g} s; take a shorter timestep"
+        )
+
+
+def ledger_of(run: Run, stride: int) -> Ledger:
+    """The ledger of a run."""
+    samples, scene = run.samples, run.scene
+    names = (*scene.damper_names, *scene.tie_names, *dict.fromkeys(scene.group))
+    accounts = dict(zip(names, samples.work[::stride, 2:].T, strict=True))
+    ties = {name: accounts.pop(name) for name in scene.tie_names}
+    kinetic, potential, elastic = samples.energy[::stride].T
+    return Ledger(
+        t=run.t[::stride],
+        kinetic=kinetic,
+        potential=potential,
+        elastic=elastic,
+        dashpots=accounts,
+        friction=samples.work[::stride, 0] - samples.work[0, 0],
+        ground=samples.work[::stride, 1],
+        ties=ties,
+    )

@@ -1,0 +1,150 @@
+"""The system: bodies, contact lines and links in the plane, each a row of named numbers for compiled functions.
+
+What belongs together stands together in memory, which is what a step of some thousand lines takes its time for.
+Positions are those at rest, and the motion is counted from there.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..quantities import Array, Integers
+from ..scene.ground import Ground
+
+FAR = 1e9
+"""An end that is never reached [m]."""
+
+BODY = np.dtype(
+    [
+        *((name, float) for name in ("mass", "ease")),  # [kg], and the inverse of the moment of inertia [1/(kg m2)]
+        *((name, float) for name in ("x0", "z0")),  # centroid at rest [m]
+        *((name, float) for name in ("x", "z", "theta")),  # displacement from there [m, m, rad]
+        *((name, float) for name in ("sine", "versine")),  # sin and 1 - cos of theta
+        *((name, float) for name in ("vx", "vz", "w")),  # velocity half a step before the pose [m/s, m/s, rad/s]
+        *((name, float) for name in ("fx", "fz", "moment")),  # force and moment at the pose [N, N, N m]
+    ]
+)
+"""A rigid body."""
+
+LINE = np.dtype(
+    [
+        ("body", np.int64),  # the body that carries the point
+        ("face", np.int64),  # the body of the face, -1 for a fixed block
+        ("support", np.int64),  # the support that moves a fixed block, -1 for none
+        ("group", np.int64),  # number of the account
+        *((name, float) for name in ("at_x", "at_z")),  # the point from the centroid of its body [m]
+        *((name, float) for name in ("origin_x", "origin_z")),  # a point of the face, from the centroid or the world [m]
+        *((name, float) for name in ("normal_x", "normal_z")),  # unit vector out of the face
+        *((name, float) for name in ("between_x", "between_z")),  # from that point of the face to the point, at rest [m]
+        *((name, float) for name in ("k", "c", "k_s", "c_s")),  # springs and dashpots along the normal and the face
+        ("friction", float),  # coefficient [-]
+        *((name, float) for name in ("low", "high")),  # ends of the face, from its origin along its tangent [m]
+        *((name, float) for name in ("back", "forth")),  # ends of the edge of the body, from the point likewise [m]
+        ("grip", float),  # stretch of the shear spring [m]; where it is rigid, friction of the last step [N]
+        *((name, float) for name in ("pressed", "dragged")),  # dashpot and friction in the last step [N]
+        ("widest", float),  # largest gap so far [m]
+        *((name, float) for name in ("way_x", "way_z", "lever", "other")),  # friction of a unit impulse: see `friction`
+        *((name, float) for name in ("most", "light", "sliding")),
+    ]
+)
+"""A contact line: a point of a body above the face of another body or of a fixed block."""
+
+LINK = np.dtype(
+    [
+        ("body", np.int64),  # the body that is held
+        *((name, float) for name in ("at_x", "at_z")),  # where, from its centroid [m]
+        *((name, float) for name in ("between_x", "between_z")),  # from the anchor to there [m]; components of a force [N]
+        *((name, float) for name in ("k", "c")),  # spring and dashpot [N/m, N s/m]
+        *((name, float) for name in ("reach", "strength")),  # length up to which a tie is slack [m], and its yield [N]
+        ("pulled", float),  # force of a damper in the last step [N]
+    ]
+)
+"""A tie, a damper or a constant force between a point of a body and the ground."""
+
+Rows = NDArray[np.void]
+
+
+def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | float) -> Rows:
+    """Rows with these columns, and zeros in the others."""
+    table = np.zeros(count, dtype=kind)
+    for name, values in columns.items():
+        table[name] = values
+    return table
+
+
+class Supports(NamedTuple):
+    """Displacement histories of fixed blocks, and where the blocks are.
+
+    Args:
+        t: times of the samples of all supports, one support after the other [s], shape (samples,).
+        displacement: x and z [m], shape (samples, 2), linear in between.
+        first: where the samples of each support begin, and where those of the last end, shape (s + 1,).
+        moved, moving: displacement and velocity at the pose [m, m/s], shape (s, 2).
+    """
+
+    t: Array
+    displacement: Array
+    first: Integers
+    moved: Array
+    moving: Array
+
+
+class System(NamedTuple):
+    """All that stands and acts, and its motion."""
+
+    bodies: Rows
+    lines: Rows
+    ties: Rows
+    dampers: Rows
+    forces: Rows
+    ground: Ground
+    supports: Supports
+
+
+class Books(NamedTuple):
+    """Work since the start [J].
+
+    Args:
+        dashpots: by group, shape (g,).
+        ties, dampers: by tie and damper, shapes (t,) and (d,).
+        friction: friction, what is in the shear springs included; then the work of ground and supports; then the
+            accelerations of the ground in the last step [m/s2], shape (4,).
+        active: room for the numbers of the lines that stick rigidly, shape (m,).
+    """
+
+    dashpots: Array
+    ties: Array
+    dampers: Array
+    friction: Array
+    active: Integers
+
+    @classmethod
+    def of(cls, system: System, groups: int) -> Books:
+        """Empty books."""
+        sizes = groups, len(system.ties), len(system.dampers), 4
+        return cls(*(np.zeros(size) for size in sizes), np.zeros(len(system.lines), dtype=np.int64))
+
+
+class Samples(NamedTuple):
+    """What is kept of a motion at its samples.
+
+    Args:
+        pose, velocity: of the bodies, shape (samples, n, 3).
+        energy: kinetic, potential and elastic [J], shape (samples, 3).
+        work: friction and ground, then dampers, ties and dashpots by group [J], shape (samples, columns); without a
+            ledger the first two alone, and friction is that of shear springs.
+    """
+
+    pose: Array
+    velocity: Array
+    energy: Array
+    work: Array
+
+    @classmethod
+    def of(cls, count: int, bodies: int, columns: int) -> Samples:
+        """Room for some samples."""
+        shapes = (count, bodies, 3), (count, bodies, 3), (count, 3), (count, columns)
+        return cls(*(np.zeros(shape) for shape in shapes))
