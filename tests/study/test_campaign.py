@@ -17,9 +17,9 @@ from campaign_tasks import Square
 
 import mjrock as mr
 
-ENVIRONMENT = os.environ | {
-    "PYTHONPATH": os.pathsep.join(filter(None, [str(Path(__file__).parent), os.environ.get("PYTHONPATH")]))
-}
+TASKS = str(Path(__file__).parents[1])
+"""Where a process finds `campaign_tasks`."""
+ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [TASKS, os.environ.get("PYTHONPATH")]))}
 
 
 def table(path):
@@ -279,7 +279,7 @@ def test_dask_survives_the_death_of_a_worker(tmp_path):
         distributed.Client(cluster) as client,
         client.get_executor() as executor,
     ):
-        client.run(sys.path.append, str(Path(__file__).parent))
+        client.run(sys.path.append, TASKS)
         path = mr.campaign(tasks, tmp_path / "c.sqlite", executor=executor)
         blocks = mr.Masonry.stack([mr.Block.from_size(0.6, 2.1)] * 2, k_n=5e8)
         column = mr.MasonryAnalysis(mr.MasonryCase(blocks, 0.05), labels={"name": "column"})

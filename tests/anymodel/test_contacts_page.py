@@ -11,7 +11,7 @@ from pairs import FLOOR, ON_A_PLANE, rebound, scene
 import mjrock as mr
 from mjrock.problem.damping.rebound import rebound_damping, rebound_restitution
 
-PAGE = (Path(__file__).parents[1] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
 
 
 def test_the_example_runs_and_does_what_it_says():

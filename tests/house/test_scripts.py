@@ -13,7 +13,7 @@ import cli
 import compare_wall
 import mjrock as mr
 
-SCRIPTS = Path(__file__).parents[1] / "scripts"
+SCRIPTS = Path(__file__).parents[2] / "scripts"
 WRITES = {
     "animate": {"arch.gif", "figure3.gif"},
     "compare_wall": {"scene.xml", "comparison.png", "comparison.csv"},

@@ -7,7 +7,7 @@ import pytest
 
 import mjrock as mr
 
-TEXT = (Path(__file__).parents[1] / "docs" / "effects.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[2] / "docs" / "effects.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")

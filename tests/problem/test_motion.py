@@ -10,7 +10,7 @@ from scipy.signal import periodogram
 import mjrock as mr
 from paper import FIGURE_3
 
-RECORDS = Path(__file__).parent / "records"
+RECORDS = Path(__file__).parents[1] / "records"
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ WALL = mr.Block.from_size(thickness=0.6, height=4.2)
 E = mr.Restitution.from_geometry(WALL)
 UP = mr.GroundMotion.sine(0.5, 0.3)
 SHAKEN = mr.Case(WALL, 0.02, 0.2, motion=mr.GroundMotion.sine(1.0, 0.2), vertical=UP)
-FILES = sorted(Path(__file__).parents[1].glob("docs/figures/**/*.csv"))
+FILES = sorted(Path(__file__).parents[2].glob("docs/figures/**/*.csv"))
 
 
 def test_numpy_and_pandas_read_a_response(tmp_path):

@@ -13,7 +13,7 @@ import pytest
 
 import mjrock as mr
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""

@@ -15,7 +15,7 @@ import pytest
 
 import mjrock as mr
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 OFFLINE = ("No matching distribution", "Could not find a version", "Connection", "Temporary failure")
 CHECKS = """
 
