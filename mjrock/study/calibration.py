@@ -160,7 +160,7 @@ def calibrate(
     law = DampingLaw(
         name=name,
         source=f"mjrock.calibration over Table 1 of the paper up to {plan.k_n[1]:.0e} N/m3, {points} contact lines a "
-        f"face, {VERSION}; scripts/calibrate.py makes it",
+        f"face, {VERSION}; scripts/paper/calibrate.py makes it",
         base=base.form,
         side=side.form,
         R_range=R_RANGE,

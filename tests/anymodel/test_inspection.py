@@ -1,11 +1,11 @@
 """`inspect_contacts` against the rows that MuJoCo makes, and against measured rebounds."""
 
+import inspect_contacts as script
 import mujoco
 import numpy as np
 import pytest
 from pairs import FLAT_BOX, ON_A_PLANE, made_for
 
-import inspect_contacts as script
 import mjrock as mr
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>

@@ -14,7 +14,7 @@ from mjrock.engine.model import Engine
 from mjrock.engine.record import StepError
 from mjrock.method import METHOD
 from mjrock.scene.wall import inner_friction
-from paper import K_N
+from scripts.shared.paper import K_N
 
 
 def test_the_automatic_step_follows_the_stiffest_contact(wall, contacts):

@@ -14,7 +14,7 @@ from mjrock.engine.stepping import fitted_steps, fixed_steps
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
 from mjrock.scene.of_case import course_of
-from paper import FIGURE_3, K_N
+from scripts.shared.paper import FIGURE_3, K_N
 
 
 @pytest.fixture(scope="module")

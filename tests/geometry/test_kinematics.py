@@ -13,7 +13,7 @@ from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from mjrock.scene.equilibrium import settled
 from mjrock.scene.of_case import course_of, scene_of
-from paper import K_N
+from scripts.shared.paper import K_N
 
 
 def course_and_scene(case, contacts):

@@ -1,11 +1,10 @@
-"""Every promise of `scripts/hard_cases.py`, and the scenes that once broke one."""
+"""Every promise of `scripts/checks/hard_cases.py`, and the scenes that once broke one."""
 
 import pytest
 
-import hard_cases
 import mjrock as mr
-import trouble
-from trouble import Scene
+from scripts.checks import hard_cases, trouble
+from scripts.checks.trouble import Scene
 
 LONG = {"a thousand impacts", "an hour at rest"}
 """Cases that take some seconds."""

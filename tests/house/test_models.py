@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 import pytest
 
-import make_models
 import mjrock as mr
+from scripts.models import make_models
 
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 

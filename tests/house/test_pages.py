@@ -105,7 +105,7 @@ def test_every_link_of_a_page_leads_somewhere(page):
     for link in LINK.findall(text):
         if not link.startswith("http"):
             assert (page.parent / link).exists(), link
-    for script in re.findall(r"scripts/(\w+)\.py", text):
+    for script in re.findall(r"scripts/([\w/]+)\.py", text):
         assert (ROOT / "scripts" / f"{script}.py").exists(), script
     if page.name not in REFERENCE:
         assert len(text.splitlines()) <= LINES

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-import peers
+from scripts.peers import peers
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def test_a_peer_that_takes_too_long_is_stopped(two_sided, monkeypatch):
 def test_a_peer_that_fails_says_why(two_sided, monkeypatch):
     monkeypatch.setitem(peers.NEEDS, "nowhere", "mjrock")
     broken = peers.replace(setup_of("MuJoCo, default"), code="nowhere")
-    assert peers.theirs(two_sided, broken, 2e-3).note == "No module named 'peer.nowhere'"
+    assert peers.theirs(two_sided, broken, 2e-3).note == "No module named 'scripts.peers.codes.nowhere'"
 
 
 def test_a_peer_that_is_not_installed_is_skipped(two_sided, monkeypatch):

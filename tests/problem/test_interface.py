@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from paper import K_N
+from scripts.shared.paper import K_N
 
 
 @pytest.mark.parametrize("points", [2, 3, 8, 33])

@@ -8,7 +8,7 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.signal import periodogram
 
 import mjrock as mr
-from paper import FIGURE_3
+from scripts.shared.paper import FIGURE_3
 
 RECORDS = Path(__file__).parents[1] / "records"
 

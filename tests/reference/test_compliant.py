@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from paper import K_N
+from scripts.shared.paper import K_N
 
 
 def test_without_damping_energy_is_conserved(wall):

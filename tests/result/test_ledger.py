@@ -4,7 +4,7 @@ import pytest
 import mjrock as mr
 from mjrock.engine import run_warnings
 from mjrock.geometry.kinematics import gaps
-from paper import FIGURE_3, K_N
+from scripts.shared.paper import FIGURE_3, K_N
 
 
 def closure(run):

@@ -8,7 +8,7 @@ from mjrock.result.history import rocking_history
 from mjrock.result.response import ending
 from mjrock.result.rocking import peak_energies, restitution_of
 from mjrock.scene.wall import wall_scene
-from paper import K_N
+from scripts.shared.paper import K_N
 
 
 def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):

@@ -15,10 +15,10 @@ from campaign_tasks import Misbehave, Square
 from test_campaign import ENVIRONMENT, children, gone
 from tqdm import tqdm
 
-import cli
 import mjrock as mr
 from mjrock.study import progress
 from mjrock.study.campaign_worker import serve
+from scripts.shared import cli
 
 KINDS = ["", "exit", "interrupt", "generator", "columns", "list", "last"]
 ERRORS = [
@@ -160,7 +160,7 @@ def test_labels_that_clash(tmp_path, wall, e, labels, complaint):
 
 INTERRUPTED = """
 import sys
-import cli
+from scripts.shared import cli
 import mjrock as mr
 from campaign_tasks import Misbehave
 def main(argv):
@@ -179,7 +179,7 @@ def test_ctrl_c(tmp_path, workers):
     """It ends behind a task of a minute, in two seconds and without a traceback, and leaves no process."""
     (tmp_path / "run.py").write_text(INTERRUPTED)
     path = tmp_path / "c.sqlite"
-    scripts = os.pathsep.join([ENVIRONMENT["PYTHONPATH"], str(Path(cli.__file__).parent)])
+    scripts = os.pathsep.join([ENVIRONMENT["PYTHONPATH"], str(Path(cli.__file__).parents[2])])
     command = [sys.executable, str(tmp_path / "run.py"), str(path), str(workers)]
     run = subprocess.Popen(
         command, env=ENVIRONMENT | {"PYTHONPATH": scripts}, stderr=subprocess.PIPE, text=True, start_new_session=True

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from paper import FIGURE_3, K_N
+from scripts.shared.paper import FIGURE_3, K_N
 
 E = mr.Restitution.from_geometry(FIGURE_3)
 

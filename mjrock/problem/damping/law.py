@@ -258,10 +258,10 @@ LAWS = Path(__file__).with_name("laws")
 """Folder of the laws that come with the package."""
 
 CALIBRATED = DampingLaw.load(LAWS / "calibrated.toml")
-"""The law for two corner lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+"""The law for two corner lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
 CALIBRATED_BED = DampingLaw.load(LAWS / "calibrated_bed.toml")
-"""The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+"""The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
 NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 """The laws that come with the package, by name."""
