@@ -37,9 +37,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             runs = [mr.simulate(case, contacts, step, method=method) for case in (two_sided, one_sided)]
             rows.append([mu, masses, step * 1e3, *(f"{r:.4f}" for run in runs for r in run.restitution[:2])])
     header = ["mu [-]", "row inertia [m]", "step [ms]", "2s e_1", "2s e_2", "1s e_1", "1s e_2"]
-    text = cli.table(header, rows)
-    cli.write_text(out / "friction.txt", text + "\n")
-    print(text)
+    cli.report(out / "friction", cli.table(header, rows))
 
 
 if __name__ == "__main__":

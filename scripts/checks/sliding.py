@@ -135,8 +135,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     text = cube_table(accuracies) + "\n\n|e| of the first rebound over the friction of the side\n"
     text += cli.table(["sliding", "accuracy", *(f"{mu:g}" for mu in frictions)], rows)
     text += "\n\nthe time of a step\n" + costs(2 if args.quick else 7)
-    cli.write_text(out / "sliding.txt", text + "\n")
-    print(text)
+    cli.report(out / "sliding", text)
 
 
 if __name__ == "__main__":

@@ -291,8 +291,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     fallen = search_masonry(structures, seed=args.seed)
     lines.append(f"masonry: {structures} structures, {len(fallen)} broken")
     lines += [f"  {complaint}\n    {structure}" for structure, complaint in fallen]
-    cli.write_text(out / "trouble.txt", "\n".join(lines) + "\n")
-    print("\n".join(lines))
+    cli.report(out / "trouble", "\n".join(lines))
 
 
 if __name__ == "__main__":

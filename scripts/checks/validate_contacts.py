@@ -11,7 +11,6 @@ import itertools
 import math
 import os
 import sys
-import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -68,12 +67,7 @@ def by_theory(one: Combination) -> Row:
     usual = mr.Contacts.from_law(one.wall, e, one.k_base, one.k_side)
 
     def seconds(these: mr.Contacts) -> float:
-        times = []
-        for _ in range(5):
-            started = time.perf_counter()
-            mr.simulate(case_of(one), these)
-            times.append(time.perf_counter() - started)
-        return float(np.median(times))
+        return float(np.median([cli.seconds(lambda: mr.simulate(case_of(one), these)) for _ in range(5)]))
 
     return obtained(one, contacts) | {"k_n": contacts.base.k_n, "time": seconds(contacts) / seconds(usual)}
 
@@ -239,9 +233,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     report = "\n\n".join(f"{title}\n{table(rows)}" for rows, title, table in tables.values())
     names = list(dict.fromkeys(key for rows, _, _ in tables.values() for row in rows for key in row))
     values = [[name, *(row.get(key, "") for key in names)] for name, (rows, _, _) in tables.items() for row in rows]
-    cli.write_text(out / "validate_contacts.csv", cli.csv_text(["table", *names], values))
-    cli.write_text(out / "validate_contacts.txt", report + "\n")
-    print(report)
+    cli.report(out / "validate_contacts", report, ["table", *names], values)
 
 
 if __name__ == "__main__":

@@ -94,8 +94,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     resolved = RESOLVED[1:3] if args.quick else RESOLVED
     lines = scatter(resolved, 2 if args.quick else 24)
     text += "\n\nscatter of |e| at a fixed step\n" + cli.table(["walls", "omega h", *map(str, resolved)], lines)
-    cli.write_text(out / "convergence.txt", text + "\n")
-    print(text)
+    cli.report(out / "convergence", text)
 
 
 if __name__ == "__main__":

@@ -252,9 +252,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         f"\n\nvertical motion in rocking theory, without/with over {len(ratios)} runs: "
         f"median {statistics.median(ratios):.2f}, {min(ratios):.2f} to {max(ratios):.2f}"
     )
-    cli.write_text(out / "effect_costs.csv", cli.csv_text(header, rows))
-    cli.write_text(out / "effect_costs.txt", text + "\n")
-    print(text)
+    cli.report(out / "effect_costs", text, header, rows)
 
 
 if __name__ == "__main__":

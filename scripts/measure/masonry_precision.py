@@ -271,13 +271,11 @@ def main(argv: Sequence[str] | None = None) -> None:
             points += found
     header = ["blocks", "method", "setting [- or s]", "steps [-]", "run [s]", "stepping [s]", "peak [-]", "motion [-]"]
     rows = [(p.blocks, p.method, p.setting, p.steps, p.seconds, p.stepping, p.peak, p.path) for p in points]
-    cli.write_text(out / "masonry_precision.csv", cli.csv_text(header, rows))
     drawn = [(f"{p.blocks} blocks", p.method, p.seconds, p.steps, max(p.peak, scatters[p.blocks][0])) for p in points]
     figure = plotting.work_precision(drawn, "largest error of a peak rotation [-]")
     plotting.save(figure, out / "masonry_precision.png")
     text = report(points, scatters, study) + "\n\n" + arch_at_rest(study.arch, study.repeats)
-    cli.write_text(out / "masonry_precision.txt", text + "\n")
-    print(text)
+    cli.report(out / "masonry_precision", text, header, rows)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,6 @@ import subprocess
 import sys
 import tarfile
 import tempfile
-import time
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -42,11 +41,12 @@ def campaign(count: int, solver: str) -> float:
     """Seconds a wall of a campaign on all cores, the start of its workers excluded."""
     tasks = [shaken(0.5 + 1.5 * i / count, i % 2, solver) for i in range(count)]
     with tempfile.TemporaryDirectory() as folder:
-        started = time.perf_counter()
-        mr.campaign(tasks[: count // 4], Path(folder) / "few.sqlite", workers=os.cpu_count())
-        few = time.perf_counter()
-        mr.campaign(tasks, Path(folder) / "all.sqlite", workers=os.cpu_count())
-        return (time.perf_counter() - few - (few - started)) / (count - count // 4)
+
+        def spent(some: list[mr.Analysis], name: str) -> float:
+            return cli.seconds(lambda: mr.campaign(some, Path(folder) / name, workers=os.cpu_count()))
+
+        few, every = spent(tasks[: count // 4], "few.sqlite"), spent(tasks, "all.sqlite")
+        return (every - few) / (count - count // 4)
 
 
 def another_wall() -> mr.Response:
@@ -83,12 +83,7 @@ def serve() -> None:
     warnings.simplefilter("ignore", UserWarning)
     for line in sys.stdin:
         name, size = line.rstrip("\n").split("\t")
-        if name in CAMPAIGNS:
-            seconds = campaign(int(size), CAMPAIGNS[name])
-        else:
-            started = time.perf_counter()
-            CALLS[name]()
-            seconds = time.perf_counter() - started
+        seconds = campaign(int(size), CAMPAIGNS[name]) if name in CAMPAIGNS else cli.seconds(CALLS[name])
         print(f"{seconds!r}", flush=True)
 
 
@@ -193,8 +188,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     text += f"\nfirst run of a process, loops stored on disk: {statistics.median(stored):.2f} s"
     if not args.quick:
         text += f"\nfirst run of an installation, which compiles the loops: {compiling:.1f} s"
-    cli.write_text(out / "speed.txt", text + "\n")
-    print(text)
+    cli.report(out / "speed", text)
 
 
 if __name__ == "__main__":

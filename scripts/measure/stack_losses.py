@@ -134,9 +134,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     header = ["joints", "sides", "impact", "k_n [N/m3]", *(f"{n} blocks" for n in BLOCKS)]
     text = cli.table(header, rows) + f"\nlargest change with accuracy 1e-5 for 1e-4: {max(changes):.1e}"
     plotting.save(drawn(found, stiffnesses), out / "stack_losses.png")
-    cli.write_text(out / "stack_losses.csv", cli.csv_text(header, rows))
-    cli.write_text(out / "stack_losses.txt", text + "\n")
-    print(text)
+    cli.report(out / "stack_losses", text, header, rows)
 
 
 if __name__ == "__main__":

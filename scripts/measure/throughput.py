@@ -70,9 +70,7 @@ def timed(tasks: Any, store: Path, **options: Any) -> float:
     """Seconds of a campaign that starts from nothing."""
     for old in store.parent.glob(store.name + "*"):
         old.unlink()
-    started = time.perf_counter()
-    mr.campaign(tasks, store, **options)
-    return time.perf_counter() - started
+    return cli.seconds(lambda: mr.campaign(tasks, store, **options))
 
 
 def workers(campaign: int) -> list[int]:
@@ -153,8 +151,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     text += "\n\n" + cli.table(["rocking theory", "rows at the kill", "rows at the end"], kills)
     for old in out.glob("throughput.sqlite*"):
         old.unlink()
-    cli.write_text(out / "throughput.txt", text + "\n")
-    print(text)
+    cli.report(out / "throughput", text)
 
 
 if __name__ == "__main__":

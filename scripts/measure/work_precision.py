@@ -224,16 +224,8 @@ def measure(
     case, contacts = references[0][0].case, references[0][1]
     seconds = [solve(case, contacts, False)[1]]
     seconds += [solve(case, contacts, False)[1] for _ in range(repeats - 1) if seconds[0] < 1]
-    return Point(
-        label,
-        method,
-        setting,
-        steps,
-        statistics.median(seconds),
-        max(e_errors),
-        max(rms),
-        max(residuals, default=math.nan),
-    )
+    errors = max(e_errors), max(rms), max(residuals, default=math.nan)
+    return Point(label, method, setting, steps, statistics.median(seconds), *errors)
 
 
 def methods(quick: bool) -> dict[str, dict[str, Solve]]:
@@ -358,9 +350,7 @@ def profile() -> str:
     contacts = mr.Contacts.from_law(FIGURE_3, e, k_base=K_N, k_side=K_N, law="PUBLISHED")
     case = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 60.0, side_stop=False)
     for _ in range(3):  # the last counts
-        started = time.perf_counter()
-        mr.simulate(case, contacts, 1e-3, output_step=1e-3)
-        whole = time.perf_counter() - started
+        whole = cli.seconds(lambda: mr.simulate(case, contacts, 1e-3, output_step=1e-3))
         bare = bare_engine(case, contacts, 1e-3, 60_000)
     lines.append(
         f"fixed 1 ms, 60 s: {60 / whole:.0f} times real time, {whole / bare:.2f} times mj_step(model, data, n) with "
@@ -371,11 +361,7 @@ def profile() -> str:
     whole, stepping = (statistics.median(run.stats[name] for run in runs) for name in ("wall_time", "stepping_time"))
     steps, scene = runs[0].stats["steps"], mr.wall_scene(one, contacts)
     engine = statistics.median(bare_engine(one, contacts, runs[0].stats["timestep"], steps) for _ in range(20))
-    compiling = []
-    for _ in range(20):
-        started = time.perf_counter()
-        Engine.compile(scene)
-        compiling.append(time.perf_counter() - started)
+    compiling = [cli.seconds(lambda: Engine.compile(scene)) for _ in range(20)]
     lines.append(
         f"fitted, 6 s: {whole * 1e3:.1f} ms for {steps} steps, of which the engine's steps {engine / whole:.0%}, the "
         f"rest of the loop {(stepping - engine) / whole:.0%}, scene, release, evaluation and output "
@@ -390,9 +376,7 @@ def bare_engine(case: mr.Case, contacts: mr.Contacts, timestep: float, steps: in
     model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, timestep))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    started = time.perf_counter()
-    mujoco.mj_step(model, data, steps)
-    return time.perf_counter() - started
+    return cli.seconds(lambda: mujoco.mj_step(model, data, steps))
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -419,19 +403,10 @@ def main(argv: Sequence[str] | None = None) -> None:
 
     header = ["case", "method", "setting", "steps", "time [ms]", "error of e", "RMS theta/alpha", "ledger residual"]
     rows = [
-        [
-            p.case,
-            p.method,
-            p.setting,
-            p.steps,
-            f"{p.seconds * 1e3:.2f}",
-            f"{p.e_error:.1e}",
-            f"{p.rms:.1e}",
-            f"{p.residual:.1e}",
-        ]
+        [p.case, p.method, p.setting, p.steps, f"{p.seconds * 1e3:.2f}"]
+        + [f"{error:.1e}" for error in (p.e_error, p.rms, p.residual)]
         for p in points
     ]
-    cli.write_text(out / "work_precision.csv", cli.csv_text(header, rows))
     plotting.save(
         plotting.work_precision([(p.case, p.method, p.seconds, p.steps, p.e_error) for p in points if p.e_error < 1]),
         out / "work_precision.png",
@@ -462,8 +437,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     lines_out.append(walls_study(2 if args.quick else 30))
     if not args.quick:
         lines_out.append(profile())
-    cli.write_text(out / "work_precision.txt", "\n".join(lines_out) + "\n")
-    print("\n".join(lines_out))
+    cli.report(out / "work_precision", "\n".join(lines_out), header, rows)
 
 
 if __name__ == "__main__":

@@ -40,9 +40,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     model = mujoco.MjModel.from_xml_path(str(args.model))
     found = mr.inspect_contacts(model, candidates=not (args.pairs or args.quick), contacts=args.contacts)
     out = cli.folder(args.out)
-    text = report(found)
-    cli.write_text(out / "inspect_contacts.txt", text + "\n")
-    print(text)
+    cli.report(out / "inspect_contacts", report(found))
 
 
 def report(found: Sequence[mr.InspectedContact]) -> str:
@@ -63,20 +61,8 @@ def report(found: Sequence[mr.InspectedContact]) -> str:
         ]
         for contact in found
     ]
-    header = [
-        "geom",
-        "geom",
-        "by",
-        "k [N/m]",
-        "c [N s/m]",
-        "mass [kg]",
-        "row adds [kg]",
-        "d",
-        "points",
-        "xi",
-        "e",
-        "notes",
-    ]
+    header = ["geom", "geom", "by", "k [N/m]", "c [N s/m]", "mass [kg]", "row adds [kg]"]
+    header += ["d", "points", "xi", "e", "notes"]
     lines = [f"{number}: {note}" for number, note in enumerate(notes, 1)]
     return "\n".join([cli.table(header, rows), *([""] if lines else []), *lines])
 

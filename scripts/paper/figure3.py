@@ -41,26 +41,10 @@ def main(argv: Sequence[str] | None = None) -> None:
             step = response.stats.get("timestep")
             rms = [mr.compare(reference, response).rms for reference in (theory, law)]
             rebounds = np.append(response.restitution, np.full(4, np.nan))[:4]
-            rows.append(
-                [
-                    label,
-                    response.solver,
-                    f"{step * 1e3:.3g}" if step else "-",
-                    *(f"{r:.4f}" for r in rebounds),
-                    *(f"{r:.5f}" for r in rms),
-                ]
-            )
-    header = [
-        "case",
-        "solver",
-        "step [ms]",
-        "e_1",
-        "e_2",
-        "e_3",
-        "e_4",
-        "RMS/alpha to theory",
-        "RMS/alpha to contact law",
-    ]
+            row = [label, response.solver, f"{step * 1e3:.3g}" if step else "-"]
+            rows.append([*row, *(f"{r:.4f}" for r in rebounds), *(f"{r:.5f}" for r in rms)])
+    header = ["case", "solver", "step [ms]", *(f"e_{i}" for i in (1, 2, 3, 4))]
+    header += ["RMS/alpha to theory", "RMS/alpha to contact law"]
     cli.write_text(out / "figure3.csv", cli.csv_text(header, rows))
     print(cli.table(header, rows))
 

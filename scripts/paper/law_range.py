@@ -36,9 +36,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         rows.append(row)
     laws = (mr.PUBLISHED.name, mr.CALIBRATED.name)
     header = ["h/b", "k_n [N/m3]", "e_2s theory", *laws, "|e_1s| theory", *laws]
-    text = cli.table(header, rows)
-    cli.write_text(out / "law_range.txt", text + "\n")
-    print(text)
+    cli.report(out / "law_range", cli.table(header, rows))
 
 
 if __name__ == "__main__":

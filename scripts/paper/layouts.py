@@ -42,9 +42,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 rebounds.append(mr.solve_compliant(case, contacts).restitution[0])
             rows.append([points, mode, f"{omega:.1f}", *(f"{r:.3f}" for r in rebounds)])
     header = ["lines", "omega of", "omega [rad/s]", f"e_2s ({e.base:.3f})", f"|e_1s| ({abs(e.lumped):.3f})"]
-    text = cli.table(header, rows)
-    cli.write_text(out / "layouts.txt", text + "\n")
-    print(text)
+    cli.report(out / "layouts", cli.table(header, rows))
 
 
 if __name__ == "__main__":

@@ -64,8 +64,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         steps = "" if args.quick else step_study(compared, out / "validation.sqlite", args.workers)
     plotting.save(plotting.panels(drawings), out / "validation.png")
     report = "\n\n".join(part for part in (table, specimens, steps) if part)
-    cli.write_text(out / "validation.txt", report + "\n")
-    print(report)
+    cli.report(out / "validation", report)
 
 
 def validation(

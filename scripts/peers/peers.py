@@ -280,15 +280,13 @@ def main(argv: Sequence[str] | None = None) -> None:
         for p in found
     ]
     plain = [[str(cell).replace(",", " and") for cell in row] for row in rows]  # NumPy reads no quoted commas
-    cli.write_text(out / "peers.csv", cli.csv_text(header, plain))
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
     plotting.save(plotting.peers(drawn), out / "peers.png")
     lines = [summary(problem.label, found) for problem in problems]
     lines.append(
         "\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()])
     )
-    cli.write_text(out / "peers.txt", "\n\n".join(lines) + "\n")
-    print("\n\n".join(lines))
+    cli.report(out / "peers", "\n\n".join(lines), header, plain)
 
 
 def versions(absent: dict[str, str]) -> list[str]:

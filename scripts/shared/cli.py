@@ -1,10 +1,11 @@
-"""What the scripts share: arguments, output folder, files that are whole or absent, errors without a traceback."""
+"""What the scripts share: arguments, output folder, tables, files that are whole or absent, times, readable errors."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from mjrock.files import write_text as write_text
@@ -41,6 +42,21 @@ def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
     lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in cells]
     return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
+
+
+def report(stem: Path, text: str, header: Sequence[str] = (), rows: Iterable[Sequence[object]] = ()) -> None:
+    """Print a text and write it as `stem`.txt, and a table, where there is one, as `stem`.csv."""
+    if header:
+        write_text(stem.with_suffix(".csv"), csv_text(header, rows))
+    write_text(stem.with_suffix(".txt"), text + "\n")
+    print(text)
+
+
+def seconds(call: Callable[[], object]) -> float:
+    """Wall time of a call [s]."""
+    started = time.perf_counter()
+    call()
+    return time.perf_counter() - started
 
 
 def run(main: Callable[[Sequence[str] | None], None]) -> int:

@@ -64,15 +64,12 @@ def main(argv: Sequence[str] | None = None) -> None:
             table.append([title, f"{k_n:.0e}", *compared(ends, peaks, [row["motion"] for row in own[::2]])])
     plotting.save(figure, out / "agreement.png")
     columns = ("side_stop", "wall", "motion", "polarity", "level", "k_n", "solver", "outcome", "peak_over_alpha")
-    cli.write_text(out / "agreement.csv", cli.csv_text(columns, [[row[c] for c in columns] for row in found]))
     header = [
         "wall", "k_n [N/m3]", "cases", "theory rests/rocks/overturns", "MuJoCo", "overturning alike",
         "record by record", "rests, rocks alike too", "falls in theory alone",
         "in MuJoCo alone", "sign test p", "peak ratio 5/50/95 %", "Wilcoxon p",
     ]  # fmt: skip
-    text = cli.table(header, table)
-    cli.write_text(out / "agreement.txt", text + "\n")
-    print(text)
+    cli.report(out / "agreement", cli.table(header, table), columns, [[row[c] for c in columns] for row in found])
 
 
 def compared(ends: Any, peaks: Any, records: Sequence[str]) -> list[object]:

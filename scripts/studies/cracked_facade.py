@@ -211,9 +211,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     header += ["peak/alpha: theory", "one block", "cracked"]
     summed = ["façade", "cracked over", "median", "range", "unsafe", "sign test p"]
     text = cli.table(header, rows) + "\n\n" + cli.table(summed, summary(found))
-    cli.write_text(out / "cracked_facade.csv", cli.csv_text(header, rows))
-    cli.write_text(out / "cracked_facade.txt", text + "\n")
-    print(text)
+    cli.report(out / "cracked_facade", text, header, rows)
 
 
 if __name__ == "__main__":

@@ -146,9 +146,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     stood = np.where(falls, 0.0, slid).max(axis=(1, 2))
     rows.append(["most slid and stood [m]", "-", *(f"{most:.3f}" for most in stood)])
     text = "\n".join([cli.table(header, rows), "", *outside_the_fit()])
-    cli.write_text(out / "drums.csv", cli.csv_text(header, rows))
-    cli.write_text(out / "drums.txt", text + "\n")
-    print(text)
+    cli.report(out / "drums", text, header, rows)
 
 
 if __name__ == "__main__":

@@ -98,9 +98,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             if k_n == STIFFNESSES[0] and number == 0:
                 plotting.save(drawn((engine, theory), motion), out / "facade.png")
     header = ["motion", "k_n [N/m3]", "peak, theory", "MuJoCo", "apart", "plastic, theory [mm]", "MuJoCo", "RMS"]
-    text = cli.table(header, rows)
-    cli.write_text(out / "facade.txt", text + "\n")
-    print(text)
+    cli.report(out / "facade", cli.table(header, rows))
 
 
 if __name__ == "__main__":

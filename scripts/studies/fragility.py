@@ -65,14 +65,12 @@ def main(argv: Sequence[str] | None = None) -> None:
             )
     header = ["solver", "independent", "median PGA [g]", "90 % interval [g]", "dispersion [-]", "90 % interval [-]"]
     text = cli.table(header, rows)
-    cli.write_text(out / "fragility.txt", text + "\n")
     cells = [
         (f"{level:.4f}", *(f"{share:.4f}" for share in own))
         for level, own in zip(levels, fell.mean(axis=1).T, strict=True)
     ]
     header = ["PGA [g]", *(f"share overturned, {plotting.STYLES[s]['label']} [-]" for s in SOLVERS)]
-    cli.write_text(out / "fragility.csv", cli.csv_text(header, cells))
-    print(text)
+    cli.report(out / "fragility", text, header, cells)
 
 
 if __name__ == "__main__":

@@ -43,17 +43,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     header = ["record", *(f"first overturned at PGA [g], {plotting.STYLES[s]['label']}" for s in suite.SOLVERS)]
     text = cli.table(header, rows)
-    cli.write_text(out / "ida.txt", text + "\n")
     cells = [
         (row["solver"], row["record"], row["scale"], row["outcome"], row["peak_over_alpha"])
         for one in found.values()
         for own in one.rows
         for row in own
     ]
-    cli.write_text(
-        out / "ida.csv", cli.csv_text(["solver", "record", "PGA [g]", "outcome", "peak theta/alpha [-]"], cells)
-    )
-    print(text)
+    cli.report(out / "ida", text, ["solver", "record", "PGA [g]", "outcome", "peak theta/alpha [-]"], cells)
 
 
 def records(motions: Sequence[mr.GroundMotion], solver: str) -> dict[str, Callable[[float], mr.Analysis]]:

@@ -71,10 +71,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.mode_legend(figure)
     plotting.save(figure, out / "overturning_spectrum.png")
     header = ["solver", "sides", "omega_p/p [-]", "a_p/(g tan alpha) [-]", "mode"]
-    cli.write_text(out / "overturning_spectrum.csv", cli.csv_text(header, rows))
     text = cli.table(["solver", "wall", "cases", *plotting.MODES, "safe islands"], table)
-    cli.write_text(out / "overturning_spectrum.txt", text + "\n")
-    print(text)
+    cli.report(out / "overturning_spectrum", text, header, rows)
 
 
 if __name__ == "__main__":

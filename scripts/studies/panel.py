@@ -154,10 +154,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         rows.append([f"{friction:g}", f"{found:.3f}", *bounds, f"{found / bound:.3f}", f"{1e3 * spent / steps:.2g}"])
     plotting.save(drawn(measured, answers, 2 if args.quick else 15), out / "panel.png")
     header = ["friction", "MuJoCo", "limit analysis", "slides", "b/h", "stair", "MuJoCo/limit", "ms a step"]
-    text = cli.table(header, rows)
-    cli.write_text(out / "panel.csv", cli.csv_text(header[:-1], [row[:-1] for row in rows]))
-    cli.write_text(out / "panel.txt", text + "\n")
-    print(text)
+    cli.report(out / "panel", cli.table(header, rows), header[:-1], [row[:-1] for row in rows])
 
 
 if __name__ == "__main__":

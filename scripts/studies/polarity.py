@@ -51,11 +51,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         )
     plotting.save(figure, out / "polarity.png")
     columns = ("solver", "motion", "pga", "polarity", "outcome", "peak_over_alpha")
-    cli.write_text(out / "polarity.csv", cli.csv_text(columns, [[row[c] for c in columns] for row in found]))
     header = ["solver", "pairs", "ends differ", "one alone overturns", "peaks apart, median", "peaks apart, 90 %"]
-    text = cli.table(header, rows)
-    cli.write_text(out / "polarity.txt", text + "\n")
-    print(text)
+    cli.report(out / "polarity", cli.table(header, rows), columns, [[row[c] for c in columns] for row in found])
 
 
 if __name__ == "__main__":

@@ -84,11 +84,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(figure, out / "pushover.png")
     header = ["wall", "lambda_0, closed", "rigid", "largest error", "end [rad], closed", "rigid", "corners", "bed"]
     text = cli.table([*header, "peak, rigid", "corners", "bed"], rows)
-    cli.write_text(out / "pushover.txt", text + "\n")
-    cli.write_text(
-        out / "pushover.csv", cli.csv_text(["wall", "base", "theta [rad]", "lambda [-]", "moment [N m]"], cells)
-    )
-    print(text)
+    cli.report(out / "pushover", text, ["wall", "base", "theta [rad]", "lambda [-]", "moment [N m]"], cells)
 
 
 def contacts(block: mr.Block, k_n: float, lines: int) -> mr.Contacts:

@@ -114,9 +114,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         "pulse", "", "closed form", "theory, h/b 50",
         "MuJoCo, h/b 50, 3e9 N/m3", "3e11", "3e13", "MuJoCo to theory, h/b 7, 3e9", "h/b 4, 3e9",
     ]  # fmt: skip
-    text = cli.table(header, rows)
-    cli.write_text(out / "thresholds.txt", text + "\n")
-    print(text)
+    cli.report(out / "thresholds", cli.table(header, rows))
 
 
 if __name__ == "__main__":
