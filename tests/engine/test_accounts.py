@@ -1,19 +1,16 @@
 """The accounts of dashpots, friction and the ground, against MuJoCo's own forces and against closed forms."""
 
-import dataclasses
 from types import SimpleNamespace
 
 import mujoco
 import numpy as np
 import pytest
-from scenes import course, two_blocks
+from scenes import course, fields, fixed_steps, two_blocks
 
 import mjrock as mr
 from mjrock.engine import run as engine_run
 from mjrock.engine.energy_work import ledger
-from mjrock.engine.mjcf import pair_rows
-from mjrock.engine.model import engine_of, released_mjcf
-from mjrock.engine.stepping import fixed_steps
+from mjrock.engine.model import released_mjcf
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
 from mjrock.scene.wall import wall_scene
@@ -52,14 +49,10 @@ def test_the_accounts_are_the_work_of_the_engines_forces(friction):
     """
     h, blocks = 2e-4, two_blocks(k_n=5e6, friction=friction, xi=0.05)
     names = tuple(f"line {i}" for i in range(4))
-    parts = {one.name: getattr(blocks, one.name) for one in dataclasses.fields(blocks)}
-    scene = mr.Scene(**parts | {"group": names})
+    scene = mr.Scene(**fields(blocks) | {"group": names})
     thrown = np.array([[0.3, -0.1, 0.2], [1.0, -0.2, -0.4]])
     thrown = course(scene, thrown, 0.2)
-    with engine_of(scene) as engine:
-        engine.follow(h, pair_rows(scene, h, 0.25))
-        engine.release(thrown)
-        steps = fixed_steps(engine, scene, thrown, h, 0.25)
+    steps = fixed_steps(scene, thrown, h)
     books = ledger(scene, thrown, steps)
     model = mujoco.MjModel.from_xml_string(released_mjcf(scene, thrown, h))
     data = mujoco.MjData(model)

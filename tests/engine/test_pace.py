@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import course, two_blocks
+from scenes import course, fields, two_blocks
 
 import mjrock as mr
 from mjrock.engine.pace import Pace, judged, resolves, short_step, while_loaded, while_taut
@@ -141,7 +141,7 @@ def with_stops(scene):
         "friction": [0.0] * 3,
         "group": ("stop", "stop", "pin"),
     }
-    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)} | {"holds": False}
+    parts = fields(scene) | {"holds": False}
     return mr.Scene(**parts | {name: (*parts[name], *values) for name, values in extra.items()})
 
 
@@ -164,7 +164,7 @@ def test_joints_go_from_the_ground_upwards():
     """However the bodies are numbered; a body that stands on two others has none."""
     scene = two_blocks()
     assert Joints.of_scene(scene).body.tolist() == [0, 1]
-    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    parts = fields(scene)
     turned = {
         "rest": scene.rest[::-1],
         "face_body": [1, 1, -1, -1],

@@ -3,14 +3,13 @@ import warnings
 
 import numpy as np
 import pytest
-from scenes import course
+from scenes import course, fixed_steps
 
 import mjrock as mr
 from mjrock.engine import run as engine_run
-from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import short_step
-from mjrock.engine.stepping import fitted_steps, fixed_steps
+from mjrock.engine.stepping import fitted_steps
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
 from mjrock.scene.of_case import course_of
@@ -90,10 +89,7 @@ def test_a_dashpot_at_a_fixed_step_is_that_of_its_row(wall, share):
     assert contacts.base.damping[0] == pytest.approx(c)
     scene = mr.wall_scene(mr.Case(wall, 0.0, 0.03, side_stop=False), contacts)
     falls = course(scene, [[0.0, -v, 0.0]], 0.03)
-    with engine_of(scene) as engine:
-        engine.follow(h, pair_rows(scene, h, 0.25))
-        engine.release(falls)
-        steps = fixed_steps(engine, scene, falls, h, 0.25)
+    steps = fixed_steps(scene, falls, h)
     inertia = 0.25 * h**2 * k + (0.5 if share < 1 else 1.0) * h * c
     record = steps.record
     z, velocity = rest, record.before[0, 1]

@@ -1,10 +1,8 @@
 """Single steps that fit the motion: a block slides on ice towards its side stop."""
 
-import dataclasses
-
 import numpy as np
 import pytest
-from scenes import course
+from scenes import course, fields
 
 import mjrock as mr
 from mjrock.engine.loop import fitted_loop
@@ -125,7 +123,7 @@ def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
     """A block on ice is pulled against a tie, stretches it for good, springs back, and is pulled against it again."""
     contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05, friction=0.0)
     standing = wall_scene(mr.Case(BLOCK, 0.0, 1.0, side_stop=False), contacts)
-    parts = {one.name: getattr(standing, one.name) for one in dataclasses.fields(standing)}
+    parts = fields(standing)
     tie = {
         "tie_names": ("tie",),
         "tie_body": [0],

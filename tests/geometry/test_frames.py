@@ -1,12 +1,11 @@
 """Kinematics in space: those of the plane where bodies stay in it, derivatives where they tumble, and MuJoCo's own."""
 
-import dataclasses
 import math
 
 import mujoco
 import numpy as np
 import pytest
-from scenes import two_blocks
+from scenes import fields, two_blocks
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
@@ -71,7 +70,7 @@ def in_space(scene):
 def held_blocks():
     """Two blocks with a tie between them, one to the ground, and a force, none of them along an axis."""
     scene = two_blocks()
-    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    parts = fields(scene)
     held = {
         "tie_names": ("between", "down"), "tie_body": [1, 1], "tie_point": [(0.3, 1.0), (-0.2, 0.7)],
         "anchor_body": [0, -1], "anchor": [(-0.2, -0.6), (-2.0, 0.1)],

@@ -1,12 +1,11 @@
 """The one place of the kinematics, against corners written out, finite differences, and MuJoCo."""
 
-import dataclasses
 import math
 
 import mujoco
 import numpy as np
 import pytest
-from scenes import two_blocks
+from scenes import fields, two_blocks
 
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
@@ -83,7 +82,7 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
 def tied_blocks():
     """The two blocks with one tie between them and one to the ground, neither along an axis."""
     scene = two_blocks()
-    parts = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+    parts = fields(scene)
     ties = {
         "tie_names": ("between", "down"),
         "tie_body": [1, 1],

@@ -12,6 +12,7 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
+from arguments import BALL, OF_NUMBERS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -24,10 +25,6 @@ SHORT = mr.Case(WALL, 0.05, 0.02)
 MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
 RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
-BALL = mujoco.MjModel.from_xml_string(
-    """<mujoco><option timestep="1e-5"/><worldbody><geom name="floor" type="plane" size="1 1 1"/>
-    <body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1"/></body></worldbody></mujoco>"""
-)
 PLAN = mr.Plan(base_count=2, side_count=2)
 COLUMN = mr.Masonry.stack([WALL], 5e8)
 
@@ -38,41 +35,20 @@ def pushed(scale):
     return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E, options={"rtol": 1e-4})
 
 
-CALLS = {
+CALLS = OF_NUMBERS | {
     "Block": (mr.Block,
         {
             "b": 0.3, "h": 2.1, "length": 1.0, "density": 2000.0, "inset": 0.0, "openings": (), "profile": None,
             "masses": (),
         },
     ),
-    "Block.from_size": (mr.Block.from_size, {"thickness": 0.6, "height": 4.2, "length": 1.0, "density": 2e3}),
-    "Block.from_slenderness": (mr.Block.from_slenderness, {"slenderness": 7.0, "R": 2.1}),
-    "Restitution": (mr.Restitution, {"base": 0.97, "side": -0.5}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
-    "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.4, "wall": WALL}),
-    "Opening": (mr.Opening, {"width": 0.5, "height": 1.0, "sill": 0.5}),
-    "Damper": (mr.Damper, {"height": 3.0, "c": 1e4, "length": 5.0, "block": 0}),
-    "Tie": (
-        mr.Tie,
-        {
-            "height": 3.0, "stiffness": 1e6, "slack": 0.01, "strength": 1e4, "length": 5.0, "anchor_height": 3.0,
-            "block": 0,
-        },
-    ),
-    "Thrust": (mr.Thrust, {"height": 3.0, "force": 1e3, "block": 0}),
-    "Load": (mr.Load, {"force": 1e3, "height": 3.0, "offset": 0.1, "block": 0}),
-    "AddedMass": (mr.AddedMass, {"mass": 100.0, "height": 3.0, "offset": 0.1, "block": 0}),
-    "SideStop": (mr.SideStop, {"top": 3.0}),
     "Case": (
         mr.Case,
         {
             "block": WALL, "theta0": 0.05, "duration": 1.0, "side_stop": True, "omega0": 0.0, "motion": None,
             "vertical": None, "effects": (mr.Tie(3.0, 1e6),),
         },
-    ),
-    "Interface": (
-        mr.Interface,
-        {"k_n": 5e8, "xi": 0.05, "face": 0.6, "length": 1.0, "frequency": 30.0, "points": 2, "friction": 0.6},
     ),
     "Contacts": (mr.Contacts, {"base": CONTACTS.base, "side": CONTACTS.side, "law": "mine"}),
     "Contacts.from_damping": (
@@ -87,16 +63,11 @@ CALLS = {
     "law.reach": (mr.CALIBRATED.reach, {"wall": WALL, "k_n": 5e8, "amplitude": 0.5}),
     "law.covers": (mr.CALIBRATED.covers, {"wall": WALL, "e": E, "k_n": 5e8, "k_side": 5e8, "amplitude": 0.5}),
     "reference_frequency": (mr.reference_frequency, {"wall": WALL, "k_n": 5e8, "points": 2}),
-    "joint_stiffness": (mr.joint_stiffness, {"E": 1e9, "thickness": 0.01}),
     "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL}),
     "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
     "layered_stiffness": (
         lambda stiffnesses: mr.layered_stiffness(*stiffnesses) if isinstance(stiffnesses, tuple) else
         mr.layered_stiffness(stiffnesses), {"stiffnesses": (1e9, 2e9)},
-    ),
-    "contact_parameters": (
-        mr.contact_parameters,
-        {"k": 1.5e8, "c": 5e5, "timestep": 1e-3, "inverse_weight": 1e-4, "newmark_beta": 0.25},
     ),
     "contact_stiffness": (
         mr.contact_stiffness,

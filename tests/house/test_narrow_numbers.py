@@ -9,9 +9,9 @@ import warnings
 from decimal import Decimal
 from fractions import Fraction
 
-import mujoco
 import numpy as np
 import pytest
+from arguments import BALL, OF_NUMBERS
 
 import mjrock as mr
 from mjrock.plotting import bodies
@@ -24,10 +24,6 @@ CASE = mr.Case(WALL, 0.125, 1.0)
 MOTION = mr.GroundMotion([0.0, 1.0, 0.5], 0.25)
 COLUMN = mr.Masonry.stack([WALL], SOFT)
 SHORT, SHAKEN = mr.Case(WALL, 0.125, 0.0625), mr.MasonryCase(COLUMN, 0.0625)
-BALL = mujoco.MjModel.from_xml_string(
-    """<mujoco><option timestep="1e-5"/><worldbody><geom name="floor" type="plane" size="1 1 1"/>
-    <body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1"/></body></worldbody></mujoco>"""
-)
 TIMES = np.linspace(0.0, 1.0, 3)
 
 
@@ -40,33 +36,12 @@ def push(scale):
     return mr.GroundMotion([-2.0 * scale, -2.0 * scale], 1.0)
 
 
-CALLS = {
+CALLS = OF_NUMBERS | {
     "Block": (mr.Block, {"b": 1, "h": 100, "length": 8, "density": 100, "inset": 0.5}),
-    "Block.from_size": (mr.Block.from_size, {"thickness": 2, "height": 100, "length": 8, "density": 100, "inset": 0.5}),
-    "Block.from_slenderness": (mr.Block.from_slenderness, {"slenderness": 100, "R": 50, "length": 8, "density": 100}),
     "profile": (lambda z, t: mr.Block(1.0, 50.0, profile=[(0.0, 2.0), (z, t)]).inertia, {"z": 100, "t": 1}),
-    "Restitution": (mr.Restitution, {"base": 0.5, "side": -0.5}),
-    "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": 0.5}),
     "Restitution, stop": (lambda top: mr.Restitution.from_geometry(WALL, top), {"top": 3}),
-    "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.25, "wall": 0.5}),
-    "Opening": (mr.Opening, {"width": 100, "height": 100, "sill": 100}),
-    "Damper": (mr.Damper, {"height": 100, "c": 100, "length": 100, "block": 100}),
-    "Tie": (
-        mr.Tie,
-        {
-            "height": 100, "stiffness": 100, "slack": 1, "strength": 100, "length": 100, "anchor_height": 1,
-            "block": 100,
-        },
-    ),
-    "Thrust": (mr.Thrust, {"height": 100, "force": 100, "block": 100}),
-    "Load": (mr.Load, {"force": 100, "height": 100, "offset": 1, "block": 100}),
-    "AddedMass": (mr.AddedMass, {"mass": 100, "height": 100, "offset": 1, "block": 100}),
-    "SideStop": (mr.SideStop, {"top": 100}),
     "Case": (lambda **given: mr.Case(WALL, **given), {"theta0": 0.125, "duration": 100, "omega0": 1}),
     "MasonryCase": (lambda duration: mr.MasonryCase(COLUMN, duration), {"duration": 100}),
-    "Interface": (
-        mr.Interface, {"k_n": 16384, "xi": 1, "face": 1, "length": 100, "frequency": 100, "points": 100, "friction": 1},
-    ),
     "Contacts.from_damping": (
         lambda **given: mr.Contacts.from_damping(mr.Block(5.0, 8.0), **given),
         {
@@ -98,13 +73,9 @@ CALLS = {
         {"R_range": 100, "slenderness_range": 100, "k_n_range": 100, "side_range": 1, "scale": 1},
     ),
     "reference_frequency": (lambda **given: mr.reference_frequency(WALL, **given), {"k_n": 16384, "points": 100}),
-    "joint_stiffness": (mr.joint_stiffness, {"E": 2**20, "thickness": 1}),
     "wall_stiffness": (lambda E: mr.wall_stiffness(E, WALL), {"E": 2**20}),
     "measured_stiffness": (lambda **given: mr.measured_stiffness(WALL, **given), {"frequency": 100, "points": 100}),
     "layered_stiffness": (lambda one, two: mr.layered_stiffness(one, two), {"one": 32768, "two": 32768}),
-    "contact_parameters": (
-        mr.contact_parameters, {"k": 100, "c": 100, "timestep": 0.125, "inverse_weight": 1, "newmark_beta": 1},
-    ),
     "contact_stiffness": (
         lambda k, c, d, inverse_weight: mr.contact_stiffness((k, c), (d, d), inverse_weight=inverse_weight),
         {"k": -100, "c": -100, "d": 0.5, "inverse_weight": 100},

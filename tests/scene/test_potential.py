@@ -1,10 +1,8 @@
 """The pose of rest: first and second derivatives of the energy that is minimised, and which equilibria are none."""
 
-import dataclasses
-
 import numpy as np
 import pytest
-from scenes import two_blocks
+from scenes import fields, two_blocks
 from scipy.linalg import null_space
 
 import mjrock as mr
@@ -22,8 +20,7 @@ def held():
         "tie_k": [3e6], "tie_length": [0.5], "tie_strength": [np.inf],
         "force_names": ("pull",), "force_body": [1], "force_point": [(0.1, 0.9)], "force": [(3e4, -1e4)],
     }  # fmt: skip
-    fields = {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
-    return mr.Scene(**fields | changed)
+    return mr.Scene(**fields(scene) | changed)
 
 
 def test_derivatives_of_the_energy(held):
@@ -80,9 +77,9 @@ def test_rates_are_derivatives_of_openings_and_places(held):
 
 def test_at_rest_only_friction_holds_what_springs_do_not(held):
     """The tie and the force would make the blocks slide: along all other ways the springs balance them."""
-    fields = {one.name: getattr(held, one.name) for one in dataclasses.fields(held)} | {"force": [(3e3, -1e4)]}
+    parts = fields(held) | {"force": [(3e3, -1e4)]}
     for length, taut in ((0.75, True), (3.0, False)):
-        scene = mr.Scene(**fields | {"tie_length": [length]})
+        scene = mr.Scene(**parts | {"tie_length": [length]})
         pose = scene.at_rest.ravel()
         assert (scene.potential.pressed(pose)[4] > 0) == taut
         closed = scene.potential.openings(pose) < 0

@@ -1,24 +1,19 @@
 """The scene: what it refuses, how its text is made, and that runs share what they can."""
 
-import dataclasses
 import math
 
 import mujoco
 import numpy as np
 import pytest
-from scenes import course, two_blocks
+from scenes import course, fields, fixed_steps, stock_takes, two_blocks
 
 import mjrock as mr
-from mjrock.engine.mjcf import pair_rows, scene_mjcf
+from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.points import inverse_weights
 from mjrock.engine.stepping import fitted_steps
 from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
 from mjrock.scene.wall import wall_scene
-
-
-def fields(scene):
-    return {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
 
 
 @pytest.mark.parametrize(
@@ -70,21 +65,11 @@ def test_the_text_of_many_bodies():
 
 
 def test_stock_mujoco_repeats_the_fixed_steps_of_many_bodies():
-    from mjrock.engine.stepping import fixed_steps
-
     scene = two_blocks()
     lifted = scene.at_rest + np.array([[0, 1e-4, 1e-3], [0, 3e-4, 2e-3]])
     thrown = course(scene, [[0.0, 0.0, 0.0], [0.1, 0.0, 0.2]], 0.05, pose=lifted)
-    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, thrown, 1e-4))
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    with engine_of(scene) as engine:
-        engine.follow(1e-4, pair_rows(scene, 1e-4, 0.25))
-        engine.release(thrown)
-        steps = fixed_steps(engine, scene, thrown, 1e-4, 0.25)
-    for pose in steps.pose:
-        np.testing.assert_allclose(data.qpos, pose, rtol=0, atol=1e-13)
-        mujoco.mj_step(model, data)
+    steps = fixed_steps(scene, thrown, 1e-4)
+    stock_takes(steps.pose, released_mjcf(scene, thrown, 1e-4), 1e-13)
 
 
 def test_a_body_that_is_no_box_is_drawn_as_a_prism():

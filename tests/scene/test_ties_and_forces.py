@@ -1,23 +1,18 @@
 """Ties and constant forces of a scene, against closed forms, and in stock MuJoCo."""
 
-import dataclasses
 import math
 
 import mujoco
 import numpy as np
 import pytest
-from scenes import course
+from scenes import course, fields, fixed_steps, stock_takes
 
 import mjrock as mr
 from mjrock.engine.energy_work import ledger
-from mjrock.engine.mjcf import pair_rows, scene_mjcf
+from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
-from mjrock.engine.stepping import fitted_steps, fixed_steps
+from mjrock.engine.stepping import fitted_steps
 from mjrock.scene.wall import wall_scene
-
-
-def fields(scene):
-    return {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
 
 
 def scene_with(scene, **changed):
@@ -46,13 +41,11 @@ def pull(force, point, name="pull"):
 
 
 def run(scene, course, accuracy=1e-3, timestep=None):
+    if timestep is not None:
+        return fixed_steps(scene, course, timestep)
     with engine_of(scene) as engine:
-        if timestep is None:
-            engine.place(course)
-            return fitted_steps(engine, scene, course, accuracy)
-        engine.follow(timestep, pair_rows(scene, timestep, 0.25))
-        engine.release(course)
-        return fixed_steps(engine, scene, course, timestep, 0.25)
+        engine.place(course)
+        return fitted_steps(engine, scene, course, accuracy)
 
 
 def away(scene):
@@ -114,13 +107,8 @@ def test_a_yielding_tie_takes_its_strength_times_its_plastic_elongation(sliding,
 def test_stock_mujoco_yields_as_the_ledger_says(sliding):
     """The text alone has the tie, its slack and its strength: MuJoCo's own plastic state is the ledger's."""
     scene = mr.Scene(**fields(sliding) | {"tie_strength": [2e4]})
-    model = mujoco.MjModel.from_xml_string(released_mjcf(scene, away(scene), 1e-4))
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
     steps = run(scene, away(scene), timestep=1e-4)
-    for pose in steps.pose:
-        np.testing.assert_allclose(data.qpos, pose, rtol=0, atol=1e-12)
-        mujoco.mj_step(model, data)
+    data = stock_takes(steps.pose, released_mjcf(scene, away(scene), 1e-4), 1e-12)
     elongation = float(np.ravel(data.plastic)[1]) - scene.tie_length[0]
     assert ledger(scene, away(scene), steps).ties["tie"][-1] == pytest.approx(2e4 * elongation, rel=1e-6)
     assert elongation > 0.02
@@ -211,9 +199,4 @@ def test_a_tie_that_the_release_has_stretched_too_far_has_yielded_by_then(wall, 
     free = mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 0.02), contacts, step)
     slowed = (run.omega[5] - free.omega[5]) / run.t[5] * wall.toe_inertia
     assert slowed == pytest.approx(-held.strength * lever, rel=0.05)
-    engine = mujoco.MjModel.from_xml_string(mr.wall_mjcf(case, contacts, step))
-    data = mujoco.MjData(engine)
-    mujoco.mj_resetDataKeyframe(engine, data, engine.key("release").id)
-    for pose in run.pose[:, 0]:
-        np.testing.assert_allclose(data.qpos, pose, atol=1e-9 * wall.alpha)
-        mujoco.mj_step(engine, data)
+    stock_takes(run.pose, mr.wall_mjcf(case, contacts, step), 1e-9 * wall.alpha)
