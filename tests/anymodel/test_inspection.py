@@ -1,12 +1,12 @@
 """`inspect_contacts` against the rows that MuJoCo makes, and against measured rebounds."""
 
-import inspect_contacts as script
 import mujoco
 import numpy as np
 import pytest
 from pairs import FLAT_BOX, ON_A_PLANE, made_for
 
 import mjrock as mr
+from scripts.models import inspect_contacts as script
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>
 <worldbody><geom name="floor" type="plane" size="5 5 .1" {floor}/>
