@@ -49,7 +49,9 @@ def spelt(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """A value and its type on one line, short enough for a message."""
+    """A value and its type on one line, short enough for a message; None says enough."""
+    if value is None:
+        return "None"
     text = " ".join(spelt(value).split())
     return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
 
@@ -104,7 +106,7 @@ def require_whole(name: str, value: object, low: int, high: int) -> int:
 def require_kind(name: str, value: object, *kinds: type) -> None:
     """Raise a TypeError that names the value and what is needed, unless it is of one of these types."""
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
-        needed = " or ".join(kind.__name__ for kind in kinds)
+        needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
 
 
@@ -173,7 +175,7 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
         given = np.asarray(values)
     except ValueError:
         raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
-    if given.dtype.kind not in kinds:
+    if given.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
         held = "values of these kinds" if "b" in kinds else "real numbers"
         raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")
     if _is_masked(values):
@@ -183,7 +185,8 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
 
 
 def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
-    """`values` as an array of floats, see `require_plain`. True and False are no real numbers."""
+    """`values` as an array of floats, see `require_plain`. True and False are no real numbers, in a list of numbers
+    neither."""
     return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
 
 
@@ -203,6 +206,13 @@ def require_row(name: str, values: ArrayLike, one: str) -> Array:
     if made.ndim != 1 or not made.size:
         raise ValueError(f"{name} has the shape {made.shape}; a row of at least one {one} is needed")
     return _finite(name, made)
+
+
+def _holds_truth(values: object) -> bool:
+    """Whether a list, or a list in it, has True or False among its values: NumPy makes numbers of them."""
+    if isinstance(values, list | tuple):
+        return any(map(_holds_truth, values))
+    return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
 def _is_masked(values: ArrayLike) -> bool:

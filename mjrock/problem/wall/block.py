@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_within, shown
+from ...quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_row, require_within, shown
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
 from .section import Moments, Opening, Profile, moments, require_openings, require_profile
@@ -228,11 +229,12 @@ class Block:
         """The rotation in [0, alpha] whose `potential_energy` is `energy` [J]; the inverse of that function.
 
         Raises:
+            TypeError: unless the energy is a real number.
             ValueError: if the wall has more energy than it takes to overturn it.
         """
-        return self.restoring.outer.rotation_at(energy)
+        return self.restoring.outer.rotation_at(require_real("energy", energy))
 
-    def pose(self, theta: Array) -> Array:
+    def pose(self, theta: ArrayLike) -> Array:
         """Displacement (x, z) of the centroid [m] and rotation [rad] of the rigid wall turned about its toe.
 
         Args:
@@ -240,8 +242,13 @@ class Block:
 
         Returns:
             x away from the side stop, z upwards, and theta, shape (n, 3).
+
+        Raises:
+            TypeError, ValueError: unless the rotations are a row of finite numbers.
         """
-        return pose_of(theta, self.centroid_offset, self.centroid_height, self.half_base)
+        return pose_of(
+            require_row("theta", theta, "rotation [rad]"), self.centroid_offset, self.centroid_height, self.half_base
+        )
 
     def turning(self, theta: Real, direction: Real) -> Array:
         """Rate of `pose` per unit of angular velocity, the wall turning about the toe in `direction`, +1 or -1;
