@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import null_space
 
+from ...geometry.frames import PLANE, push_body
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
@@ -36,6 +37,11 @@ class Lines(NamedTuple):
     at: Array
     normal: Array
     k: Array
+
+    @property
+    def along(self) -> Array:
+        """Unit vectors along the faces, a quarter turn from the normals, shape (m, 2)."""
+        return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
 
 
 def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int) -> Lines:
@@ -68,6 +74,8 @@ def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, poi
 def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
     """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
 
+    They are the generalised forces of unit forces that press the two blocks of a line apart.
+
     Args:
         blocks: the blocks.
         lines: the lines.
@@ -77,14 +85,14 @@ def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
         Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies).
     """
     free = [i for i, block in enumerate(blocks) if not block.fixed]
-    column = {block: 3 * number for number, block in enumerate(free)}
-    made = np.zeros((len(lines.k), 3 * len(free)))
+    number, frames = {block: body for body, block in enumerate(free)}, np.zeros((len(free), 4))
+    rates = np.zeros((len(lines.k), PLANE.nv * len(free)))
     for sign, carrier in ((1.0, lines.body), (-1.0, lines.face)):
         for i, block in enumerate(carrier.tolist()):
-            if block in column:
-                (nx, nz), (x, z) = directions[i], lines.at[i] - blocks[block].centroid
-                made[i, column[block] : column[block] + 3] += sign * np.array([nx, nz, nx * z - nz * x])
-    return made
+            if block in number:
+                arm = tuple((lines.at[i] - blocks[block].centroid).tolist())
+                push_body(frames, number[block], arm, tuple((sign * directions[i]).tolist()), rates[i])
+    return rates
 
 
 def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -> float:
@@ -101,7 +109,7 @@ def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -
     free = [block for block in blocks if not block.fixed]
     masses = np.array([(block.mass, block.mass, block.inertia) for block in free]).ravel()
     open_up = rates(blocks, lines, lines.normal) / np.sqrt(masses)
-    sideways = rates(blocks, lines, np.column_stack([lines.normal[:, 1], -lines.normal[:, 0]])) / np.sqrt(masses)
+    sideways = rates(blocks, lines, lines.along) / np.sqrt(masses)
     slips = [sideways[lines.joint == joint].mean(axis=0) for joint in np.flatnonzero(friction > 0)]
     left = null_space(np.reshape(slips, (-1, len(masses))), rcond=1e-9)  # the motions without slip
     squares = np.linalg.eigvalsh((left.T @ (open_up.T * lines.k)) @ (open_up @ left)) if left.shape[1] else np.zeros(0)

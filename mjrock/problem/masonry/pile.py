@@ -9,6 +9,7 @@ from typing import Self
 
 import numpy as np
 
+from ...geometry.vectors import spun
 from ...quantities import GRAVITY, Array
 from ..wall.block import Block
 from .masonry import Masonry
@@ -113,7 +114,7 @@ class Pile:
             x, z and rotation of each block that is not fixed [m/s, m/s, rad/s], shape (bodies, 3).
         """
         arms = self._arms - np.array([0.5 * side * self.masonry.joints[self.base].width, 0.0])
-        return np.column_stack([rate * arms[:, 1], -rate * arms[:, 0], np.full(len(arms), rate)])
+        return np.column_stack([*spun((rate,), tuple(arms.T)), np.full(len(arms), rate)])
 
     def rising(self, amplitude: float) -> tuple[Array, float]:
         """What makes a rigid stack at rest rise outwards to a rotation, a share of alpha.

@@ -73,7 +73,7 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names of blocks that can slide without pressing or opening a joint, and of the joints without friction they
     slide on. No stiffness holds them."""
     blocks, lines, friction = masonry.blocks, masonry.lines, masonry.joint_friction
-    opening, sliding = rates(blocks, lines, lines.normal), rates(blocks, lines, _across(lines.normal))
+    opening, sliding = rates(blocks, lines, lines.normal), rates(blocks, lines, lines.along)
     slips = np.array([sliding[lines.joint == j].mean(axis=0) for j in range(len(friction))])
     free = null_space(np.vstack([opening, slips[friction > 0]]), rcond=1e-9)
     moving = np.abs(free).max(axis=1, initial=0.0).reshape(-1, 3).max(axis=1)
@@ -84,11 +84,6 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     )
 
 
-def _across(normal: Array) -> Array:
-    """The normals turned by a right angle, along the faces, shape (m, 2)."""
-    return np.column_stack([normal[:, 1], -normal[:, 0]])
-
-
 def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None) -> Any:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
@@ -96,7 +91,7 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     cone, forces along its edges come second and are used as little as possible.
     """
     lines, free = masonry.lines, [masonry.blocks[i] for i in masonry.free]
-    pressing, rubbing = rates(masonry.blocks, lines, lines.normal), rates(masonry.blocks, lines, _across(lines.normal))
+    pressing, rubbing = rates(masonry.blocks, lines, lines.normal), rates(masonry.blocks, lines, lines.along)
     weight = (np.array([(0.0, -GRAVITY * block.mass, 0.0) for block in free]) + applied).ravel()
     total = float(np.abs(weight).sum())
     sizes = np.array([(1.0, 1.0, block.size) for block in free]).ravel()

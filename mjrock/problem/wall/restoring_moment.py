@@ -98,6 +98,8 @@ def of_force(x: float, z: float, outwards: float, downwards: float, half_base: f
 def pose_of(theta: Array, x: float, z: float, half_base: float) -> Array:
     """Displacement (x, z) [m] of a point of a rigid wall that turns about its toes, and its rotation; shape (n, 3).
 
+    It stands beside `mjrock.geometry` because it takes many rotations at once, and rocking theory uses it.
+
     Args:
         theta: rotations [rad], shape (n,).
         x, z: the point at rest, from the middle of the base [m].

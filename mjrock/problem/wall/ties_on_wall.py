@@ -49,6 +49,8 @@ class Pull(NamedTuple):
 def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
     """Elongation of a tie beyond its slack [m], and its lever [m]: the rate of its length with the rotation theta.
 
+    It stands beside `mjrock.geometry` because rocking theory, which uses it, shares no kinematics with the engine.
+
     Args:
         tie: the tie.
         theta: rotation [rad]; a number, or an array outside compiled functions.
