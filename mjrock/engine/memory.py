@@ -36,8 +36,9 @@ class Memory(NamedTuple):
         accelerate: `mj_forwardSkip`, which takes them, the stage that is already done, and 1.
         model, data: addresses.
         options: timestep [s] and impratio [-].
-        pose, velocity, acceleration, applied: of all joints, shape (3 n,).
-        guess: the acceleration that the engine starts its search from, shape (3 n,).
+        pose: of all joints, shape (n nq,).
+        velocity, acceleration, applied: of all joints, shape (n nv,).
+        guess: the acceleration that the engine starts its search from, shape (n nv,).
         rows: of all pairs.
         dimension: of all pairs, 1 without friction and 3 with it, shape (m,).
     """

@@ -120,7 +120,10 @@ class AskedMasonry:
 
 
 def left_behind(scene: Scene, course: Course, steps: Steps) -> dict[str, float]:
-    """When a run ended that a block left by going too far or turning over [s], by the name of each that did."""
+    """When a run ended that a block left by going too far or turning over [s], by the name of each that did.
+
+    Distances are those of a plane, shifts and one rotation.
+    """
     end = float(steps.t[-1])
     if end >= course.duration - 0.5 * float(steps.h[-1]):
         return {}

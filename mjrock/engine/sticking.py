@@ -119,7 +119,7 @@ def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
 
 @jitable
 def rolled(places: Places, i: int, moved: Moved) -> float:
-    """How far point i moves along its face in a step without slip, as the bodies turn [m]."""
+    """How far point i moves along its face in a step without slip, as the bodies turn in the plane [m]."""
     body, face = places.body[i], places.face_body[i]
     turned = moved.pose[3 * body + 2] - moved.from_pose[3 * body + 2]
     if face >= 0:
@@ -130,6 +130,8 @@ def rolled(places: Places, i: int, moved: Moved) -> float:
 @jitable
 def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> None:
     """Shift the body on joint j so that point i, the deepest of the joint and sticking, is where it stuck.
+
+    A body of the plane is shifted along the one direction of the face.
 
     Args:
         points: the contacts.

@@ -21,6 +21,12 @@ from ..quantities import Array
 from .vectors import Vector, moment, plus, vector
 
 
+@inlined
+def velocities(axes: tuple[int, ...]) -> int:
+    """Velocities of a body."""
+    return 3 if len(axes) == 2 else 6
+
+
 class Freedom(NamedTuple):
     """How bodies may move.
 
@@ -38,7 +44,7 @@ class Freedom(NamedTuple):
     @property
     def nv(self) -> int:
         """Velocities of a body."""
-        return 3 if len(self.axes) == 2 else 6
+        return velocities(self.axes)
 
     @property
     def translations(self) -> int:

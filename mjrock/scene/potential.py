@@ -168,14 +168,15 @@ class Potential:
         """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
-        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise.
+        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise; this part is
+        that of the plane, where a body has one rotation.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
         frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
         curvature = np.zeros((len(masses), len(masses)))
         _curvatures(places, ties, frames, none, self.springs * self.pressed(pose), curvature)
-        for i, body in enumerate(forces.body):  # a planar body has one rotation
+        for i, body in enumerate(forces.body):
             at = vector(forces.at, i, places.axes)
             arm = plus(at, swung(frames, body, at))
             curvature[3 * body + 2, 3 * body + 2] += dot(vector(forces.force, i, places.axes), arm)
