@@ -150,8 +150,9 @@ class Windows(NamedTuple):
     """The windows of the leapfrog, in which the force of a step acts, from half a step before a pose to half a step
     after it.
 
-    They are those of the plane, in which a pose moves by its velocities. The first starts at the release: before it no force has acted. Over a window a constant force does the work that is
-    its product with the mean velocity and the width, without error.
+    They are those of the plane, in which a pose moves by its velocities. The first starts at the release: before it no
+    force has acted. Over a window a constant force does the work that is its product with the mean velocity and the
+    width, without error.
 
     Args:
         t: start of each window [s], shape (steps,).

@@ -168,8 +168,8 @@ class Potential:
         """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
-        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise; this part is
-        that of the plane, where a body has one rotation.
+        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise. This part
+        is that of the plane, where a body has one rotation.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses

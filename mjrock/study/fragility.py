@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -127,21 +127,9 @@ def fit_fragility(
     """
     x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
-    log_x = np.log(x)
-    ((level, slope),) = _probit(log_x, fell, np.ones((1, len(x))))
-    if slope <= 0:
-        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
-    curvature = _curvature(log_x, fell, level, slope)
-    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
-    covariance = np.linalg.inv(towards.T @ curvature @ towards)
-    made = Fragility(
-        median=math.exp(-level / slope),
-        dispersion=float(1 / slope),
-        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
-        count=len(x),
-    )
+    fit = _likeliest(np.log(x), fell)
     if groups is None:
-        return made
+        return fit
     labels = _labels(groups)
     if labels.shape != x.shape:
         raise ValueError(
@@ -150,15 +138,30 @@ def fit_fragility(
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < FEWEST_GROUPS:
         raise ValueError(f"groups names {len(names)} groups; the valid range is {FEWEST_GROUPS} or more")
-    count = require_whole("resamples", resamples, 20, 100_000)
-    draws = np.random.default_rng(require_whole("seed", seed, 0, 2**53)).multinomial(
-        len(names), np.full(len(names), 1 / len(names)), size=count
-    )
+    count, shares = require_whole("resamples", resamples, 20, 100_000), np.full(len(names), 1 / len(names))
+    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
+    draws = rng.multinomial(len(names), shares, size=count)
     at_once = max(1, MOST_VALUES // len(x))
-    fits = [_resampled(log_x, fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
-    found = np.concatenate(fits)
-    found.setflags(write=False)
-    return Fragility(made.median, made.dispersion, made.covariance, made.count, len(names), found)
+    fits = [_resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
+    curves = np.concatenate(fits)
+    curves.setflags(write=False)
+    return replace(fit, groups=len(names), resamples=curves)
+
+
+def _likeliest(log_x: Array, fell: Flags) -> Fragility:
+    """The curve of greatest likelihood, the runs taken as independent."""
+    ((level, slope),) = _probit(log_x, fell, np.ones((1, len(log_x))))
+    if slope <= 0:
+        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
+    curvature = _curvature(log_x, fell, level, slope)
+    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
+    covariance = np.linalg.inv(towards.T @ curvature @ towards)
+    return Fragility(
+        median=math.exp(-level / slope),
+        dispersion=float(1 / slope),
+        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
+        count=len(log_x),
+    )
 
 
 def _flags(overturned: ArrayLike) -> Flags:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,13 +25,42 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
     """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
     asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        found = law(wall, e, k_base)
+        given = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{asked}: {error}") from None
-    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str) or np.shape(found)[:1] != (2,):
-        raise TypeError(f"{asked}: it gives {shown(found)}")
-    xi_base, xi_side = found
+    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str) or np.shape(given)[:1] != (2,):
+        raise TypeError(f"{asked}: it gives {shown(given)}")
+    xi_base, xi_side = given
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
+
+
+def required_law(law: Law | str | None, points: int) -> Law:
+    """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
+    if law is None:
+        return CALIBRATED if points == 2 else CALIBRATED_BED
+    if isinstance(law, str):
+        return law_named(law)
+    if not callable(law):
+        raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
+    return law
+
+
+def _doubts(
+    law: DampingLaw, points: int, k_side: float | None, friction: float | None, side_friction: float | None
+) -> Iterator[str]:
+    """What speaks against a law for contacts that it was not fitted for, in words."""
+    if law.points not in (None, points):
+        yield f"{law.name} was fitted for {law.points} contact lines a face, not {points}"
+    if law.points is None and k_side is not None:
+        yield (
+            f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on the "
+            "contacts of this one (docs/damping.md); CALIBRATED is made for them"
+        )
+    if side_friction or (friction is not None and friction < HOLDS):
+        yield (
+            f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
+            f"side_friction = {side_friction}; matched_contacts finds the damping for them"
+        )
 
 
 def required_layout(points: int, k_base: float, k_side: float | None) -> tuple[int, float, float | None]:
@@ -151,34 +180,15 @@ class Contacts:
         require_kind("e", e, Restitution)
         points, k_base, k_side = required_layout(points, k_base, k_side)
         friction, side_friction = required_frictions(friction, side_friction)
-        if law is None:
-            law = CALIBRATED if points == 2 else CALIBRATED_BED
-        elif isinstance(law, str):
-            law = law_named(law)
-        elif not callable(law):
-            raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
+        law = required_law(law, points)
         if k_side is not None:
             e.require_rebound()
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
-            if law.points not in (None, points):
-                warnings.warn(
-                    f"{law.name} was fitted for {law.points} contact lines a face, not {points}", stacklevel=2
-                )
-            if law.points is None and k_side is not None:
-                warnings.warn(
-                    f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on "
-                    "the contacts of this one (docs/damping.md); CALIBRATED is made for them",
-                    stacklevel=2,
-                )
+            for doubt in _doubts(law, points, k_side, friction, side_friction):
+                warnings.warn(doubt, stacklevel=2)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
-        if isinstance(law, DampingLaw) and (side_friction or (friction is not None and friction < HOLDS)):
-            warnings.warn(
-                f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
-                f"side_friction = {side_friction}; matched_contacts finds the damping for them",
-                stacklevel=2,
-            )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall,
