@@ -1,4 +1,4 @@
-"""What every module shares: the acceleration of gravity, and checks of what is given against what can be."""
+"""The acceleration of gravity, types of arrays, and checks of arguments."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 
 
-def keep(made: object, **checked: object) -> None:
-    """Set fields of a frozen dataclass that is being made to what their checks returned.
+def keep(instance: object, **checked: object) -> None:
+    """Set fields of a frozen dataclass to what their checks returned, while it is made.
 
     A check takes any real number and returns a float. The number given is not kept: NumPy computes with its small
     numbers in their own few bits, in which 200 * 2 is 144.
     """
     for name, value in checked.items():
-        object.__setattr__(made, name, value)
+        object.__setattr__(instance, name, value)
 
 
 def spelt(value: object) -> str:
@@ -60,7 +60,7 @@ def require_real(name: str, value: object) -> float:
     """Return `value` as a float.
 
     Raises:
-        TypeError: with the name and the value, unless it is a real number. True and False are none.
+        TypeError: with the name and the value, unless it is a real number. True and False are not.
         ValueError: if it is too large for a float.
     """
     if isinstance(value, bool | np.bool_) or not isinstance(value, RealNumber):
@@ -185,12 +185,11 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
 
 
 def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
-    """`values` as an array of floats, see `require_plain`. True and False are no real numbers, in a list of numbers
-    neither."""
+    """`values` as an array of floats, see `require_plain`. True and False are refused, also among numbers."""
     return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
 
 
-def require_row(name: str, values: ArrayLike, one: str) -> Array:
+def require_row(name: str, values: ArrayLike, element: str) -> Array:
     """Return a copy of `values` as a row of finite numbers, shape (n,).
 
     Args:
@@ -200,12 +199,12 @@ def require_row(name: str, values: ArrayLike, one: str) -> Array:
 
     Raises:
         TypeError: unless they are real numbers.
-        ValueError: if they are ragged or masked, no row, none at all, or not finite.
+        ValueError: if they are ragged, masked or not finite, not a row, or an empty one.
     """
-    made = np.array(require_reals(name, values, f"a row of at least one {one}"))
-    if made.ndim != 1 or not made.size:
-        raise ValueError(f"{name} has the shape {made.shape}; a row of at least one {one} is needed")
-    return _finite(name, made)
+    row = np.array(require_reals(name, values, f"a row of at least one {element}"))
+    if row.ndim != 1 or not row.size:
+        raise ValueError(f"{name} has the shape {row.shape}; a row of at least one {element} is needed")
+    return _finite(name, row)
 
 
 def _holds_truth(values: object) -> bool:
@@ -228,16 +227,16 @@ def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
         TypeError: if it is no array of real numbers.
         ValueError: if it is ragged or masked, has another shape, or a value that is not finite.
     """
-    made = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
-    if made.shape != shape:
-        raise ValueError(f"{name} has the shape {made.shape}; {shape} is needed")
-    return _finite(name, made)
+    array = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
+    if array.shape != shape:
+        raise ValueError(f"{name} has the shape {array.shape}; {shape} is needed")
+    return _finite(name, array)
 
 
-def _finite(name: str, made: Array) -> Array:
-    if not np.isfinite(made).all():
+def _finite(name: str, array: Array) -> Array:
+    if not np.isfinite(array).all():
         raise ValueError(f"{name} holds a value that is not finite")
-    return made
+    return array
 
 
 NAMED = 5

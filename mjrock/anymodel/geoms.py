@@ -1,4 +1,4 @@
-"""Two geoms of anyone's model that can meet: who they are, and how heavy they are to each other."""
+"""Two geoms of anyone's model that can meet: their names, their bodies, and the mass of their approach."""
 
 from __future__ import annotations
 
@@ -201,7 +201,9 @@ class GeomPair:
             data.geom_xpos[self.geoms[1]] += ASIDE * between
             apart = self._shortest(data)
             data.geom_xpos[self.geoms[1]] = place
-        vector = next(one for one in (apart, between, np.array((0.0, 0.0, 1.0))) if np.any(np.abs(one) > 1e-12))
+        vector = next(
+            direction for direction in (apart, between, np.array((0.0, 0.0, 1.0))) if np.any(np.abs(direction) > 1e-12)
+        )
         return np.array(vector / np.linalg.norm(vector))
 
     def _shortest(self, data: mujoco.MjData) -> Array:

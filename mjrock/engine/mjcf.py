@@ -239,7 +239,7 @@ def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
     if nz == 1:
         yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
         return
-    met = np.array([own == name for own in scene.face_names])
+    met = np.array([face == name for face in scene.face_names])
     along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
     places = along @ np.array([nz, -nx])
     half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())

@@ -28,11 +28,11 @@ def _outlines(name: str, given: object) -> tuple[Array, ...]:
         given = list(given)
     if not isinstance(given, Sequence) or isinstance(given, str):
         raise TypeError(f"{name} = {shown(given)} is no sequence of outlines")
-    made = []
-    for i, one in enumerate(given):
-        corners = require_reals(f"{name}[{i}]", one, "corners x, z [m], shape (n, 2)")
-        made.append(require_array(f"{name}[{i}]", corners, (len(np.atleast_1d(corners)), 2)))
-    return tuple(made)
+    outlines = []
+    for i, outline in enumerate(given):
+        corners = require_reals(f"{name}[{i}]", outline, "corners x, z [m], shape (n, 2)")
+        outlines.append(require_array(f"{name}[{i}]", corners, (len(np.atleast_1d(corners)), 2)))
+    return tuple(outlines)
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,5 +27,5 @@ def standalone(text: str, title: str) -> str:
         title: of the page.
     """
     text = re.sub(r"<link\b[^>]*>", "", text)
-    text = re.sub(r'<i class="fa ([^"]*)"></i>', lambda found: ICONS.get(found[1], "&#8226;"), text)
+    text = re.sub(r'<i class="fa ([^"]*)"></i>', lambda icon: ICONS.get(icon[1], "&#8226;"), text)
     return f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>\n{text}'

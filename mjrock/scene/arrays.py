@@ -1,4 +1,4 @@
-"""The arrays that describe a scene, their shapes, and the values that they may hold."""
+"""The arrays that describe a scene: their shapes and their valid values."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
 
 def frozen(values: ArrayLike) -> NDArray[Any]:
     """A copy that cannot be changed."""
-    made = np.array(values)
-    made.setflags(write=False)
-    return made
+    copy = np.array(values)
+    copy.setflags(write=False)
+    return copy
 
 
 def nothing() -> NDArray[Any]:
@@ -66,9 +66,9 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
         given: what the scene was made with, by the name of the field.
 
     Raises:
-        ValueError: for an array of another shape, or a value that cannot be. The message names it.
+        ValueError: for an array of another shape, or an invalid value. The message names it.
     """
-    made: dict[str, Array | Integers] = {}
+    arrays: dict[str, Array | Integers] = {}
     for name, shape in SHAPES.items():
         wanted = tuple(size if isinstance(size, int) else len(given[size]) for size in shape)
         try:
@@ -80,21 +80,21 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
             raise ValueError(f"{name} has the shape {values.shape}; {wanted} is needed")
         if np.isnan(values).any() or (name != "tie_strength" and not np.isfinite(values).all()):
             raise ValueError(f"{name} holds a value that is not finite")
-        made[name] = frozen(values)
+        arrays[name] = frozen(values)
     for name in POSITIVE:
-        if not (made[name] > 0).all():
-            raise ValueError(f"{name} = {made[name].min():g} is outside the valid range {name} > 0")
+        if not (arrays[name] > 0).all():
+            raise ValueError(f"{name} = {arrays[name].min():g} is outside the valid range {name} > 0")
     for name in NOT_NEGATIVE:
-        if not (made[name] >= 0).all():
-            raise ValueError(f"{name} = {made[name].min():g} is outside the valid range, which starts at 0")
+        if not (arrays[name] >= 0).all():
+            raise ValueError(f"{name} = {arrays[name].min():g} is outside the valid range, which starts at 0")
     bodies = len(given["names"])
     for name in ("point_body", "tie_body", "damper_body", "force_body"):
-        if not ((made[name] >= 0) & (made[name] < bodies)).all():
+        if not ((arrays[name] >= 0) & (arrays[name] < bodies)).all():
             raise ValueError(f"{name} is outside the valid range 0 to {bodies - 1}")
     for name, carrier in CARRIERS.items():
-        if not ((made[name] >= GROUND) & (made[name] < bodies) & (made[name] != made[carrier])).all():
+        if not ((arrays[name] >= GROUND) & (arrays[name] < bodies) & (arrays[name] != arrays[carrier])).all():
             raise ValueError(f"{name} is another body, 0 to {bodies - 1}, or {GROUND} for the ground")
-    if not np.allclose(np.hypot(*made["normal"].T), 1.0):
+    if not np.allclose(np.hypot(*arrays["normal"].T), 1.0):
         raise ValueError("normal holds a vector that is not of unit length")
     names = (*given["names"], *dict.fromkeys(given["group"]), *given["tie_names"], *given["damper_names"])
     names += tuple(given["force_names"])
@@ -104,4 +104,4 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
                 f"{name} names two things of the scene; bodies, groups of contacts, ties and forces need names of "
                 "their own"
             )
-    return made
+    return arrays

@@ -228,7 +228,7 @@ def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> Non
 def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: Array, curvature: Array) -> None:
     """Add the geometric stiffness of each closed spring. What is quadratic in the velocities in the second rate of an
     opening is its second derivative along them."""
-    nv, way = len(none) // len(frames), none
+    nv, unit = len(none) // len(frames), none
     for i in range(len(force)):
         if force[i] == 0:
             continue
@@ -238,8 +238,8 @@ def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: A
                 row = nv * body + p if p < nv else nv * other + p - nv
                 column = nv * body + r if r < nv else nv * other + r - nv
                 for sign in (1.0, -1.0):
-                    way[row] += 1.0
-                    way[column] += sign
-                    bent = opening(places, ties, i, frames, way, way).swept
+                    unit[row] += 1.0
+                    unit[column] += sign
+                    bent = opening(places, ties, i, frames, unit, unit).swept
                     curvature[row, column] -= 0.25 * sign * force[i] * bent
-                    way[row], way[column] = 0.0, 0.0
+                    unit[row], unit[column] = 0.0, 0.0

@@ -30,7 +30,7 @@ UNLIKE = 5e-3
 
 @dataclass(frozen=True)
 class Standing:
-    """A wall of one's own on its interfaces, where `Combination` has one of Table 1.
+    """A given wall on its interfaces, in place of a `Combination` of Table 1.
 
     Args:
         wall: the wall.

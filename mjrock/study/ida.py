@@ -53,8 +53,8 @@ class IncrementalAnalysis:
             shares: 0 to 100 [%].
         """
         levels = [require_within(f"shares[{i}]", share, 0.0, 100.0, "%") for i, share in enumerate(shares)]
-        found: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")
-        return found
+        peaks: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")
+        return peaks
 
     def __repr__(self) -> str:
         fell = np.isfinite(self.capacity)
@@ -96,7 +96,7 @@ def ida(
             tasks.append(replace(analysis, labels={"record": name, "scale": scale} | dict(analysis.labels)))
     rows = completed(tasks, store, **options)
     table = tuple(tuple(rows[i : i + len(levels)]) for i in range(0, len(rows), len(levels)))
-    peaks = np.array([[row[tasks[0].PEAK] for row in own] for own in table], dtype=float)
+    peaks = np.array([[row[tasks[0].PEAK] for row in runs] for runs in table], dtype=float)
     return IncrementalAnalysis(tuple(builds), levels, peaks, table)
 
 
@@ -167,7 +167,7 @@ def require_scales(scales: ArrayLike) -> Array:
         TypeError: if they are no real numbers.
         ValueError: unless there is at least one, none is negative, and they increase.
     """
-    made = require_row("scales", scales, "scale")
-    if not (made[0] >= 0 and (np.diff(made) > 0).all()):
+    levels = require_row("scales", scales, "scale")
+    if not (levels[0] >= 0 and (np.diff(levels) > 0).all()):
         raise ValueError(f"scales = {shown(scales)} has to increase within the valid range 0 and above")
-    return made
+    return levels

@@ -118,10 +118,10 @@ def require_rotations(rotations: ArrayLike) -> Array:
         TypeError: if they are no real numbers.
         ValueError: unless there is at least one, and they increase within 0 to pi/2.
     """
-    made = require_row("rotations", rotations, "rotation [rad]")
-    if not (made[0] >= 0 and made[-1] <= ON_ITS_FACE and (np.diff(made) > 0).all()):
+    row = require_row("rotations", rotations, "rotation [rad]")
+    if not (row[0] >= 0 and row[-1] <= ON_ITS_FACE and (np.diff(row) > 0).all()):
         raise ValueError(f"rotations = {shown(rotations)} has to increase within the valid range 0 to pi/2 rad")
-    return made
+    return row
 
 
 def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:

@@ -74,7 +74,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
             (bodies, 3), as in `MasonryCase`. The rotation is positive where the top of a block turns to the right.
 
     Raises:
-        TypeError: if the masonry is none, or the velocity is no array of numbers.
+        TypeError: unless the masonry is a `Masonry` and the velocity an array of numbers.
         ValueError: if the velocity has another shape, a value that is not finite, or is zero everywhere.
         RuntimeError: if no impulses are found.
     """
@@ -93,8 +93,8 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     widens = (opens @ after).reshape(-1, 2).max(axis=1) > NOTHING * momentum / root.max()
     left = (after / root).reshape(-1, 3)
     impulses = np.column_stack([pressed, rubbed])
-    for made in (left, impulses):
-        made.setflags(write=False)
+    for array in (left, impulses):
+        array.setflags(write=False)
     return RigidImpact(
         velocity=left,
         kept=float(after @ after) / momentum**2,

@@ -22,7 +22,7 @@ Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 
 def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
-    """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
+    """The two damping ratios of a law of the user, or a TypeError that names the law."""
     asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
         given = law(wall, e, k_base)
@@ -64,16 +64,16 @@ def _doubts(
 
 
 def required_layout(points: int, k_base: float, k_side: float | None) -> tuple[int, float, float | None]:
-    """Contact lines and stiffnesses [N/m3] as numbers that they can be."""
+    """Contact lines and stiffnesses [N/m3], each within its range."""
     k_base = require_stiffness("base stiffness k_n", k_base)
     k_side = None if k_side is None else require_stiffness("side stiffness k_n", k_side)
     return require_points(points), k_base, k_side
 
 
 def required_frictions(friction: float | None, side_friction: float | None) -> tuple[float | None, float | None]:
-    """Coefficients of friction of base and side as numbers that they can be."""
+    """Coefficients of friction of base and side, each within its range."""
     given = {"friction": friction, "side_friction": side_friction}
-    base, side = (None if one is None else require_within(name, one, 0.0, 10.0) for name, one in given.items())
+    base, side = (None if value is None else require_within(name, value, 0.0, 10.0) for name, value in given.items())
     return base, side
 
 
@@ -99,9 +99,9 @@ class Contacts:
     def __repr__(self) -> str:
         faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])
         parts = []
-        for name, one in faces:
-            held = "" if one.friction is None else f", friction {one.friction:.3g}"
-            parts.append(f"{name} k_n = {one.k_n:.4g} N/m3, xi = {one.xi:.4g}{held}")
+        for name, interface in faces:
+            held = "" if interface.friction is None else f", friction {interface.friction:.3g}"
+            parts.append(f"{name} k_n = {interface.k_n:.4g} N/m3, xi = {interface.xi:.4g}{held}")
         return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"
 
     @classmethod
@@ -226,10 +226,10 @@ class Contacts:
         if side_stop:
             faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
         for name, interface, asked in faces:
-            made = interface.face, interface.length
-            if not np.allclose(made, asked, rtol=1e-9, atol=0):
+            size = interface.face, interface.length
+            if not np.allclose(size, asked, rtol=1e-9, atol=0):
                 raise ValueError(
-                    f"the {name} contacts were made for a face of {made[0]:g} x {made[1]:g} m, "
+                    f"the {name} contacts were made for a face of {size[0]:g} x {size[1]:g} m, "
                     f"but that of the wall of this case is {asked[0]:g} x {asked[1]:g} m"
                 )
 

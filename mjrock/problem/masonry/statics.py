@@ -40,10 +40,10 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
         applied: further forces on each free block and their moment about its centroid, positive where it turns the top
             to the right [N, N, N m], shape (free, 3).
     """
-    found = _balanced(masonry, applied, masonry.joint_friction)
-    if _stands(found):
+    answer = _balanced(masonry, applied, masonry.joint_friction)
+    if _stands(answer):
         return ()
-    moving = np.abs(found.eqlin.marginals).reshape(-1, 3).max(axis=1)
+    moving = np.abs(answer.eqlin.marginals).reshape(-1, 3).max(axis=1)
     return tuple(masonry.names[i] for i, v in zip(masonry.free, moving, strict=True) if v > MOVES * moving.max())
 
 
@@ -54,18 +54,20 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
         The least coefficient that every joint would need to have at least [-], rounded up, and the names of joints that
         have less and lean on it.
     """
-    own = masonry.joint_friction
+    friction = masonry.joint_friction
     low, high = 0.0, MOST_FRICTION
-    if not _stands(_balanced(masonry, applied, np.maximum(own, high))):
+    if not _stands(_balanced(masonry, applied, np.maximum(friction, high))):
         return None
     while high - low > 0.5 * ROUNDED:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _stands(_balanced(masonry, applied, np.maximum(own, middle))) else (middle, high)
+        low, high = (
+            (low, middle) if _stands(_balanced(masonry, applied, np.maximum(friction, middle))) else (middle, high)
+        )
     enough = math.ceil(high / ROUNDED) * ROUNDED
-    found = _balanced(masonry, applied, own, np.maximum(own, enough))
+    answer = _balanced(masonry, applied, friction, np.maximum(friction, enough))
     m = len(masonry.lines.k)
-    beyond = np.reshape(found.x[2 * m : 4 * m], (2, m)).sum(axis=0)
-    short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (own < enough)[masonry.lines.joint]])
+    beyond = np.reshape(answer.x[2 * m : 4 * m], (2, m)).sum(axis=0)
+    short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
 
 
@@ -108,6 +110,6 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes, method="highs")
 
 
-def _stands(found: Any) -> bool:
+def _stands(answer: Any) -> bool:
     """Whether nothing of the weight is missing, or the programme found no answer."""
-    return bool(found.status != 0 or found.fun <= UNBALANCED)
+    return bool(answer.status != 0 or answer.fun <= UNBALANCED)

@@ -73,8 +73,8 @@ class Block:
             parts = getattr(self, name)
             if not isinstance(parts, Sequence) or isinstance(parts, str):
                 raise TypeError(f"{name} = {shown(parts)} is no sequence of {kind.__name__}")
-            for i, one in enumerate(parts):
-                require_kind(f"{name}[{i}]", one, kind)
+            for i, part in enumerate(parts):
+                require_kind(f"{name}[{i}]", part, kind)
             keep(self, **{name: tuple(parts)})
         require_openings(self.openings, self.length, 2 * self.h)
         if self.profile is not None:
@@ -129,17 +129,17 @@ class Block:
     @property
     def base_length(self) -> float:
         """Length of the base along the wall, without its doors [m]."""
-        return self.length - sum(one.width for one in self.openings if one.sill == 0)
+        return self.length - sum(opening.width for opening in self.openings if opening.sill == 0)
 
     @cached_property
     def _parts(self) -> Moments:
         """Mass and its moments of all that is not a plain rectangle [kg, kg m, kg m2]."""
         profile = self.profile or ((0.0, 2 * self.b), (2 * self.h, 2 * self.b))
         total = [self.density * value for value in moments(profile, self.length, self.openings)]
-        for one in self.masses:
-            x, z = one.offset, one.height
+        for added in self.masses:
+            x, z = added.offset, added.height
             for i, value in enumerate((1.0, x, z, x * x, z * z)):
-                total[i] += one.mass * value
+                total[i] += added.mass * value
         return Moments(*total)
 
     @property

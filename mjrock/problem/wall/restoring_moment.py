@@ -75,7 +75,8 @@ class Restoring(NamedTuple):
     def plus(self, moments: list[Restoring]) -> Restoring:
         """The sum of this one and others."""
         sides = [
-            Moment(sum(one.P for one in side), sum(one.Q for one in side)) for side in zip(self, *moments, strict=True)
+            Moment(sum(moment.P for moment in side), sum(moment.Q for moment in side))
+            for side in zip(self, *moments, strict=True)
         ]
         return Restoring(*sides)
 

@@ -67,10 +67,12 @@ def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
 
 def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
     """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties)."""
-    found = np.zeros((len(theta), len(pulls)))
+    plastic = np.zeros((len(theta), len(pulls)))
     for i, pull in enumerate(pulls):
-        found[:, i] = np.maximum(np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness), 0.0)
-    return found
+        plastic[:, i] = np.maximum(
+            np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness), 0.0
+        )
+    return plastic
 
 
 def stored(pulls: Sequence[Pull], theta: Array, plastic: Array) -> Array:
@@ -90,5 +92,5 @@ def taken(pulls: Sequence[Pull], plastic: Array) -> Array:
 
 
 def _elongation(pull: Pull, theta: Array) -> Array:
-    found: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
-    return found
+    elongation: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
+    return elongation
