@@ -207,6 +207,18 @@ def require_row(name: str, values: ArrayLike, element: str) -> Array:
     return _finite(name, row)
 
 
+def require_increasing(name: str, values: ArrayLike, element: str, high: float, valid: str) -> Array:
+    """Return a copy of `values` as a row of increasing numbers from 0 to `high`, see `require_row`.
+
+    Raises:
+        TypeError, ValueError: as `require_row`; with the `valid` range in words, unless they increase within it.
+    """
+    row = require_row(name, values, element)
+    if not (row[0] >= 0 and row[-1] <= high and (np.diff(row) > 0).all()):
+        raise ValueError(f"{name} = {shown(values)} has to increase within the valid range {valid}")
+    return row
+
+
 def _holds_truth(values: object) -> bool:
     """Whether a list, or a list in it, has True or False among its values: NumPy makes numbers of them."""
     if isinstance(values, list | tuple):

@@ -78,13 +78,7 @@ def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) ->
 
 @jitable
 def row(
-    k: float,
-    c: float,
-    timestep: float,
-    inverse_weight: float,
-    newmark_beta: float,
-    ringing: float,
-    overdamped: float,
+    k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float, overdamped: float
 ) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
 

@@ -64,12 +64,7 @@ SPARSE_FROM = 4
 stack takes half the time with sparse rows, one of four blocks as much."""
 
 
-def scene_mjcf(
-    scene: Scene,
-    timestep: float,
-    newmark_beta: float = 0.25,
-    keyframe: Keyframe | None = None,
-) -> str:
+def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyframe: Keyframe | None = None) -> str:
     """The model of a scene as MJCF text. The same arguments give the same bytes.
 
     Names: each body and the geom that shows it; each contact point, its pair and its geom by group and number, such as

@@ -9,16 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..problem.wall.case import Case
-from ..quantities import (
-    Array,
-    keep,
-    require_array,
-    require_kind,
-    require_reals,
-    require_row,
-    require_within,
-    shown,
-)
+from ..quantities import Array, keep, require_array, require_kind, require_reals, require_row, require_within, shown
 from ..result.response import Response
 
 

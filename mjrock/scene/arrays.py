@@ -13,34 +13,22 @@ from ..quantities import Array, Integers, shown
 
 GROUND = -1
 """The body of a face or an anchor that belongs to the ground."""
-SHAPES: dict[str, tuple[str | int, ...]] = {
-    "mass": ("names",),
-    "inertia": ("names",),
-    "rest": ("names", 2),
-    "point_body": ("group",),
-    "point": ("group", 2),
-    "face_body": ("group",),
-    "face": ("group", 2),
-    "normal": ("group", 2),
-    "k": ("group",),
-    "c": ("group",),
-    "friction": ("group",),
-    "tie_body": ("tie_names",),
-    "tie_point": ("tie_names", 2),
-    "anchor_body": ("tie_names",),
-    "anchor": ("tie_names", 2),
-    "tie_k": ("tie_names",),
-    "tie_length": ("tie_names",),
-    "tie_strength": ("tie_names",),
-    "damper_body": ("damper_names",),
-    "damper_point": ("damper_names", 2),
-    "damper_anchor": ("damper_names", 2),
-    "damper_c": ("damper_names",),
-    "force_body": ("force_names",),
-    "force_point": ("force_names", 2),
-    "force": ("force_names", 2),
+NUMBERS = {
+    "names": ("mass", "inertia"),
+    "group": ("point_body", "face_body", "k", "c", "friction"),
+    "tie_names": ("tie_body", "anchor_body", "tie_k", "tie_length", "tie_strength"),
+    "damper_names": ("damper_body", "damper_c"),
+    "force_names": ("force_body",),
 }
-"""Shape of each array: the names whose number is its length, and two for vectors."""
+"""Arrays with one number for each of the bodies, contacts, ties, dampers and forces, by the field with their names."""
+VECTORS = {
+    "names": ("rest",),
+    "group": ("point", "face", "normal"),
+    "tie_names": ("tie_point", "anchor"),
+    "damper_names": ("damper_point", "damper_anchor"),
+    "force_names": ("force_point", "force"),
+}
+"""The same for arrays with one vector for each."""
 POSITIVE = ("mass", "inertia", "k", "tie_k", "tie_length", "tie_strength")
 NOT_NEGATIVE = ("c", "friction", "damper_c")
 CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
@@ -60,7 +48,7 @@ def nothing() -> NDArray[Any]:
 
 
 def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
-    """The arrays of a scene, in the order of SHAPES, with the kinds that compiled functions take.
+    """The arrays of a scene, of the kinds that compiled functions take.
 
     Args:
         given: what the scene was made with, by the name of the field.
@@ -69,8 +57,9 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
         ValueError: for an array of another shape, or an invalid value. The message names it.
     """
     arrays: dict[str, Array | Integers] = {}
-    for name, shape in SHAPES.items():
-        wanted = tuple(size if isinstance(size, int) else len(given[size]) for size in shape)
+    shapes: dict[str, tuple[int, ...]] = {name: (len(given[of]),) for of, names in NUMBERS.items() for name in names}
+    shapes |= {name: (len(given[of]), 2) for of, names in VECTORS.items() for name in names}
+    for name, wanted in shapes.items():
         try:
             values = np.ascontiguousarray(given[name], dtype=np.int64 if name.endswith("body") else float)
         except (TypeError, ValueError, OverflowError):

@@ -57,8 +57,8 @@ MASONRY_COLUMNS = (
 class Analysis:
     """One case for one solver.
 
-    The properties of the joints of masonry have to be numbers. A function of the joint has no content by which a campaign
-    could tell tasks apart, and its task becomes a failed row.
+    The properties of the joints of masonry have to be numbers. A function of the joint has no content by which a
+    campaign could tell tasks apart, and its task becomes a failed row.
 
     Args:
         case: the case, of a wall or of masonry.

@@ -108,13 +108,7 @@ def required_tasks(tasks: object) -> Iterable[Task]:
     return cast(Iterable[Task], tasks)
 
 
-def _carry_out(
-    run: Runner,
-    tasks: Iterable[Task],
-    executor: Executor | None,
-    count: int,
-    limit: float | None,
-) -> None:
+def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, count: int, limit: float | None) -> None:
     """Run the tasks where they are to run."""
     pending = run.pending(tasks)
     if executor is not None:

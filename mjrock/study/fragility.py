@@ -223,8 +223,8 @@ def _require_fit(x: Array, fell: Flags) -> None:
 def _resampled(log_x: Array, fell: Flags, weights: Array) -> Array:
     """Median and dispersion of each resample, shape (m, 2); its weights are how often it holds each run, shape (m, n).
 
-    A resample that a single intensity parts is a step of no dispersion in the middle of the gap. If all or none overturned,
-    the median is zero or infinite. If fewer overturn the stronger the motion is, the dispersion is infinite.
+    A resample that a single intensity parts is a step of no dispersion in the middle of the gap. If all or none
+    overturned, the median is zero or infinite. If stronger motions overturn fewer, the dispersion is infinite.
     """
     drawn = weights > 0
     lowest = np.where(drawn & fell, log_x, np.inf).min(axis=1)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, require_kind, require_row, require_within, shown
+from ..quantities import Array, require_increasing, require_kind, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
 from .campaign_task import Row
@@ -87,7 +87,7 @@ def ida(
     builds = dict(build) if isinstance(build, Mapping) else {"record": build}
     if not builds:
         raise ValueError("build holds no records; at least one is needed")
-    levels = require_scales(scales)
+    levels = require_increasing("scales", scales, "scale", math.inf, "0 and above")
     tasks: list[Analysis] = []
     for name, make in builds.items():
         require_kind("the name of a record in build", name, str)
@@ -158,16 +158,3 @@ def built(build: Build, scale: float, name: str) -> Analysis:
     if not isinstance(analysis, Analysis):
         raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
     return analysis
-
-
-def require_scales(scales: ArrayLike) -> Array:
-    """Scales as an array.
-
-    Raises:
-        TypeError: if they are no real numbers.
-        ValueError: unless there is at least one, none is negative, and they increase.
-    """
-    levels = require_row("scales", scales, "scale")
-    if not (levels[0] >= 0 and (np.diff(levels) > 0).all()):
-        raise ValueError(f"scales = {shown(scales)} has to increase within the valid range 0 and above")
-    return levels

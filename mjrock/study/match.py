@@ -75,10 +75,7 @@ REFERENCE = Combination()
 
 
 def combinations(
-    count: int,
-    seed: int,
-    k_n: tuple[float, float] = K_N_RANGE,
-    amplitude: tuple[float, float] = AMPLITUDE_RANGE,
+    count: int, seed: int, k_n: tuple[float, float] = K_N_RANGE, amplitude: tuple[float, float] = AMPLITUDE_RANGE
 ) -> list[Combination]:
     """Combinations that fill Table 1 evenly (a Latin hypercube), stiffnesses on a logarithmic scale.
 

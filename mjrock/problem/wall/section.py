@@ -94,8 +94,8 @@ def require_openings(openings: Sequence[Opening], length: float, height: float) 
     for i, opening in enumerate(openings):
         if opening.head > height * (1 + 1e-12):
             raise ValueError(
-                f"openings[{i}] reaches from {opening.sill:g} to {opening.head:g} m; the valid range is 0 to {height:g} "
-                "m, the height of the wall"
+                f"openings[{i}] reaches from {opening.sill:g} to {opening.head:g} m; "
+                f"the valid range is 0 to {height:g} m, the height of the wall"
             )
     for opening in openings:
         z = opening.sill + 1e-9 * height  # just above the sill
