@@ -195,7 +195,7 @@ def require_row(name: str, values: ArrayLike, element: str) -> Array:
     Args:
         name: what it is called.
         values: the numbers.
-        one: what each of them is.
+        element: what each of them is.
 
     Raises:
         TypeError: unless they are real numbers.

@@ -133,11 +133,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
 
     A body of the plane is shifted along the one direction of the face.
 
-    Args:
-        points: the contacts.
-        joints: the joints, whose state is brought up to date.
-        j, i: the joint and the point, -1 where the deepest point does not stick.
-        moved: the step, whose pose and frames after it are changed.
+    i is -1 where the deepest point does not stick. Joints, and pose and frames after the step, are brought up to date.
     """
     places, q, frames = points.places, moved.pose, moved.frames
     if i < 0 or joints.stuck[j] != i:

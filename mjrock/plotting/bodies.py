@@ -95,10 +95,7 @@ class Bodies:
         The displacement of each point from rest is drawn times `magnify`. A point that does not move, such as the toe
         that a wall turns about, then stays where it is; what is magnified is slightly distorted.
 
-        Args:
-            frame: which of the times.
-            body: which of the bodies.
-            points: about the centroid of the body at rest [m], shape (n, 2).
+        The points are given about the centroid of the body at rest [m], shape (n, 2).
         """
         x, z, theta = self.poses[frame, body]
         sine, cosine = np.sin(theta), np.cos(theta)

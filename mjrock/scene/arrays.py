@@ -50,9 +50,6 @@ def nothing() -> NDArray[Any]:
 def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
     """The arrays of a scene, of the kinds that compiled functions take.
 
-    Args:
-        given: what the scene was made with, by the name of the field.
-
     Raises:
         ValueError: for an array of another shape, or an invalid value. The message names it.
     """

@@ -131,10 +131,7 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
 def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[Row]:
     """The rows of the tasks, in the order asked, once a campaign has run those that the store does not hold.
 
-    Args:
-        tasks: the tasks, that can be gone through more than once.
-        store: the SQLite file.
-        options: those of `campaign`.
+    Options are those of `campaign`.
 
     Raises:
         RuntimeError: if a task has failed; its row in the store says how.

@@ -49,8 +49,7 @@ class IncrementalAnalysis:
 
         Each is the peak of the nearest record, as there is no mean of a finite peak and overturning.
 
-        Args:
-            shares: 0 to 100 [%].
+        Shares are 0 to 100 [%].
         """
         levels = [require_within(f"shares[{i}]", share, 0.0, 100.0, "%") for i, share in enumerate(shares)]
         peaks: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")

@@ -239,10 +239,7 @@ def _short(text: str) -> str:
 def doubts(name: str, peak: float, final: float, fastest: float) -> list[str]:
     """What is odd about a record from a file, in words.
 
-    Args:
-        name: of the record.
-        peak: peak acceleration [m/s2].
-        final, fastest: residual and peak velocity [m/s].
+    `peak` is its peak acceleration [m/s2], `final` and `fastest` its residual and its peak velocity [m/s].
     """
     sentences = []
     if peak < FAINT:

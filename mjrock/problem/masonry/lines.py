@@ -50,11 +50,7 @@ def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, poi
     The point is on the block above. At an end where the block above overhangs, the corner is that of the block below,
     and the point is on the block below, unless that one is fixed.
 
-    Args:
-        blocks: the blocks.
-        joints: their joints.
-        k_n: stiffness of each joint [N/m3].
-        points: lines a joint.
+    Each joint has its own k_n [N/m3], and all have the same number of points.
     """
     rows: list[tuple[int, int, int]] = []
     at, normal, k = [], [], []
@@ -76,10 +72,7 @@ def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
 
     They are the generalised forces of unit forces that press the two blocks of a line apart.
 
-    Args:
-        blocks: the blocks.
-        lines: the lines.
-        directions: unit vectors, shape (m, 2). Along the normals the rates are those of the gaps.
+    Directions are unit vectors, shape (m, 2). Along the normals the rates are those of the gaps.
 
     Returns:
         Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies).
@@ -100,11 +93,6 @@ def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
     weight's own part of the stiffness is left out, as in `reference_frequency`, which is the case of one block.
-
-    Args:
-        blocks: the blocks.
-        lines: their contact lines.
-        friction: coefficient of friction of each joint [-].
     """
     free = [block for block in blocks if not block.fixed]
     masses = np.array([(block.mass, block.mass, block.inertia) for block in free]).ravel()

@@ -84,10 +84,7 @@ class Restoring(NamedTuple):
 def of_force(x: float, z: float, outwards: float, downwards: float, half_base: float) -> Restoring:
     """The restoring moments of a force that acts at an offset x from the middle of the base and a height z.
 
-    Args:
-        x, z: where it acts [m].
-        outwards, downwards: its components [N].
-        half_base: distance of either toe from the middle of the base [m].
+    Its components are [N], x and z [m]. Either toe is `half_base` from the middle of the base [m].
     """
     sides = []
     for side in (1.0, -1.0):

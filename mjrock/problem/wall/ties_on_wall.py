@@ -51,10 +51,7 @@ def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
 
     It stands beside `mjrock.geometry` because rocking theory, which uses it, shares no kinematics with the engine.
 
-    Args:
-        tie: the tie.
-        theta: rotation [rad]; a number, or an array outside compiled functions.
-        side: the toe that the wall turns about, +1 for the outer one.
+    theta [rad] may be an array outside compiled functions. `side` is the toe, +1 for the outer one.
     """
     d, z = side * tie.half_base - tie.offset, tie.height
     sine, cosine = np.sin(theta), np.cos(theta)
