@@ -80,6 +80,5 @@ def warn_if_open(response: Response, run: Run, asked: AskedWall, advice: str) ->
     unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
     if unpaid > OPEN:
         warnings.warn(
-            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}",
-            stacklevel=3,
+            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}", stacklevel=3
         )

@@ -241,3 +241,27 @@ def test_friction_holds_a_two_sided_bed(points):
     run, law = mr.simulate(case, contacts), mr.solve_compliant(case, contacts)
     assert run.restitution[0] == pytest.approx(law.restitution[0], rel=1e-3)
     assert abs(run.stats["base_displacement"]) < 0.005
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"accuracy": 1.0}, "accuracy = 1 is outside"),
+        ({"newmark_beta": -1.0}, "newmark_beta = -1 is outside"),
+        ({"timestep": 2.0}, "timestep = 2 s is outside"),
+        ({"timestep": 1e-9}, "the steps of this run would be"),
+        ({"output_step": 3.0}, "output_step = 3 s is outside"),
+        ({"output_step": 1e-9}, "the samples of this answer would be"),
+        ({"coulomb": 1}, "coulomb = 1 of type int"),
+        ({"ledger": 1}, "ledger = 1 of type int"),
+        ({"start": 0}, "start = 0 of type int"),
+        ({"method": 0}, "method = 0 of type int"),
+    ],
+)
+def test_options_are_refused_before_the_rest_of_masonry_is_sought(options, complaint):
+    """The arch has no friction and cannot stand: who looks for its rest finds that."""
+    case = mr.MasonryCase(mr.Masonry.arch(5.0, 0.7, voussoirs=5, friction=0.0), 1.0)
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        mr.simulate(case, **options)
+    with pytest.raises(ValueError, match="cannot stand"):
+        mr.simulate(case)

@@ -27,6 +27,7 @@ from mjrock.geometry.kinematics import (
     where_friction_acts,
 )
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
+from mjrock.scene.ground import Ground, push_ground
 from mjrock.scene.potential import Potential, Structure, energies
 
 AXES = SPACE.axes
@@ -441,3 +442,14 @@ class TestTumblingBodies:
                     displacement(structure.forces, i, frames_of(q, SPACE), AXES), moved, atol=1e-14
                 )
         assert pressed >= set(range(5)) | {5, 6}  # every contact, and the ties that are short
+
+
+@pytest.mark.parametrize("freedom", [PLANE, SPACE], ids=["plane", "space"])
+def test_the_ground_pushes_every_body_along_its_two_directions(freedom):
+    """-m times the mean accelerations, along x and upwards; what has no mass in these directions is not pushed."""
+    x, z = (mr.GroundMotion([a, a], 0.5) for a in (2.0, -3.0))
+    masses, applied = np.arange(1.0, 2 * freedom.nv + 1), np.zeros(2 * freedom.nv)
+    push_ground(Ground.of(x, z), masses, freedom.axes, 0.2, 0.1, applied)
+    accelerations = np.zeros((2, freedom.nv))
+    accelerations[:, 0], accelerations[:, freedom.translations - 1] = 2.0, -3.0
+    np.testing.assert_allclose(applied, -masses * accelerations.ravel())

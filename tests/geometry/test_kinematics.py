@@ -8,8 +8,10 @@ import pytest
 from scenes import fields, two_blocks
 
 import mjrock as mr
-from mjrock.geometry.frames import frames_of
+from mjrock.geometry.frames import PLANE, frames_of, swung
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
+from mjrock.problem.wall.restoring_moment import pose_of
+from mjrock.problem.wall.ties_on_wall import pulled
 from mjrock.scene.equilibrium import settled
 from mjrock.scene.of_case import course_of, scene_of
 from scripts.shared.paper import K_N
@@ -252,3 +254,20 @@ def test_a_scene_settles_under_its_weight(wall, contacts):
     force = -blocks.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)
     weights = mr.GRAVITY * blocks.mass
     np.testing.assert_allclose([force[2:].sum(), force[:2].sum()], [weights[1], weights.sum()], rtol=1e-9)
+
+
+def test_formulas_of_walls_alone_are_those_of_any_body():
+    """`pose_of` and `pulled`, which stand apart for rocking theory, beside frames and slack, on both toes."""
+    wall = mr.Block(0.3, 2.1, inset=0.02, masses=[mr.AddedMass(500.0, 3.0, 0.2)])
+    contacts = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.05)
+    tie = mr.Tie(3.5, 1e6, slack=0.01, length=2.0, anchor_height=3.0)
+    case = mr.Case(wall, 0.0, 1.0, side_stop=False, effects=(tie,))
+    scene, rest = mr.wall_scene(case, contacts), (wall.centroid_offset, wall.centroid_height)
+    for theta in (0.1, -0.2, 1e-9):
+        (pose,), frames = pose_of(np.array([theta]), *rest, wall.half_base), frames_of([0.0, 0.0, theta])
+        toe = math.copysign(wall.half_base, theta)
+        turned = swung(frames, 0, (toe - rest[0], -rest[1]))  # the toe stays where it is
+        assert pose == pytest.approx([-turned[0], -turned[1], theta], rel=1e-12, abs=1e-15)
+        velocity = wall.turning(theta, math.copysign(1.0, theta))
+        now = slack(scene.ties, 0, frames_of(pose), velocity, velocity, PLANE.axes)
+        assert pulled(case.pulls[0], theta, math.copysign(1.0, theta)) == pytest.approx((-now.value, -now.rate))

@@ -77,7 +77,7 @@ def test_what_is_no_path(name, path, tmp_path, monkeypatch):
         ({"executor": 1}, "executor = 1 of type int is no executor"),
         ({"tasks": 1.0}, "tasks = 1.0 of type float are no tasks"),
         ({"tasks": "tasks"}, "tasks = 'tasks' of type str are no tasks"),
-        ({"tasks": None}, "tasks = None of type NoneType are no tasks"),
+        ({"tasks": None}, "tasks = None are no tasks"),
     ],
 )
 def test_options_of_a_campaign(options, complaint, tmp_path):
@@ -107,6 +107,10 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: mr.Polygon([np.ma.array(p, mask=[1, 0]) for p in SQUARE]), "vertices has masked values"),
         (lambda: mr.Polygon(np.array(SQUARE, complex)), "vertices = .* does not hold real numbers alone"),
         (lambda: mr.Polygon(np.array(SQUARE, bool)), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon([(0, 0), (1, 0), (1, True), (0, 1)]), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon([*SQUARE[:3], np.array([False, True])]), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.GroundMotion([0.0, True], 0.1), "accel = .* does not hold real numbers alone"),
+        (lambda: mr.Contacts(None), "base = None is not a Interface"),
         (lambda: mr.Polygon(np.array(SQUARE, str)), "vertices = .* does not hold real numbers alone"),
         (lambda: mr.Polygon(np.array(SQUARE, "m8[s]")), "vertices = .* does not hold real numbers alone"),
         (lambda: mr.Polygon([[0, 0], [1, 0, 2], [1, 1]]), "vertices = .* has rows of different lengths"),

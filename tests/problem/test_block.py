@@ -65,3 +65,19 @@ def test_the_wall_of_a_slenderness():
     wall = mr.Block.from_slenderness(7.0, 2.1, length=3.0, density=1800.0)
     assert (wall.slenderness, wall.R) == (pytest.approx(7.0), pytest.approx(2.1))
     assert (wall.length, wall.density) == (3.0, 1800.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (lambda wall: wall.rotation_at("1"), "energy = '1' of type str is not a real number"),
+        (lambda wall: wall.rotation_at(True), "energy = True of type bool is not a real number"),
+        (lambda wall: wall.rotation_at(float("nan")), "energy = nan J is outside"),
+        (lambda wall: wall.pose(0.1), r"theta has the shape \(\)"),
+        (lambda wall: wall.pose([0.1, True]), "theta = .* does not hold real numbers alone"),
+        (lambda wall: wall.pose([float("nan")]), "theta holds a value that is not finite"),
+    ],
+)
+def test_rotations_and_energies_are_numbers(wall, call, complaint):
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        call(wall)

@@ -45,7 +45,7 @@ def test_scalars_of_a_motion(value):
 @pytest.mark.parametrize(
     ("accel", "error", "complaint"),
     [
-        (None, TypeError, "accel = None of type NoneType does not hold real numbers alone; it takes one row of at"),
+        (None, TypeError, "accel = None does not hold real numbers alone; it takes one row of at"),
         ("0 1 2", TypeError, "accel = '0 1 2' of type str"),
         (["0", "1"], TypeError, r"accel = \['0', '1'\] of type list"),
         ([0, None], TypeError, r"accel = \[0, None\]"),

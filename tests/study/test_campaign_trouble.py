@@ -278,9 +278,9 @@ def test_an_analysis_keeps_its_options(wall, contacts):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        ({"case": None}, "case = None of type NoneType is not a Case or MasonryCase"),
-        ({"contacts": "CALIBRATED"}, "contacts = 'CALIBRATED' of type str is not a Contacts or NoneType"),
-        ({"e": 0.9}, "e = 0.9 of type float is not a Restitution or NoneType"),
+        ({"case": None}, "case = None is not a Case or MasonryCase"),
+        ({"contacts": "CALIBRATED"}, "contacts = 'CALIBRATED' of type str is not a Contacts or None"),
+        ({"e": 0.9}, "e = 0.9 of type float is not a Restitution or None"),
         ({"options": ["accuracy"]}, "options = .* is no mapping"),
     ],
 )

@@ -183,7 +183,7 @@ MASKED = np.ma.array([0.1] * 10, mask=[True] + [False] * 9)
         ({"intensity": [1 + 1j] * 100}, "intensity = .* does not hold real numbers alone"),
         ({"intensity": [[1.0], [1.0, 2.0]]}, "intensity = .* has rows of different lengths"),
         ({"intensity": np.ma.array([0.1] * 100, mask=[True] + [False] * 99)}, "intensity has masked values"),
-        ({"intensity": None}, "intensity = None of type NoneType does not hold"),
+        ({"intensity": None}, "intensity = None does not hold"),
         ({"intensity": [math.nan] * 100}, r"intensity\[0\] = nan is outside the valid range"),
         ({"groups": [math.nan] * 100}, "groups holds nan"),
         ({"groups": [None] * 100}, "groups = .* does not hold"),

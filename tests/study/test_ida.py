@@ -115,11 +115,11 @@ def test_scales_that_cannot_be(scales, complaint, tmp_path, pulse):
 @pytest.mark.parametrize(
     ("build", "complaint"),
     [
-        (None, "build = None of type NoneType is no function of a scale"),
+        (None, "build = None is no function of a scale"),
         ({}, "build holds no records"),
         ({"a": 3}, r"build\['a'\] = 3 of type int is no function of a scale"),
         ({1: print}, "the name of a record in build = 1 of type int is not a str"),
-        (lambda scale: None, r"build\(0.1\) = None of type NoneType is not an Analysis"),
+        (lambda scale: None, r"build\(0.1\) = None is not an Analysis"),
         ({"a": lambda scale: "x"}, r"build\['a'\]\(0.1\) = 'x' of type str is not an Analysis"),
     ],
 )

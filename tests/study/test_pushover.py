@@ -274,8 +274,8 @@ def test_it_can_be_read():
         ({"rotations": [0.1, math.nan]}, "rotations holds a value that is not finite"),
         ({"rotations": ["a"]}, "rotations = .* does not hold real numbers alone"),
         ({"points": 3}, "points = 3 is outside the valid range 20 to 100000"),
-        ({"contacts": 3}, "contacts = 3 of type int is not a Contacts or NoneType"),
-        ({"case": None}, "case = None of type NoneType is not a Case"),
+        ({"contacts": 3}, "contacts = 3 of type int is not a Contacts or None"),
+        ({"case": None}, "case = None is not a Case"),
     ],
 )
 def test_what_cannot_be_is_refused(options, complaint):
