@@ -89,8 +89,8 @@ else:
         def on_start(self, event: Any) -> None:
             """Tell the user why nothing seems to happen."""
             dispatcher = event.data.get("dispatcher")
-            own = getattr(dispatcher, "py_func", None)
-            if not self.said and own is not None and own.__module__.startswith("mjrock."):
+            function = getattr(dispatcher, "py_func", None)
+            if not self.said and function is not None and function.__module__.startswith("mjrock."):
                 _FirstCompilation.said = True
                 folder = dispatcher._cache.cache_path
                 stored = f"once; they are stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
@@ -111,8 +111,8 @@ else:
         arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
         numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
         """
-        made = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
-        if made is not function:  # it is with NUMBA_DISABLE_JIT=1
+        dispatcher = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
+        if dispatcher is not function:  # it is with NUMBA_DISABLE_JIT=1
             with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
-                made._cache = _Cache(function)
-        return made  # type: ignore[no-any-return]
+                dispatcher._cache = _Cache(function)
+        return dispatcher  # type: ignore[no-any-return]

@@ -63,12 +63,12 @@ class PairContact(ContactNumbers):
                 have another inverse weight.
         """
         require_flag("on_geoms", on_geoms)
-        found = self._found(compiled(model))
+        geoms = self._pair_in(compiled(model))
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            self._write_spec(model, found)
-        elif found.explicit >= 0:
-            self._write_pair(model, found.explicit)
+            self._write_spec(model, geoms)
+        elif geoms.explicit >= 0:
+            self._write_pair(model, geoms.explicit)
         elif on_geoms:
             self._write_geoms(model)
         else:
@@ -83,8 +83,8 @@ class PairContact(ContactNumbers):
             option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
             option.impratio = max(float(option.impratio), self.impratio)
 
-    def _write_spec(self, spec: mujoco.MjSpec, found: GeomPair) -> None:
-        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*found.names})
+    def _write_spec(self, spec: mujoco.MjSpec, geoms: GeomPair) -> None:
+        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*geoms.names})
         pair = next(named, None) or spec.add_pair(geomname1=self.geom1, geomname2=self.geom2)
         pair.condim, pair.friction = self.condim, self.friction
         pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
@@ -96,7 +96,7 @@ class PairContact(ContactNumbers):
 
     def _write_geoms(self, model: mujoco.MjModel) -> None:
         """Equal geoms of equal priority mix to what they are."""
-        geoms = list(self._found(model).geoms)
+        geoms = list(self._pair_in(model).geoms)
         model.geom_solref[geoms], model.geom_solimp[geoms] = self.solref, self.solimp
         model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
@@ -110,10 +110,10 @@ class PairContact(ContactNumbers):
         Raises:
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.
         """
-        pair = self._found(compiled(model))
+        pair = self._pair_in(compiled(model))
         return (*missing(pair, self), *spoilers(pair, self))
 
-    def _found(self, model: mujoco.MjModel) -> GeomPair:
+    def _pair_in(self, model: mujoco.MjModel) -> GeomPair:
         """The pair in a model, which has to be the same two bodies."""
         pair = GeomPair.named(model, self.geom1 or self.ids[0], self.geom2 or self.ids[1])
         if not math.isclose(pair.inverse_weight, self.inverse_weight, rel_tol=1e-9):

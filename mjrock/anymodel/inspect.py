@@ -105,13 +105,13 @@ def inspect_contacts(
     """
     require_flag("candidates", candidates)
     points = require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
-    made = compiled(model)
-    data = at_rest(made)
-    ends = zip(made.pair_geom1, made.pair_geom2, strict=True)
-    pairs = [GeomPair(made, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
+    whole = compiled(model)
+    data = at_rest(whole)
+    ends = zip(whole.pair_geom1, whole.pair_geom2, strict=True)
+    pairs = [GeomPair(whole, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
     listed = {frozenset(pair.geoms) for pair in pairs}
     if candidates:
-        pairs += [pair for pair in _candidates(made) if frozenset(pair.geoms) not in listed]
+        pairs += [pair for pair in _candidates(whole) if frozenset(pair.geoms) not in listed]
     return tuple(_inspected(pair, data, points) for pair in pairs if pair.inverse_weight > 0)
 
 
@@ -153,7 +153,7 @@ def _inspected(pair: GeomPair, data: mujoco.MjData, contacts: int) -> InspectedC
     k, c = scale * d * spring, scale * dashpot
     staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
     first, second = (name or f"[{geom}]" for name, geom in zip(pair.names, pair.geoms, strict=True))
-    found = InspectedContact(
+    contact = InspectedContact(
         first,
         second,
         explicit=pair.explicit >= 0,
@@ -165,8 +165,8 @@ def _inspected(pair: GeomPair, data: mujoco.MjData, contacts: int) -> InspectedC
         points=contacts if pair.makes_several_points else 1,
         notes=(),
     )
-    notes = (*_notes(pair, mixed, constant), *_step_notes(found, h), *model_spoilers(pair.model))
-    return replace(found, notes=(*notes, *_points_notes(pair, found.points)))
+    notes = (*_notes(pair, mixed, constant), *_step_notes(contact, h), *model_spoilers(pair.model))
+    return replace(contact, notes=(*notes, *_points_notes(pair, contact.points)))
 
 
 def _notes(pair: GeomPair, mixed: Mixed, constant: bool) -> Iterator[str]:
@@ -190,22 +190,22 @@ def _points_notes(pair: GeomPair, points: int) -> Iterator[str]:
         yield f"it can have several points: xi and e are those of {shared}; contacts says how many do, 4 for a flat box"
 
 
-def _step_notes(found: InspectedContact, h: float) -> Iterator[str]:
+def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:
     """Where the step is too long for the formula of e.
 
     No row of `contact_for` has an omega h above 1, because its inertia is h^2 k where the step resolves nothing.
     """
-    if not found.mass < math.inf:
+    if not contact.mass < math.inf:
         return
-    moved = found.mass / found.points + found.inertia
-    longest = resolving_step(found.k, found.c, moved)
-    if found.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
-        longest = min(longest, moved / found.c)
+    moved = contact.mass / contact.points + contact.inertia
+    longest = resolving_step(contact.k, contact.c, moved)
+    if contact.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
+        longest = min(longest, moved / contact.c)
     if h <= longest:
         return
-    gain = ", and it can gain energy" if found.frequency * h > UNSOUND else ""
+    gain = ", and it can gain energy" if contact.frequency * h > UNSOUND else ""
     yield (
-        f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: e leaves out the step, and the "
+        f"timestep = {h:g} s is long for it, omega h = {contact.frequency * h:.2g}: e leaves out the step, and the "
         f"rebound can be another{gain}; {rounded_down(longest)} s resolves it"
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -79,19 +80,18 @@ def contact_for(
     Warns:
         UserWarning: of what in the model spoils the contact and is not mended by `apply`, and of a long step.
     """
-    made = compiled(model)
-    pair = GeomPair.named(made, geom1, geom2)
+    whole = compiled(model)
+    pair = GeomPair.named(whole, geom1, geom2)
     k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
-    h = require_within("timestep", made.opt.timestep if timestep is None else timestep, 1e-12, 1e3, "s")
+    h = require_within("timestep", whole.opt.timestep if timestep is None else timestep, 1e-12, 1e3, "s")
     beta = require_within("newmark_beta", newmark_beta, 0.0, 1e6)
     points = 1 if contacts is None else require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
     share = _mass(pair, mass, at) / points
     c = _dashpot(k, share, c, restitution, xi)
-    staged = made.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
+    staged = whole.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
     dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
-    coefficients, condim = _friction(pair, friction)
-    rate = min(math.sqrt(k / share), 1 / h)  # slip stops in 1 / omega; see the page on contacts for why not sooner
+    grip = _grip(pair, friction, min(math.sqrt(k / share), 1 / h), d, share, inertia)
     contact = PairContact(
         *pair.names,
         ids=pair.geoms,
@@ -100,14 +100,11 @@ def contact_for(
         mass=share,
         inverse_weight=pair.inverse_weight,
         timestep=h,
-        integrator=mujoco.mjtIntegrator(made.opt.integrator).name.removeprefix("mjINT_"),
+        integrator=mujoco.mjtIntegrator(whole.opt.integrator).name.removeprefix("mjINT_"),
         contacts=contacts if contacts is None else points,
         solref=(stiffness, damping),
         solimp=(d, d, 0.001, 0.5, 2.0),
-        solreffriction=(-1e-30, -d * rate) if condim > 1 else (0.0, 0.0),
-        friction=coefficients,
-        condim=condim,
-        impratio=max(1.0, HOLD / rate * share / inertia) if condim > 1 else 1.0,
+        **grip._asdict(),
     )
     for sentence in spoilers(pair, contact):
         warnings.warn(sentence, stacklevel=2)
@@ -120,21 +117,21 @@ def _mass(pair: GeomPair, mass: float | None, at: object) -> float:
         if at is not None:
             raise ValueError(f"mass = {shown(mass)} and at = {shown(at)} are both given; give one of them")
         return require_within("mass", mass, 1e-30, 1e30, "kg")
-    found = pair.mass(at=at)
-    if not found < np.inf:
+    approached = pair.mass(at=at)
+    if not approached < np.inf:
         raise ValueError(
             f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at qpos0, so that the model "
             "gives no mass for the restitution; give mass"
         )
-    return found
+    return approached
 
 
 def _dashpot(k: float, mass: float, c: float | None, restitution: float | None, xi: float | None) -> float:
     """The dashpot of a contact point [N s/m], from the one of the three that is given."""
     given = {name: value for name, value in (("c", c), ("restitution", restitution), ("xi", xi)) if value is not None}
     if len(given) != 1:
-        found = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
-        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {found}")
+        listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
     if c is not None:
         return require_within("damping c", c, 0.0, 1e30, "N s/m")
     if restitution is not None:
@@ -174,11 +171,32 @@ def _row(
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
 
 
-def _friction(pair: GeomPair, friction: float | None) -> tuple[tuple[float, float, float, float, float], int]:
-    """The five coefficients of friction, and condim."""
+class Grip(NamedTuple):
+    """What a `PairContact` has for friction."""
+
+    friction: tuple[float, float, float, float, float]
+    condim: int
+    solreffriction: tuple[float, float] = (0.0, 0.0)
+    impratio: float = 1.0
+
+
+def _grip(pair: GeomPair, friction: float | None, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
+    """Friction of the contact: that of the model, or the coefficient that is given.
+
+    Args:
+        pair: the geoms.
+        friction: the coefficient [-], or None.
+        rate: with which friction stops slip, omega at most [1/s]; see the page on contacts for why not sooner.
+        impedance, inertia: of the normal row [-, kg].
+        mass: of the contact point [kg].
+    """
     if friction is None:
         mixed = Mixed.of(pair)
         first, second, torsional, rolling, last = mixed.friction
-        return (first, second, torsional, rolling, last), mixed.condim
-    sliding = require_within("friction", friction, 0.0, 1e6)
-    return (sliding, sliding, *SPINNING), 3 if sliding > 0 else 1
+        grip = Grip((first, second, torsional, rolling, last), mixed.condim)
+    else:
+        sliding = require_within("friction", friction, 0.0, 1e6)
+        grip = Grip((sliding, sliding, *SPINNING), 3 if sliding > 0 else 1)
+    if grip.condim == 1:
+        return grip
+    return grip._replace(solreffriction=(-1e-30, -impedance * rate), impratio=max(1.0, HOLD / rate * mass / inertia))
