@@ -13,6 +13,7 @@ from ..problem.masonry.support import Support
 from ..quantities import GRAVITY, Array, Flags, Integers
 from ..scene.course import Course
 from ..scene.scene import Scene
+from .contact import OVERHANG
 from .limit import line_rates
 from .system import BODY, FAR, LINE, LINK, Rows, Supports, System, rows
 
@@ -106,7 +107,9 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[S
     face = np.where(turned[:, None], ends[of, 1], ends[of, 0])
     edge = np.where(turned[:, None], ends[of, 0], ends[of, 1]) - place[:, None]
     face, edge = (np.where(turned[:, None], -values[:, ::-1], values) for values in (face, edge))
-    (lines["low"], lines["high"]), (lines["back"], lines["forth"]) = face.T, edge.T
+    for (low, high), ends_of in ((("low", "high"), face), (("back", "forth"), edge)):
+        beyond = OVERHANG * (ends_of[:, 1] - ends_of[:, 0])
+        lines[low], lines[high] = ends_of[:, 0] - beyond, ends_of[:, 1] + beyond
     lines["k_s"] = masonry.joint_shear[of] * lines["k"] / masonry.joint_stiffness[of]
     lines["c_s"] = np.where(np.isfinite(lines["k_s"]), lines["c"] * lines["k_s"] / lines["k"], 0.0)
     moved = {support.block: i for i, support in enumerate(supports)}

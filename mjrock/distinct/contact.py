@@ -20,8 +20,9 @@ from .system import Books, Rows, Supports, System
 OPEN = 1.0
 """Gap of a line that has left its face [m]."""
 OVERHANG = 0.02
-"""Overhang, over the length of the face, from which the edge of the block above gives the normal, and no longer the
-face [-]. A block that stands flush has its points at the very end of the face, and they move to and fro there."""
+"""Length by which a face is taken to be longer at either end, over its length [-]. The points of a block that stands
+flush lie at the very end of the face, and move to and fro there. Over the same length beyond, the normal turns from
+that of the face to that of the edge of the block above."""
 
 
 class Meeting(NamedTuple):
