@@ -1,8 +1,9 @@
 """One-sided rocking masonry walls in MuJoCo, and the energy lost at every impact.
 
 Units are SI, angles radians, damping ratios fractions. `Block` is the wall, `Case` the problem, `Contacts` the
-compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compliant` the same law in SciPy,
-`solve_analytical` is classical rocking theory, and `compare` sets two answers side by side.
+compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compliant` the same law in SciPy, and
+`solve_explicit` by explicit steps, for many blocks. `solve_analytical` is classical rocking theory, and `compare` sets
+two answers side by side.
 """
 
 import importlib
@@ -12,6 +13,7 @@ from ._version import __version__
 from .anymodel.contact import PairContact
 from .anymodel.inspect import InspectedContact, inspect_contacts
 from .anymodel.make import contact_for
+from .distinct.explicit import solve_explicit
 from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
 from .engine.model import SimulationError
 from .engine.simulation import automatic_timestep, simulate
@@ -123,6 +125,7 @@ __all__ = [
     "simulate",
     "solve_analytical",
     "solve_compliant",
+    "solve_explicit",
     "wall_mjcf",
     "wall_scene",
     "wall_stiffness",

@@ -21,9 +21,7 @@ ENOUGH = 1e-9
 """Tolerance of the search for the friction at rest, relative [-]."""
 
 
-def system_of(
-    scene: Scene, course: Course, masonry: Masonry | None = None, supports: Sequence[Support] = ()
-) -> System:
+def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supports: Sequence[Support] = ()) -> System:
     """The system of a scene at the start of a course. Faces of masonry end where they end, those of a wall do not."""
     pose, velocity = np.asarray(course.pose), np.asarray(course.velocity)
     bodies = rows(

@@ -14,8 +14,7 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined, jitable
-from ..quantities import Array
-from .system import Books, Rows, Supports, System
+from .system import Books, Row, Rows, Supports, System
 
 OPEN = 1.0
 """Gap of a line that has left its face [m]."""
@@ -45,7 +44,7 @@ class Meeting(NamedTuple):
 
 
 @inlined
-def meeting(bodies: Rows, line: Rows, supports: Supports) -> Meeting:
+def meeting(bodies: Rows, line: Row, supports: Supports) -> Meeting:
     """Where a line is."""
     body, nx, nz = bodies[line.body], line.normal_x, line.normal_z
     swung_x = line.at_z * body.sine - line.at_x * body.versine
@@ -85,7 +84,7 @@ def meeting(bodies: Rows, line: Rows, supports: Supports) -> Meeting:
 
 
 @inlined
-def relative(bodies: Rows, line: Rows, supports: Supports, meet: Meeting) -> tuple[float, float]:
+def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> tuple[float, float]:
     """Velocity of the point of a line over the face [m/s]."""
     body = bodies[line.body]
     ux, uz = body.vx + body.w * meet.rz, body.vz - body.w * meet.rx
@@ -98,7 +97,7 @@ def relative(bodies: Rows, line: Rows, supports: Supports, meet: Meeting) -> tup
 
 
 @inlined
-def add_force(body: Rows, rx: float, rz: float, fx: float, fz: float) -> None:
+def add_force(body: Row, rx: float, rz: float, fx: float, fz: float) -> None:
     """Add a force at an arm from the centroid of a body [N]."""
     body.fx += fx
     body.fz += fz
@@ -106,11 +105,11 @@ def add_force(body: Rows, rx: float, rz: float, fx: float, fz: float) -> None:
 
 
 @inlined
-def sprung_friction(line: Rows, push: float, slip: float, h: float) -> float:
+def sprung_friction(line: Row, push: float, slip: float, h: float) -> float:
     """Force of the shear spring with its slider and dashpot [N]. The last velocity has stretched the spring."""
     most = line.friction * push
     stretched = line.grip + h * slip
-    drag = -line.k_s * stretched - line.c_s * slip
+    drag: float = -line.k_s * stretched - line.c_s * slip
     if abs(drag) > most:
         drag = math.copysign(most, drag)
         stretched = -drag / line.k_s
@@ -168,7 +167,7 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
 
 
 @inlined
-def list_rigid(bodies: Rows, line: Rows, meet: Meeting, most: float) -> None:
+def list_rigid(bodies: Rows, line: Row, meet: Meeting, most: float) -> None:
     """Prepare the row of a line that sticks rigidly: way and levers of its friction, its most, and what it moves."""
     middle, body = -0.5 * meet.gap, bodies[line.body]
     line.way_x, line.way_z, line.most = meet.nz, -meet.nx, most

@@ -15,10 +15,10 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import ON_ITS_FACE, require_flag, require_size, require_within
 from ..result.response import Response, State
-from ..scene.of_case import course_of, scene_of
 from ..result.start import required_start
+from ..scene.of_case import course_of, require_case, scene_of
 from .assembly import system_of
-from .limit import SHARE, longest_step
+from .limit import SHARE, SHARE_OF_A_WALL, longest_step
 from .loop import Clock, advance
 from .reading import Run, response_of
 from .system import Books, Samples
@@ -45,8 +45,8 @@ def solve_explicit(
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
         contacts: the interfaces of the wall; masonry has its own joints.
-        timestep: length of a step [s]; None takes 0.4 of the longest stable one, shortened to a whole share of
-            `output_step`.
+        timestep: length of a step [s]; None takes 0.4 of the longest stable one for masonry and 0.02 of it for a wall,
+            whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
         output_step: spacing of the returned samples [s]. A given timestep is kept, and the spacing is a whole number of
             steps.
         ledger: whether to account for every part of the energy.
@@ -59,22 +59,24 @@ def solve_explicit(
         RuntimeError: if more energy appears than was there and was put in.
     """
     begun = time.perf_counter()
+    require_case(case, contacts)
     require_flag("ledger", ledger)
     if timestep is not None:
         timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
     output_step = require_within("output_step", output_step, 1e-9, 1e3, "s")
+    state = None if start is None else required_start(start, case)
     scene = scene_of(case, contacts)
     course = course_of(case, scene)
-    if start is not None:
-        pose, velocity = required_start(start, case, len(scene.names))
-        course = replace(course, pose=pose, velocity=velocity, released=False)
+    if state is not None:
+        course = replace(course, pose=state[0], velocity=state[1], released=False)
     masonry, supports = (case.masonry, case.supports) if isinstance(case, MasonryCase) else (None, ())
     system = system_of(scene, course, masonry, supports)
     limit = longest_step(system)
     spacing = min(output_step, course.duration)
     if isinstance(case, Case):
         spacing = min(spacing, 1e-3 / case.wall.p)  # peaks and impacts are read off the samples
-    h, every = steps_of(timestep, limit, spacing)
+    share = SHARE if isinstance(case, MasonryCase) else SHARE_OF_A_WALL
+    h, every = steps_of(timestep, share * limit, limit, spacing)
     count = math.floor(course.duration / (h * every) * (1 + 1e-12)) + 1
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
     groups = tuple(dict.fromkeys(scene.group))
@@ -91,6 +93,7 @@ def solve_explicit(
         "steps": steps,
         "timestep": h,
         "stable_timestep": limit,
+        "share": h / limit,
         "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
         "stepping_time": took,
     }
@@ -100,14 +103,14 @@ def solve_explicit(
     return response
 
 
-def steps_of(timestep: float | None, limit: float, spacing: float) -> tuple[float, int]:
+def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
     """Length of a step [s], and how many lie between two samples.
 
     Raises:
         ValueError: for a step that is not stable.
     """
     if timestep is None:
-        every = max(1, math.ceil(spacing / (SHARE * limit)))
+        every = max(1, math.ceil(spacing / taken))
         return spacing / every, every
     if timestep > limit:
         raise ValueError(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ..compiled import inlined, jitable
 from ..quantities import Integers
-from .system import Rows, Supports, System
+from .system import Row, Rows, Supports, System
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -18,10 +18,10 @@ SETTLED = 1e-3
 
 
 @inlined
-def slip_of(bodies: Rows, line: Rows, supports: Supports) -> float:
+def slip_of(bodies: Rows, line: Row, supports: Supports) -> float:
     """Velocity along its face of a line that sticks rigidly [m/s]."""
     body = bodies[line.body]
-    slip = line.way_x * body.vx + line.way_z * body.vz + line.lever * body.w
+    slip: float = line.way_x * body.vx + line.way_z * body.vz + line.lever * body.w
     if line.face >= 0:
         face = bodies[line.face]
         slip -= line.way_x * face.vx + line.way_z * face.vz + line.other * face.w
@@ -31,7 +31,7 @@ def slip_of(bodies: Rows, line: Rows, supports: Supports) -> float:
 
 
 @inlined
-def strike(bodies: Rows, line: Rows, impulse: float) -> None:
+def strike(bodies: Rows, line: Row, impulse: float) -> None:
     """Change the velocities on both sides of a line by an impulse [N s]."""
     body = bodies[line.body]
     body.vx += line.way_x * impulse / body.mass

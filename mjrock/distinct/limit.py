@@ -13,11 +13,12 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
-from ..quantities import Array
+from ..quantities import Array, Integers
 from .system import Rows, System
 
-SHARE = 0.4
-"""Step that is taken, over the longest stable one [-]."""
+SHARE, SHARE_OF_A_WALL = 0.4, 0.02
+"""Step that is taken for masonry, and for a wall, over the longest stable one [-]. A touch inside a step is met up to
+half a step late, which scatters |e| of a wall by some 2 % with 0.1 and by 0.2 % with 0.02."""
 SMALL = 20
 """Number of springs up to which the eigenvalues are those of a full matrix."""
 ALLOWANCE = 1.01
@@ -63,10 +64,17 @@ def highest(system: System, rates: csr_array, weights: Array) -> float:
 def line_rates(system: System, x: Array, z: Array) -> csr_array:
     """Rates at which the points of the lines move over their faces in the directions x, z, for unit velocities."""
     lines, bodies = system.lines, system.bodies
-    own, on_body = lines["body"], np.flatnonzero(lines["face"] >= 0)
+    own, on_body = lines["body"], np.flatnonzero(lines["face"] >= 0).astype(np.int64)
     face = lines["face"][on_body]
     arms = [lines[f"at_{axis}"] + bodies[f"{axis}0"][own] for axis in "xz"]
-    rates = entries(system, np.arange(len(own)), own, [arms[0] - bodies["x0"][own], arms[1] - bodies["z0"][own]], x, z)
+    rates = entries(
+        system,
+        np.arange(len(own), dtype=np.int64),
+        own,
+        [arms[0] - bodies["x0"][own], arms[1] - bodies["z0"][own]],
+        x,
+        z,
+    )
     others = [arms[0][on_body] - bodies["x0"][face], arms[1][on_body] - bodies["z0"][face]]
     return rates - entries(system, on_body, face, others, x[on_body], z[on_body], len(own))
 
@@ -75,11 +83,13 @@ def link_rates(system: System, links: Rows) -> csr_array:
     """Rates at which ties or dampers lengthen, for unit velocities."""
     x, z = links["between_x"], links["between_z"]
     size = np.hypot(x, z)
-    return entries(system, np.arange(len(links)), links["body"], [links["at_x"], links["at_z"]], x / size, z / size)
+    return entries(
+        system, np.arange(len(links), dtype=np.int64), links["body"], [links["at_x"], links["at_z"]], x / size, z / size
+    )
 
 
 def entries(
-    system: System, row: Array, body: Array, arms: list[Array], x: Array, z: Array, count: int | None = None
+    system: System, row: Integers, body: Integers, arms: list[Array], x: Array, z: Array, count: int | None = None
 ) -> csr_array:
     """A matrix whose rows hold the rates, in the directions x, z, of points at arms from the centroids of bodies."""
     values = np.column_stack([x, z, arms[1] * x - arms[0] * z])

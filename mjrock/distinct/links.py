@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..compiled import inlined, jitable
 from .contact import add_force
-from .system import Books, Rows, Supports, System
+from .system import Books, Row, Supports, System
 
 
 class Pull(NamedTuple):
@@ -21,7 +21,7 @@ class Pull(NamedTuple):
 
 
 @inlined
-def pull(link: Rows, body: Rows) -> Pull:
+def pull(link: Row, body: Row) -> Pull:
     """Where a tie or a damper is."""
     swung_x = link.at_z * body.sine - link.at_x * body.versine
     swung_z = -link.at_x * body.sine - link.at_z * body.versine
@@ -80,19 +80,16 @@ def linked_energy(system: System) -> tuple[float, float]:
 def support_place(supports: Supports, i: int, axis: int, t: float) -> float:
     """Displacement of support i along an axis, linear between its samples and constant beyond them [m]."""
     low, high = supports.first[i], supports.first[i + 1] - 1
-    if t <= supports.t[low]:
-        return supports.displacement[low, axis]
-    if t >= supports.t[high]:
-        return supports.displacement[high, axis]
+    t = min(max(t, supports.t[low]), supports.t[high])
     while high - low > 1:
         middle = (low + high) // 2
         if supports.t[middle] <= t:
             low = middle
         else:
             high = middle
-    share = (t - supports.t[low]) / (supports.t[high] - supports.t[low])
-    start = supports.displacement[low, axis]
-    return start + share * (supports.displacement[high, axis] - start)
+    share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 0.0
+    place: float = (1 - share) * supports.displacement[low, axis] + share * supports.displacement[high, axis]
+    return place
 
 
 @jitable

@@ -47,8 +47,8 @@ class Run:
     @property
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
-        total: Array = self.samples.energy.sum(axis=1) - self.scene.rest_energies.sum()
-        return total - self._preloaded
+        total: Array = self.samples.energy.sum(axis=1) - float(self.scene.rest_energies.sum() + self._preloaded)
+        return total
 
     @property
     def _preloaded(self) -> float:

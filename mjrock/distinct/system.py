@@ -6,7 +6,7 @@ Positions are those at rest, and the motion is counted from there.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,9 +36,9 @@ LINE = np.dtype(
         ("support", np.int64),  # the support that moves a fixed block, -1 for none
         ("group", np.int64),  # number of the account
         *((name, float) for name in ("at_x", "at_z")),  # the point from the centroid of its body [m]
-        *((name, float) for name in ("origin_x", "origin_z")),  # a point of the face, from the centroid or the world [m]
+        *((name, float) for name in ("origin_x", "origin_z")),  # a point of the face, from the centroid [m]
         *((name, float) for name in ("normal_x", "normal_z")),  # unit vector out of the face
-        *((name, float) for name in ("between_x", "between_z")),  # from that point of the face to the point, at rest [m]
+        *((name, float) for name in ("between_x", "between_z")),  # from the face to the point at rest [m]
         *((name, float) for name in ("k", "c", "k_s", "c_s")),  # springs and dashpots along the normal and the face
         ("friction", float),  # coefficient [-]
         *((name, float) for name in ("low", "high")),  # ends of the face, from its origin along its tangent [m]
@@ -56,15 +56,17 @@ LINK = np.dtype(
     [
         ("body", np.int64),  # the body that is held
         *((name, float) for name in ("at_x", "at_z")),  # where, from its centroid [m]
-        *((name, float) for name in ("between_x", "between_z")),  # from the anchor to there [m]; components of a force [N]
+        *((name, float) for name in ("between_x", "between_z")),  # from the anchor [m]; components of a force [N]
         *((name, float) for name in ("k", "c")),  # spring and dashpot [N/m, N s/m]
-        *((name, float) for name in ("reach", "strength")),  # length up to which a tie is slack [m], and its yield [N]
+        *((name, float) for name in ("reach", "strength")),  # slack length of a tie [m], and its yield [N]
         ("pulled", float),  # force of a damper in the last step [N]
     ]
 )
 """A tie, a damper or a constant force between a point of a body and the ground."""
 
 Rows = NDArray[np.void]
+Row = Any
+"""One of the rows; its numbers are attributes."""
 
 
 def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | float) -> Rows:
@@ -72,7 +74,7 @@ def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | floa
     table = np.zeros(count, dtype=kind)
     for name, values in columns.items():
         table[name] = values
-    return table
+    return table.view(np.recarray)
 
 
 class Supports(NamedTuple):
@@ -124,8 +126,10 @@ class Books(NamedTuple):
     @classmethod
     def of(cls, system: System, groups: int) -> Books:
         """Empty books."""
-        sizes = groups, len(system.ties), len(system.dampers), 4
-        return cls(*(np.zeros(size) for size in sizes), np.zeros(len(system.lines), dtype=np.int64))
+        dashpots, ties, dampers, friction = (
+            np.zeros(size) for size in (groups, len(system.ties), len(system.dampers), 4)
+        )
+        return cls(dashpots, ties, dampers, friction, np.zeros(len(system.lines), dtype=np.int64))
 
 
 class Samples(NamedTuple):

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import warnings
 
+import numpy as np
+
 from ..method import METHOD
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.masonry import Masonry
 from ..result.response import Response
 from ..scene.scene import Scene
 from .energy_work import contact_work
@@ -26,6 +30,23 @@ LIFTED = 0.02
 """Share of the normal force that the rows of sliding contacts may add to it before that is warned of [-]."""
 SLID = 0.01
 """Sliding of a base that should hold that is warned of, over b [-]."""
+
+
+def require_still(case: MasonryCase) -> None:
+    """Raise a ValueError where supports move: in MuJoCo the fixed blocks belong to the world."""
+    if case.supports:
+        names = ", ".join(case.masonry.names[support.block] for support in case.supports)
+        raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")
+
+
+def warn_if_sheared(masonry: Masonry) -> None:
+    """Warn where joints have a shear stiffness, which MuJoCo's friction does not have."""
+    if np.isfinite(masonry.joint_shear).any():
+        warnings.warn(
+            f"k_s = {masonry.joint_shear.min():.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick "
+            "rigidly up to their friction",
+            stacklevel=3,
+        )
 
 
 def warn_if_coarse(scene: Scene, h: float) -> None:

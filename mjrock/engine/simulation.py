@@ -13,6 +13,7 @@ from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_kind
 from ..result.response import Response, State
+from ..result.start import required_start
 from ..scene.course import Course
 from ..scene.of_case import course_of, require_case, scene_of
 from ..scene.scene import Scene
@@ -23,8 +24,7 @@ from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
 from .record import StepError
 from .run import Run, explained, sound_timestep
-from .run_warnings import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
-from ..result.start import required_start
+from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_sheared, warn_if_slid
 from .stepping import fitted_steps, fixed_steps
 
 
@@ -85,6 +85,9 @@ def simulate(
     begun = time.perf_counter()
     require_case(case, contacts)
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method)
+    if isinstance(case, MasonryCase):
+        require_still(case)
+        warn_if_sheared(case.masonry)
     state = None if start is None else required_start(start, case)
     scene = scene_of(case, contacts, method)
     course = course_of(case, scene)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
 from ..files import write_arrays
 from ..problem.damping.contacts import Contacts
@@ -24,8 +25,9 @@ SOLVERS: dict[str, Callable[..., Response]] = {
     "analytical": solve_analytical,
     "compliant": solve_compliant,
     "MuJoCo": simulate,
+    "explicit": solve_explicit,
 }
-OF_MASONRY = ("MuJoCo",)
+OF_MASONRY = ("MuJoCo", "explicit")
 """The solvers that take masonry."""
 OPTIONS = {name: tuple(inspect.signature(solver).parameters)[2:] for name, solver in SOLVERS.items()}
 """The options of each solver."""
@@ -62,9 +64,9 @@ class Analysis:
 
     Args:
         case: the case, of a wall or of masonry.
-        solver: "analytical", "compliant" or "MuJoCo"; masonry takes "MuJoCo".
+        solver: "analytical", "compliant", "MuJoCo" or "explicit"; masonry takes the last two.
         e: coefficients of restitution, for the analytical solver.
-        contacts: interfaces of a wall, for the other two.
+        contacts: interfaces of a wall, for the other three.
         options: keyword arguments of the solver, such as `accuracy`, `timestep` or `rtol`.
         labels: columns that tell the user which case it is: text, numbers.
 

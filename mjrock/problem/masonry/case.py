@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ from ...quantities import Array, keep, require_array, require_kind, require_whol
 from ..ground.motion import GroundMotion
 from ..wall.effects import KINDS, Effect, Load
 from .masonry import Masonry
-from .support import Support, supports_of
+from .support import supports_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
@@ -50,7 +50,7 @@ class MasonryCase:
     vertical: GroundMotion | None = None
     velocity: Array | ArrayLike | None = None
     effects: tuple[Effect, ...] = ()
-    supports: tuple[Support, ...] | Mapping[str, Any] = ()
+    supports: Any = ()
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)

@@ -50,9 +50,9 @@ class Masonry:
     `points` and `k_n`, and a structure near its limit can depend on that.
 
     In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
-    does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the motion
-    the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block has
-    turned by 90 degrees.
+    does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the
+    motion the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block
+    has turned by 90 degrees. In explicit steps, see `solve_explicit`, faces end and blocks that fall meet others.
 
     Friction that holds is a strong dashpot in MuJoCo. A joint under a sustained force F along it creeps at about
     F / (3e8 m) [m/s], with m the reduced mass of its two blocks [kg]: an arch at rest by some 0.05 mm in a minute. What

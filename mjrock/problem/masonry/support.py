@@ -63,6 +63,8 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
             raise ValueError(f"supports, {name}: t does not increase")
         far = max(float(np.abs(dx).max()), float(np.abs(dz).max()))
         if far > FARTHEST:
-            raise ValueError(f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m")
+            raise ValueError(
+                f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m"
+            )
         supports.append(Support(masonry.names.index(name), *(tuple(row.tolist()) for row in (t, dx, dz))))
     return tuple(supports)
