@@ -24,6 +24,11 @@ flush lie at the very end of the face, and move to and fro there. Over the same 
 that of the face to that of the edge of the block above."""
 
 
+ENTERED = 2.0
+"""Depth of a corner in its first step behind an edge, over its way in the step [-]. A deeper one has come round the end
+of the edge, and the edge does not push it."""
+
+
 class Meeting(NamedTuple):
     """A line at a pose.
 
@@ -135,15 +140,17 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         meet = meeting(bodies, line, supports)
         if meet.gap >= 0:
             line.widest = max(line.widest, meet.gap)
-            if line.pressed == 0 and line.dragged == 0:
+            if line.push == 0 and line.pressed == 0 and line.dragged == 0:
                 line.grip = 0.0
                 continue
         ux, uz = relative(bodies, line, supports, meet)
         rate, slip = meet.nx * ux + meet.nz * uz, meet.nz * ux - meet.nx * uz
+        if line.corner and line.push == 0 and meet.gap < -ENTERED * h * abs(rate):
+            continue  # it did not come through this edge
         sprung = -line.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - line.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
-        line.pressed = push - sprung
+        line.push, line.pressed = push, push - sprung
         middle, drag = -0.5 * min(meet.gap, 0.0), 0.0  # friction rubs halfway into the overlap
         if push == 0:
             line.grip = 0.0

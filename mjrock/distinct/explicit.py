@@ -18,13 +18,16 @@ from ..result.response import Response, State
 from ..result.start import required_start
 from ..scene.of_case import course_of, require_case, scene_of
 from .assembly import system_of
+from .encounters import Encounters
 from .limit import SHARE, SHARE_OF_A_WALL, longest_step
 from .loop import Clock, advance
 from .reading import Run, response_of
-from .system import Books, Samples
+from .system import Books, Samples, System
 
 AT_ONCE = 2e7
 """Steps of a line that are made before the progress bar moves and Ctrl-C is heard: about a second."""
+LOOK = 5e-3
+"""Longest time between two looks for blocks that meet others [s]."""
 
 
 def solve_explicit(
@@ -80,14 +83,15 @@ def solve_explicit(
     count = math.floor(course.duration / (h * every) * (1 + 1e-12)) + 1
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
     groups = tuple(dict.fromkeys(scene.group))
-    columns = 2 + (len(scene.damper_names) + len(scene.tie_names) + len(groups) if ledger else 0)
+    encounters = None if masonry is None else Encounters(masonry, system, len(groups))
+    columns = 2 + (len(scene.damper_names) + len(scene.tie_names) + len(groups) + 1 if ledger else 0)
     if ledger:
         require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
-    books = Books.of(system, len(groups))
+    books = Books.of(system, len(groups) + 1, 0 if encounters is None else len(encounters.room))
     samples = Samples.of(count, len(scene.names), columns)
     ends = ON_ITS_FACE if isinstance(case, Case) else math.inf
     stepping = time.perf_counter()
-    steps, kept = follow(system, books, samples, Clock(0, h, every, 0, count, ends))
+    system, steps, kept = follow(system, encounters, books, samples, Clock(0, h, every, 0, count, ends))
     took = time.perf_counter() - stepping
     stats: dict[str, Any] = {
         "steps": steps,
@@ -120,13 +124,24 @@ def steps_of(timestep: float | None, taken: float, limit: float, spacing: float)
     return timestep, max(1, round(spacing / timestep))
 
 
-def follow(system: Any, books: Books, samples: Samples, clock: Clock) -> tuple[int, int]:
-    """Make the steps, with a progress bar where they take more than some seconds. How many, and of how many samples."""
-    work = clock.every * max(1, len(system.lines))
-    rows, total, ended = max(1, int(AT_ONCE / work)), clock.rows, False
+def follow(
+    system: System, encounters: Encounters | None, books: Books, samples: Samples, clock: Clock
+) -> tuple[System, int, int]:
+    """Make the steps, with a progress bar where they take more than some seconds.
+
+    Returns:
+        The system at the end, how many steps it took, and of how many samples.
+    """
+    total, sample, ended = clock.rows, clock.every * clock.h, False
     with tqdm(total=total, desc="explicit", unit="sample", delay=3, disable=None, leave=False) as bar:
         while clock.row < total and not ended:
+            rows = max(1, int(AT_ONCE / (clock.every * max(1, len(system.lines)))))
+            if encounters is not None:
+                rows = min(rows, max(1, int(LOOK / sample)))
+                loose = encounters.loose(system)
+                if loose.any():
+                    system = encounters.looked_for(system, loose, rows * sample)
             step, row, ended = advance(system, books, samples, clock._replace(rows=min(rows, total - clock.row)))
             bar.update(row - clock.row)
             clock = clock._replace(step=step, row=row)
-    return clock.step, clock.row
+    return system, clock.step, clock.row

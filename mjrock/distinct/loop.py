@@ -89,6 +89,8 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
     for p in range(len(system.lines)):
         line = system.lines[p]
         pressed = min(meeting(system.bodies, line, system.supports).gap, 0.0)
+        if line.corner and line.push == 0:  # it is behind an edge that it has not come through
+            pressed = 0.0
         elastic += 0.5 * line.k * pressed * pressed
         if line.k_s < math.inf:
             sheared += 0.5 * line.k_s * line.grip * line.grip

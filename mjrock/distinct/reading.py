@@ -47,8 +47,9 @@ class Run:
     @property
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
-        total: Array = self.samples.energy.sum(axis=1) - float(self.scene.rest_energies.sum() + self._preloaded)
-        return total
+        at_rest = float(self.scene.rest_energies.sum()) + self._preloaded
+        energy: Array = np.subtract(self.samples.energy.sum(axis=1), at_rest)
+        return energy
 
     @property
     def _preloaded(self) -> float:
@@ -118,7 +119,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     sizes = np.array([masonry.blocks[i].size for i in masonry.free])
     fallen = fallen_blocks(masonry, run.t, motion.lost, (scene.at_rest[:, 1] - pose[:, :, 1]) / sizes)
     quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
-    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]))
+    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), met=True)
     opening = motion.opening.copy()
     number = {joint.name: i for i, joint in enumerate(masonry.joints)}
     of = [number[name] for name in scene.group]
@@ -155,7 +156,7 @@ def require_no_gain(run: Run, count: int) -> None:
 def ledger_of(run: Run, stride: int) -> Ledger:
     """The ledger of a run."""
     samples, scene = run.samples, run.scene
-    names = (*scene.damper_names, *scene.tie_names, *dict.fromkeys(scene.group))
+    names = (*scene.damper_names, *scene.tie_names, *dict.fromkeys(scene.group), "encounters")
     accounts = dict(zip(names, samples.work[::stride, 2:].T, strict=True))
     ties = {name: accounts.pop(name) for name in scene.tie_names}
     kinetic, potential, elastic = samples.energy[::stride].T

@@ -35,6 +35,7 @@ LINE = np.dtype(
         ("face", np.int64),  # the body of the face, -1 for a fixed block
         ("support", np.int64),  # the support that moves a fixed block, -1 for none
         ("group", np.int64),  # number of the account
+        ("corner", np.int64),  # whether it is a corner that has met an edge, and no line of a joint
         *((name, float) for name in ("at_x", "at_z")),  # the point from the centroid of its body [m]
         *((name, float) for name in ("origin_x", "origin_z")),  # a point of the face, from the centroid [m]
         *((name, float) for name in ("normal_x", "normal_z")),  # unit vector out of the face
@@ -44,7 +45,7 @@ LINE = np.dtype(
         *((name, float) for name in ("low", "high")),  # ends of the face, from its origin along its tangent [m]
         *((name, float) for name in ("back", "forth")),  # ends of the edge of the body, from the point likewise [m]
         ("grip", float),  # stretch of the shear spring [m]; where it is rigid, friction of the last step [N]
-        *((name, float) for name in ("pressed", "dragged")),  # dashpot and friction in the last step [N]
+        *((name, float) for name in ("push", "pressed", "dragged")),  # force, dashpot and friction of the last step [N]
         ("widest", float),  # largest gap so far [m]
         *((name, float) for name in ("way_x", "way_z", "lever", "other")),  # friction of a unit impulse: see `friction`
         *((name, float) for name in ("most", "light", "sliding")),
@@ -124,12 +125,12 @@ class Books(NamedTuple):
     active: Integers
 
     @classmethod
-    def of(cls, system: System, groups: int) -> Books:
-        """Empty books."""
+    def of(cls, system: System, groups: int, further: int) -> Books:
+        """Empty books, with room for some further lines."""
         dashpots, ties, dampers, friction = (
             np.zeros(size) for size in (groups, len(system.ties), len(system.dampers), 4)
         )
-        return cls(dashpots, ties, dampers, friction, np.zeros(len(system.lines), dtype=np.int64))
+        return cls(dashpots, ties, dampers, friction, np.zeros(len(system.lines) + further, dtype=np.int64))
 
 
 class Samples(NamedTuple):
