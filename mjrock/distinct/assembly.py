@@ -109,7 +109,8 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[S
         beyond = OVERHANG * (ends_of[:, 1] - ends_of[:, 0])
         lines[low], lines[high] = ends_of[:, 0] - beyond, ends_of[:, 1] + beyond
     lines["k_s"] = masonry.joint_shear[of] * lines["k"] / masonry.joint_stiffness[of]
-    lines["c_s"] = np.where(np.isfinite(lines["k_s"]), lines["c"] * lines["k_s"] / lines["k"], 0.0)
+    sprung = np.isfinite(lines["k_s"])
+    lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]
     moved = {support.block: i for i, support in enumerate(supports)}
     below = [moved.get(masonry.joints[j].below, -1) for j in of]
     lines["support"] = np.where(lines["face"] < 0, below, -1)

@@ -102,6 +102,15 @@ def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> tupl
 
 
 @inlined
+def carried(line: Row, supports: Supports, x: float, z: float) -> float:
+    """Velocity of the support of a line in a direction, zero where none moves it [m/s]."""
+    if line.support < 0:
+        return 0.0
+    velocity: float = x * supports.moving[line.support, 0] + z * supports.moving[line.support, 1]
+    return velocity
+
+
+@inlined
 def add_force(body: Row, rx: float, rz: float, fx: float, fz: float) -> None:
     """Add a force at an arm from the centroid of a body [N]."""
     body.fx += fx
@@ -141,15 +150,18 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         if meet.gap >= 0:
             line.widest = max(line.widest, meet.gap)
             if line.push == 0 and line.pressed == 0 and line.dragged == 0:
-                line.grip = 0.0
+                line.grip, line.corner = 0.0, min(line.corner, 1)
                 continue
         ux, uz = relative(bodies, line, supports, meet)
         rate, slip = meet.nx * ux + meet.nz * uz, meet.nz * ux - meet.nx * uz
-        if line.corner and line.push == 0 and meet.gap < -ENTERED * h * abs(rate):
-            continue  # it did not come through this edge
+        if line.corner == 1:
+            if meet.gap < -ENTERED * h * abs(rate):
+                continue  # it did not come through this edge
+            line.corner = 2 if meet.gap < 0 else 1
         sprung = -line.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - line.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
+        books.friction[1] += 0.5 * h * (line.push + push) * carried(line, supports, meet.nx, meet.nz)
         line.push, line.pressed = push, push - sprung
         middle, drag = -0.5 * min(meet.gap, 0.0), 0.0  # friction rubs halfway into the overlap
         if push == 0:
@@ -157,6 +169,7 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         elif line.k_s < math.inf:
             drag = sprung_friction(line, push, slip, h)
             books.friction[0] -= 0.5 * h * (line.dragged + drag) * slip
+            books.friction[1] += 0.5 * h * (line.dragged + drag) * carried(line, supports, meet.nz, -meet.nx)
         elif line.friction > 0:
             books.active[active] = p
             active += 1
@@ -168,8 +181,6 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         if line.face >= 0:
             add_force(bodies[line.face], meet.sx, meet.sz, -fx, -fz)
             bodies[line.face].moment -= turning
-        elif line.support >= 0:
-            books.friction[1] += h * (fx * supports.moving[line.support, 0] + fz * supports.moving[line.support, 1])
     return active
 
 

@@ -27,7 +27,7 @@ MOST = 16
 """Encounters for which there is room, over the number of blocks [-]."""
 CORNERS = 1024
 """More than the corners of any block."""
-KEPT = ("grip", "push", "pressed", "dragged")
+KEPT = ("corner", "grip", "push", "pressed", "dragged")
 """What a line remembers of its last step."""
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from ..compiled import inlined, jitable
 from ..quantities import Integers
-from .system import Row, Rows, Supports, System
+from .contact import carried
+from .system import Books, Row, Rows, Supports, System
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -25,9 +26,7 @@ def slip_of(bodies: Rows, line: Row, supports: Supports) -> float:
     if line.face >= 0:
         face = bodies[line.face]
         slip -= line.way_x * face.vx + line.way_z * face.vz + line.other * face.w
-    elif line.support >= 0:
-        slip -= line.way_x * supports.moving[line.support, 0] + line.way_z * supports.moving[line.support, 1]
-    return slip
+    return slip - carried(line, supports, line.way_x, line.way_z)
 
 
 @inlined
@@ -78,10 +77,11 @@ def note_slips(system: System, active: Integers, count: int) -> None:
 
 
 @jitable
-def rubbed(system: System, active: Integers, count: int) -> float:
-    """What rigid friction takes in a step [J]: its impulses along the mean of the slips before and after."""
-    total = 0.0
+def book_rubbing(system: System, books: Books, count: int) -> None:
+    """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
+    the supports put in through it."""
     for i in range(count):
-        line = system.lines[active[i]]
-        total -= 0.5 * line.dragged * (line.sliding + slip_of(system.bodies, line, system.supports))
-    return total
+        line = system.lines[books.active[i]]
+        slip = 0.5 * (line.sliding + slip_of(system.bodies, line, system.supports))
+        books.friction[0] -= line.dragged * slip
+        books.friction[1] += line.dragged * carried(line, system.supports, line.way_x, line.way_z)

@@ -13,7 +13,7 @@ from ..compiled import compiled, jitable
 from ..quantities import GRAVITY, Array
 from ..scene.ground import mean_acceleration
 from .contact import meeting, press_lines
-from .friction import note_slips, rubbed, stick
+from .friction import book_rubbing, note_slips, stick
 from .links import linked_energy, move_supports, pull_links
 from .system import Books, Rows, Samples, System
 
@@ -89,7 +89,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
     for p in range(len(system.lines)):
         line = system.lines[p]
         pressed = min(meeting(system.bodies, line, system.supports).gap, 0.0)
-        if line.corner and line.push == 0:  # it is behind an edge that it has not come through
+        if line.corner == 1:  # it may be behind an edge that it has not come through
             pressed = 0.0
         elastic += 0.5 * line.k * pressed * pressed
         if line.k_s < math.inf:
@@ -142,7 +142,7 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
     n, h, row, last = clock.step, clock.h, clock.row, clock.row + clock.rows
-    accounted = samples.work.shape[1] > 2
+    accounted = samples.work.shape[1] > 2 or len(system.supports.moved) > 0
     while True:
         before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
         move_supports(system.supports, n * h, before)
@@ -156,7 +156,11 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
         kick_bodies(system.bodies, kick)
         stick(system, books.active, sticking, kick)
         if accounted:
-            books.friction[0] += rubbed(system, books.active, sticking)
+            rubbed, carried = books.friction[0], books.friction[1]
+            book_rubbing(system, books, sticking)
+            if sampled and n > 0:  # half of it belongs to the time before the pose
+                samples.work[row, 0] += 0.5 * (books.friction[0] - rubbed)
+                samples.work[row, 1] += 0.5 * (books.friction[1] - carried)
         if sampled:
             keep_velocity(system.bodies, samples, row)
             row += 1

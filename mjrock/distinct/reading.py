@@ -48,7 +48,8 @@ class Run:
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
         at_rest = float(self.scene.rest_energies.sum()) + self._preloaded
-        energy: Array = np.subtract(self.samples.energy.sum(axis=1), at_rest)
+        energy: Array = self.samples.energy.sum(axis=1)
+        energy -= at_rest
         return energy
 
     @property

@@ -35,7 +35,7 @@ LINE = np.dtype(
         ("face", np.int64),  # the body of the face, -1 for a fixed block
         ("support", np.int64),  # the support that moves a fixed block, -1 for none
         ("group", np.int64),  # number of the account
-        ("corner", np.int64),  # whether it is a corner that has met an edge, and no line of a joint
+        ("corner", np.int64),  # 1 for a corner near an edge, 2 when it has come through; 0 for a line of a joint
         *((name, float) for name in ("at_x", "at_z")),  # the point from the centroid of its body [m]
         *((name, float) for name in ("origin_x", "origin_z")),  # a point of the face, from the centroid [m]
         *((name, float) for name in ("normal_x", "normal_z")),  # unit vector out of the face

@@ -1,0 +1,49 @@
+"""Blocks that leave their joints meet the ground and each other, and faces end where they end."""
+
+import numpy as np
+import pytest
+from masonry_blocks import GROUND, box
+
+import mjrock as mr
+
+TABLE = box(-1, 0, 0, 1, name="table")
+
+
+def test_a_block_that_is_thrown_off_its_table_comes_to_rest_on_the_ground():
+    blocks = [GROUND, TABLE, box(-0.5, -0.1, 1, 1.3, name="box")]
+    masonry = mr.Masonry(blocks, k_n=1e8, friction=0.5, xi=0.2)
+    case = mr.MasonryCase(masonry, 3.0, velocity=[(0, 0, 0), (2.5, 0, 0)])
+    run = mr.solve_explicit(case, ledger=True)
+    x, z, theta = run.pose[-1, 1]
+    assert "box" in run.fallen
+    assert x > 0.3
+    height = 1.15 + z
+    lying = abs((theta / (np.pi / 2)) - round(theta / (np.pi / 2))) < 1e-2
+    assert lying
+    assert min(abs(height - 0.15), abs(height - 0.2)) < 5e-3
+    assert np.abs(run.velocity[-1, 1]).max() < 0.02
+    assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.kinetic.max()
+    assert "not in the model" not in run.message
+
+
+def test_a_face_ends_where_it_ends():
+    """A block pushed over the edge of its table tips when its centroid has passed the edge, and not before."""
+    blocks = [GROUND, TABLE, box(-0.5, -0.1, 1, 1.3, name="box")]
+    masonry = mr.Masonry(blocks, k_n=1e8, friction=0.2, xi=0.2)
+    for reach, tips in ((0.25, False), (0.40, True)):
+        speed = np.sqrt(2 * 0.2 * mr.GRAVITY * reach)
+        run = mr.solve_explicit(mr.MasonryCase(masonry, 2.0, velocity=[(0, 0, 0), (speed, 0, 0)]))
+        assert ("box" in run.fallen) == tips, reach
+        if not tips:
+            assert run.pose[-1, 1, 0] == pytest.approx(reach, rel=0.02)
+
+
+@pytest.mark.slow
+def test_a_wall_falls_into_a_heap_and_the_books_close():
+    wall = mr.Masonry.running_bond(length=2.0, height=2.0, unit=(0.5, 0.25), k_n=1e9, friction=0.6)
+    run = mr.solve_explicit(mr.MasonryCase(wall, 1.6, mr.GroundMotion.sine(12.0, 0.8)), ledger=True)
+    assert len(run.fallen) > 5
+    assert np.abs(run.energy_residual).max() < 0.03 * np.abs(run.ledger.ground).max()
+    over_the_ground = np.abs(run.pose[-1, :, 0] + wall.centroids[list(wall.free), 0] - 1.0) < 1.5
+    heights = run.pose[-1, :, 1] + wall.centroids[list(wall.free), 1]
+    assert heights[over_the_ground].min() > 0.1  # none is in the ground
