@@ -31,8 +31,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument(
         "--contacts",
         type=int,
-        default=1,
-        help="points that share the mass where there can be several: 4 for a flat box",
+        help="points that share the mass where there can be several, instead of those counted",
     )
     args = options.parse_args(argv)
     if not args.model.is_file():

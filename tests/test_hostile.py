@@ -107,13 +107,17 @@ CALLS = {
         {
             "model": BALL, "geom1": "ball", "geom2": "floor", "k": 1e6, "c": None, "restitution": 0.5, "xi": None,
             "friction": 0.5, "mass": None, "at": None, "contacts": 1, "timestep": 1e-5, "newmark_beta": 0.25,
+            "keyframe": None, "qpos": [0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0], "speed": 1.0,
         },
     ),
     "contact_for, by c": (
         mr.contact_for,
         {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
     ),
-    "inspect_contacts": (mr.inspect_contacts, {"model": BALL, "candidates": True, "contacts": 1}),
+    "inspect_contacts": (
+        mr.inspect_contacts,
+        {"model": BALL, "candidates": True, "contacts": 1, "keyframe": None, "qpos": None, "load": 3.0},
+    ),
     "automatic_timestep": (mr.automatic_timestep, {"wall": WALL, "contacts": CONTACTS, "side_stop": True}),
     "simulate": (
         mr.simulate,

@@ -111,7 +111,7 @@ class PairContact(ContactNumbers):
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.
         """
         pair = self._found(compiled(model))
-        return (*missing(pair, self), *spoilers(pair, self))
+        return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
     def _found(self, model: mujoco.MjModel) -> GeomPair:
         """The pair in a model, which has to be the same two bodies."""
