@@ -114,6 +114,13 @@ CALLS = {
         mr.contact_for,
         {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
     ),
+    "contacts_for": (
+        mr.contacts_for,
+        {
+            "model": BALL, "pairs": {("b*", "floor"): {"k": 1e6, "restitution": 0.5}}, "keyframe": None, "qpos": None,
+            "timestep": 1e-5,
+        },
+    ),
     "inspect_contacts": (
         mr.inspect_contacts,
         {"model": BALL, "candidates": True, "contacts": 1, "keyframe": None, "qpos": None, "load": 3.0},
@@ -282,7 +289,7 @@ def test_every_public_entry_is_tried():
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "calibrate", "GroundMotion",
-        "InspectedContact", "PairContact",
+        "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried
