@@ -247,7 +247,7 @@ def test_the_script_prints_the_table(tmp_path, capsys):
     script.main([str(path), "--out", str(tmp_path / "out")])
     printed = capsys.readouterr().out
     assert printed == (tmp_path / "out" / "inspect_contacts.txt").read_text()
-    assert "floor  ball  geoms  4.488e+04       1895          2" in printed
+    assert "floor  ball  geoms  4.488e+04  4.488e+04       1895          2" in printed
     assert "2: the cone is pyramidal" in printed
     path.write_text(path.read_text().replace('size=".1" mass', 'type="box" size=".1 .1 .1" mass'))
     script.main([str(path), "--contacts", "1", "--out", str(tmp_path / "out")])
