@@ -17,6 +17,7 @@ from ._version import __version__
 if TYPE_CHECKING:
     from . import plotting as plotting
     from .anymodel.contact import PairContact
+    from .anymodel.coulomb import CoulombFriction
     from .anymodel.inspect import InspectedContact, inspect_contacts
     from .anymodel.make import contact_for
     from .anymodel.many import PairContacts, contacts_for
@@ -74,6 +75,7 @@ __all__ = [
     "Comparison",
     "ContactParameters",
     "Contacts",
+    "CoulombFriction",
     "Damper",
     "DampingLaw",
     "Grid",
@@ -141,6 +143,7 @@ __all__ = [
 
 HOMES = {
     "anymodel.contact": "PairContact",
+    "anymodel.coulomb": "CoulombFriction",
     "anymodel.inspect": "InspectedContact inspect_contacts",
     "anymodel.make": "contact_for",
     "anymodel.many": "PairContacts contacts_for",

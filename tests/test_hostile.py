@@ -28,6 +28,11 @@ BALL = mujoco.MjModel.from_xml_string(
     """<mujoco><option timestep="1e-5"/><worldbody><geom name="floor" type="plane" size="1 1 1"/>
     <body name="ball" pos="0 0 .1"><freejoint/><geom name="ball" size=".1"/></body></worldbody></mujoco>"""
 )
+PAIRED = mujoco.MjModel.from_xml_string(
+    """<mujoco><option cone="elliptic"/><worldbody><geom name="floor" type="plane" size="1 1 1"/><body pos="0 0 .1">
+    <freejoint/><geom name="ball" size=".1"/></body></worldbody><contact><pair geom1="ball" geom2="floor"/></contact>
+    </mujoco>"""
+)
 PLAN = mr.Plan(base_count=2, side_count=2)
 COLUMN = mr.Masonry.stack([WALL], 5e8)
 
@@ -121,6 +126,7 @@ CALLS = {
             "timestep": 1e-5,
         },
     ),
+    "CoulombFriction": (mr.CoulombFriction, {"model": PAIRED}),
     "inspect_contacts": (
         mr.inspect_contacts,
         {"model": BALL, "candidates": True, "contacts": 1, "keyframe": None, "qpos": None, "load": 3.0},

@@ -215,7 +215,7 @@ def test_what_else_holds_a_body_counts_or_is_named():
 def test_servos_and_limits_are_named():
     slide = """<body pos="0 0 .5"><joint name="lift" type="slide" axis="0 0 1" {limit}/>
     <geom name="ball" size=".1" mass="2"/></body>"""
-    limit = 'limited="true" range=".001 1"'
+    limit = 'limited="true" range="-1 -.001"'
     text = scene(FLOOR, slide.format(limit=""))
     servo = '<actuator><position name="servo" joint="lift" kp="2e5" kv="300"/></actuator></mujoco>'
     stiff, damped = quietly(text.replace("</mujoco>", servo), "ball", "floor", k=1e6, restitution=0.5).remarks

@@ -97,7 +97,8 @@ def felt(
     alone = held.answer(rows, softness, np.zeros_like(held.equality))
     yields = (held.rate < RIGID * frequency) & held.equality
     matters = not math.isclose(_free(alone, rows), _free(answer, rows), rel_tol=MATTERS)
-    limited = held.answer(rows, softness, np.ones_like(held.equality))
+    pressed = held.limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
+    limited = held.answer(rows, softness, held.equality | pressed)
     stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
     return Felt(
         mass=mass,
@@ -105,7 +106,7 @@ def felt(
         motion=motion,
         gravity=float(-held.weight @ answer[:, 0]),
         yielding=tuple(sorted({int(number) for number in held.number[yields]})) if matters else (),
-        limits=tuple(int(row) for row in held.row[held.limit]) if stops else (),
+        limits=tuple(int(row) for row in held.row[pressed]) if stops else (),
     )
 
 

@@ -201,8 +201,8 @@ def _notes(
     total = tree_mass(pair)
     if max(found.mass, 1 / pair.inverse_weight) > IMMOVABLE * total:
         yield (
-            f"k, c and mass belong to a body that can hardly move this way: 1/W is {1 / pair.inverse_weight:.2g} kg, "
-            f"and all that moves weighs {total:.3g} kg"
+            f"k, c and mass belong to a body that can hardly move this way: 1/W is {1 / pair.inverse_weight:.2g} kg "
+            f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
         )
         return
     if found.k > 0:

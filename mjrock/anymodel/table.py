@@ -15,7 +15,10 @@ NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "po
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
 GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
 """Parts of notes by which a contact is worse than others, or of no account."""
-VARIES = re.compile(r"(joint|tendon|actuator|constraint|keyframe=?) '?[^\s',;]+'?|[-+]?\d[\d.]*(e[-+]?\d+)?")
+VARIES = re.compile(
+    r"((joint|tendon|actuator|equality constraint) \S+?(, | (?=adds|is|yields)| (?=and \d+ more)))+(and \d+ more )?"
+    r"|keyframe=?\s?'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?"
+)
 """What differs in notes that are alike."""
 
 
