@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .problem.damping.forms import PowerLaw
     from .problem.damping.interface import Interface, reference_frequency
     from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+    from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
     from .problem.damping.restitution import Restitution
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
     from .problem.ground.motion import GroundMotion
@@ -91,6 +92,7 @@ __all__ = [
     "MasonryAnalysis",
     "MasonryCase",
     "MasonryResponse",
+    "MeasuredContact",
     "Opening",
     "Outcome",
     "PairContact",
@@ -117,6 +119,7 @@ __all__ = [
     "contact_parameters",
     "contact_stiffness",
     "contacts_for",
+    "hertz_stiffness",
     "ida",
     "inspect_contacts",
     "joint_stiffness",
@@ -125,6 +128,7 @@ __all__ = [
     "masonry_scene",
     "matched_contacts",
     "matched_masonry",
+    "measured_contact",
     "measured_stiffness",
     "mjcf_of",
     "overturning_intensity",
@@ -155,6 +159,7 @@ HOMES = {
     "problem.damping.forms": "PowerLaw",
     "problem.damping.interface": "Interface reference_frequency",
     "problem.damping.law": "CALIBRATED CALIBRATED_BED PUBLISHED DampingLaw",
+    "problem.damping.measured": "MeasuredContact hertz_stiffness measured_contact",
     "problem.damping.restitution": "Restitution",
     "problem.damping.stiffness": "joint_stiffness layered_stiffness measured_stiffness wall_stiffness",
     "problem.ground.motion": "GroundMotion",

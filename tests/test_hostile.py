@@ -126,6 +126,14 @@ CALLS = {
             "timestep": 1e-5,
         },
     ),
+    "measured_contact": (
+        mr.measured_contact,
+        {"heights": [1.0, 0.5], "mass": 1.0, "contact_times": [0.01], "confidence": 0.9, "gravity": 9.81},
+    ),
+    "hertz_stiffness": (
+        mr.hertz_stiffness,
+        {"radius": 0.1, "E": 1e9, "nu": 0.3, "other": (1e9, 0.3), "force": None, "mass": 1.0, "speed": 1.0},
+    ),
     "CoulombFriction": (mr.CoulombFriction, {"model": PAIRED}),
     "inspect_contacts": (
         mr.inspect_contacts,
@@ -296,6 +304,7 @@ def test_every_public_entry_is_tried():
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
+        "MeasuredContact",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried
