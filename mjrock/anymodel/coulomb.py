@@ -11,7 +11,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from ..quantities import Array, require_kind
+from ..quantities import Array, Integers, require_kind
 
 LOOKS = 10
 """Most looks at a step in which the friction is brought up to date."""
@@ -88,33 +88,32 @@ class CoulombFriction:
             self._given[:] = data.qfrc_applied
             self._left[:] = data.qfrc_applied
 
-    def _contacts(self, data: mujoco.MjData) -> dict[int, list[int]]:
-        """The contacts that press, by the number of their pair."""
-        found: dict[int, list[int]] = {}
-        addresses, geoms = data.contact.efc_address, data.contact.geom
-        for i in range(data.ncon):
-            address = int(addresses[i])
-            pair = self._pairs.get(frozenset((int(geoms[i, 0]), int(geoms[i, 1]))), -1)
-            if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and data.efc_force[address] > 0:
-                found.setdefault(pair, []).append(i)
-        return found
+    def _pressing(self, data: mujoco.MjData) -> tuple[Integers, Integers, Integers]:
+        """The contacts that press: their numbers, those of their pairs, and those of their normal rows."""
+        number, pairs, rows = [], [], []
+        addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
+        forces = data.efc_force
+        for i, (address, (first, second)) in enumerate(zip(addresses, geoms, strict=True)):
+            pair = self._pairs.get(frozenset((first, second)), -1)
+            if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and forces[address] > 0:
+                number.append(i)
+                pairs.append(pair)
+                rows.append(address)
+        return np.array(number, dtype=np.int64), np.array(pairs, dtype=np.int64), np.array(rows, dtype=np.int64)
 
     def _find(self, data: mujoco.MjData) -> set[int]:
         """The pairs of which every contact that presses slides through the step."""
-        h, later = self.model.opt.timestep, np.zeros(data.nefc)
+        _, pairs, rows = self._pressing(data)
+        if not len(rows):
+            return set()
+        later, tangents = np.zeros(data.nefc), rows[:, None] + np.array((1, 2))
         mujoco.mj_mulJacVec(self.model, data, later, data.qacc)
-        pairs = set()
-        for pair, contacts in self._contacts(data).items():
-            slides = True
-            for i in contacts:
-                row = int(data.contact.efc_address[i])
-                slip = data.efc_vel[row + 1 : row + 3]
-                force = data.efc_force[row : row + 3] / np.array((1.0, *data.contact.friction[i, :2].clip(1e-5)))
-                saturated = np.linalg.norm(force[1:]) >= SATURATED * force[0]
-                slides = slides and bool(saturated and slip @ (slip + h * later[row + 1 : row + 3]) > 0)
-            if slides:
-                pairs.add(pair)
-        return pairs
+        slip, forces = data.efc_vel[tangents], data.efc_force
+        shares = forces[tangents] / np.maximum(self.model.pair_friction[pairs, :2], mujoco.mjMINMU)
+        saturated = (shares**2).sum(axis=1) >= (SATURATED * forces[rows]) ** 2
+        onward = (slip * (slip + self.model.opt.timestep * later[tangents])).sum(axis=1) > 0
+        sticks = {int(pair) for pair in pairs[~(saturated & onward)]}
+        return {int(pair) for pair in pairs} - sticks
 
     def _settle(self, data: mujoco.MjData, pairs: set[int]) -> bool:
         """Find the friction of the pairs that slide; whether all of them slide through the step."""
@@ -123,13 +122,13 @@ class CoulombFriction:
         model.pair_dim[list(pairs)] = 1
         data.qfrc_applied[:] = self._given
         mujoco.mj_forward(model, data)
-        pressing = [(pair, i) for pair, contacts in self._contacts(data).items() if pair in pairs for i in contacts]
-        owners = np.array([pair for pair, _ in pressing], dtype=int)
-        rows = data.contact.efc_address[[i for _, i in pressing]]
-        tangents = np.array([self._tangents(data, pair, i) for pair, i in pressing]).reshape(-1, 2, model.nv)
+        number, owners, rows = self._pressing(data)
+        chosen = np.isin(owners, list(pairs))
+        number, owners, rows = number[chosen], owners[chosen], rows[chosen]
+        tangents = self._tangents(data, number, owners)
         mu, slip = model.pair_friction[owners, :2], tangents @ data.qvel
         before = np.zeros(model.nv)
-        stops = np.zeros(len(pressing), dtype=bool)
+        stops = np.zeros(len(rows), dtype=bool)
         for _ in range(LOOKS):
             change = h * (tangents @ data.qacc)
             stops = (slip * (slip + change)).sum(axis=1) <= 0
@@ -149,13 +148,17 @@ class CoulombFriction:
         self._stopped = {int(pair) for pair in owners[stops]}
         return not self._stopped
 
-    def _tangents(self, data: mujoco.MjData, pair: int, i: int) -> Array:
-        """Jacobian of the slip of a contact along its two tangents, shape (2, nv)."""
-        model, frame = self.model, data.contact.frame[i].reshape(3, 3)
-        sides = np.zeros((2, 3, model.nv))
-        for side, geom in enumerate((model.pair_geom1[pair], model.pair_geom2[pair])):
-            mujoco.mj_jac(model, data, sides[side], None, data.contact.pos[i], int(model.geom_bodyid[geom]))
-        return np.array(frame[1:] @ (sides[1] - sides[0]))
+    def _tangents(self, data: mujoco.MjData, number: Integers, owners: Integers) -> Array:
+        """Jacobians of the slip of contacts along their two tangents, shape (n, 2, nv)."""
+        model = self.model
+        places, frames = data.contact.pos[number], data.contact.frame[number].reshape(-1, 3, 3)
+        apart, side = np.zeros((len(number), 3, model.nv)), np.zeros((3, model.nv))
+        for geoms, sign in ((model.pair_geom1, -1.0), (model.pair_geom2, 1.0)):
+            for i, body in enumerate(model.geom_bodyid[geoms[owners]].tolist()):
+                if body:
+                    mujoco.mj_jac(model, data, side, None, places[i], body)
+                    apart[i] += sign * side
+        return np.array(frames[:, 1:] @ apart)
 
     def _keep(self, data: mujoco.MjData, pairs: set[int]) -> set[int]:
         """The pairs that still slide. All have their rows back, and no friction is applied yet."""

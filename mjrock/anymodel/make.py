@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco
@@ -20,7 +20,7 @@ from .geoms import GeomPair, compiled
 from .holding import holding
 from .meeting import Meeting, Pose, elsewhere, meeting
 from .mixing import Mixed
-from .notes import RESOLVED, UNSOUND, resolving_step, rounded_down, spoilers, stiffest
+from .notes import RESOLVED, UNSOUND, resolving_step, rounded_down, spoilers, stiffest, weight_spoilers
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -140,7 +140,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
     dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
     friction_rate = min(math.sqrt(k / share), 1 / h)  # slip stops in 1 / omega; the page on contacts says why
-    return PairContact(
+    contact = PairContact(
         *pair.names,
         ids=pair.geoms,
         k=k,
@@ -161,6 +161,8 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
         pose=pose.label,
         remarks=_remarks(pair, pose, asked, met, k, c, mu),
     )
+    weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
+    return replace(contact, remarks=(*contact.remarks, *weighed))
 
 
 def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:

@@ -72,7 +72,6 @@ def spoilers(pair: GeomPair, contact: ContactNumbers) -> Iterator[str]:
     if pair.is_uneven:
         yield uneven(contact.contacts)
     yield from step_spoilers(contact)
-    yield from weight_spoilers(contact)
 
 
 def uneven(points: int) -> str:
