@@ -10,6 +10,7 @@ A name is imported when it is first asked for: who wants `contact_for` alone wai
 import contextlib
 import importlib
 import importlib.metadata
+import sys
 from typing import TYPE_CHECKING
 
 from ._version import __version__
@@ -201,11 +202,14 @@ HOME = {name: module for module, names in HOMES.items() for name in names.split(
 def _require_mujoco(version: str) -> None:
     """Raise an ImportError that says what to install, if MuJoCo is older than this package takes."""
     if int(version.split(".")[0]) < 4:
-        raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and MuJoCo {version} is installed: pip install -U mujoco")
+        raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'")
 
 
-with contextlib.suppress(importlib.metadata.PackageNotFoundError):  # importing mujoco then says that it is not there
-    _require_mujoco(importlib.metadata.version("mujoco"))
+if "mujoco" in sys.modules:
+    _require_mujoco(sys.modules["mujoco"].__version__)
+else:
+    with contextlib.suppress(importlib.metadata.PackageNotFoundError):  # importing mujoco then says that it is missing
+        _require_mujoco(importlib.metadata.version("mujoco"))
 
 
 def __getattr__(name: str) -> object:

@@ -35,7 +35,7 @@ assert not [name for name in sys.modules if name.startswith(("numba", "scipy.opt
 
 @pytest.mark.parametrize("version", ["3.12.0", "3.8.1", "2.3.7"])
 def test_an_older_mujoco_is_refused_by_name(version):
-    with pytest.raises(ImportError, match=f"needs MuJoCo 4.0 or newer, and MuJoCo {version} is installed"):
+    with pytest.raises(ImportError, match=f"needs MuJoCo 4.0 or newer, and {version} is installed"):
         mr._require_mujoco(version)
     mr._require_mujoco("4.0.0")
     mr._require_mujoco("10.1.0rc1")

@@ -25,6 +25,8 @@ VELOCITY = int(mujoco.mjtStage.mjSTAGE_VEL)
 class CoulombFriction:
     """Friction of sliding contacts as an applied force, called before each `mj_step`.
 
+    ::
+
         friction = mr.CoulombFriction(model)
         while data.time < 2.0:
             friction(data)
