@@ -8,7 +8,7 @@ from pairs import FLOOR, scene
 from mjrock.__main__ import main
 
 FEET = "".join(
-    f'<body name="leg{i}" pos="{i} 0 1"><freejoint/><geom size=".1" mass="{i + 1}"/></body>' for i in range(12)
+    f'<body name="leg{i}" pos="{i} 0 1"><freejoint/><geom size=".1" mass="{i + 1}"/></body>' for i in range(9)
 )
 STUCK = '<body name="arm" pos="0 3 1"><joint type="slide" axis="1 0 0"/><geom size=".1" mass="1"/></body>'
 
@@ -26,25 +26,25 @@ def lines_of(capsys, *arguments):
 
 
 def test_it_is_a_page(model, capsys):
-    """91 contacts: 40 rows, the notes that are alike once, geoms by the names of their bodies."""
+    """55 contacts: 40 rows, the notes that are alike once, geoms by the names of their bodies."""
     lines = lines_of(capsys, "inspect", model)
     assert len(lines) < 60
     assert "floor  leg0[1]" in lines[2] or "leg" in lines[2]
-    assert lines[42].startswith("and 51 more; --all shows them")
+    assert lines[42].startswith("and 15 more; --all shows them")
     notes = [line for line in lines if line[:1].isdigit()]
     assert len(notes) < 8
     assert any("like it]" in note for note in notes)
     assert any("mass is infinite: the geoms cannot approach" in note for note in notes)
-    assert len(lines_of(capsys, "inspect", model, "--all")) > 90
+    assert len(lines_of(capsys, "inspect", model, "--all")) > 55
 
 
 def test_it_chooses(model, capsys):
-    assert len(_rows(lines_of(capsys, "inspect", model, "--geom", "floor"))) == 13
-    assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1"))) == 13
+    assert len(_rows(lines_of(capsys, "inspect", model, "--geom", "floor"))) == 10
+    assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1"))) == 10
     assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1", "--geom", "floor"))) == 1
     assert len(_rows(lines_of(capsys, "inspect", model, "--pair", "leg[12]", "floor"))) == 2
     (none,) = lines_of(capsys, "inspect", model, "--geom", "hand")
-    assert none == "None of the 91 contacts of this model is of these geoms, bodies or pairs."
+    assert none == "None of the 55 contacts of this model is of these geoms, bodies or pairs."
     (none,) = lines_of(capsys, "inspect", model, "--pairs")
     assert none == "This model has no contact that can act."
 
@@ -64,7 +64,7 @@ def test_it_writes_every_row(model, tmp_path, capsys):
     lines_of(capsys, "inspect", model, "--csv", path, "--speed", "3", "--load", "5")
     with path.open() as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == 91
+    assert len(rows) == 55
     assert {"geom1", "k [N/m]", "k loaded", "e at v", "notes"} <= set(rows[0])
 
 

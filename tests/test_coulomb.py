@@ -33,7 +33,7 @@ def thrown(h, coulomb, *, speed=3.0, spin=0.0, duration=1.0, integrator="Euler")
     return data.qpos.copy(), data.qvel.copy(), top
 
 
-@pytest.mark.parametrize("integrator", ["Euler", "implicitfast"])
+@pytest.mark.parametrize("integrator", ["Euler", pytest.param("implicitfast", marks=pytest.mark.slow)])
 def test_a_thrown_box_does_not_lift(integrator):
     """The cone lifts it by 0.39 mm at a step of 1 ms, twice its indentation. It stops after v^2 / (2 mu g)."""
     place, velocity, top = thrown(1e-3, True, integrator=integrator)
@@ -50,6 +50,7 @@ def test_its_speed_is_that_of_coulombs_law():
     assert place[1] == pytest.approx(0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_box_that_spins_slides_in_two_tangents():
     """Each of its points rubs along its own slip; a step four times as short gives the same."""
     coarse, fine = (thrown(h, True, spin=5.0, duration=0.2)[0] for h in (1e-3, 2.5e-4))

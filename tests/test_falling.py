@@ -22,7 +22,7 @@ def integrated(xi, pull, share=1.0):
         event.terminal, event.direction = True, -1
     solved = solve_ivp(
         lambda t, y: (y[1], share * pull - y[0] - 2 * xi * y[1]), (0, 60), (0.0, 1.0),
-        events=(force, surface), rtol=1e-11, atol=1e-13, max_step=0.05,
+        events=(force, surface), rtol=1e-11, atol=1e-13, max_step=0.1,
     )  # fmt: skip
     if solved.status != 1:
         return 0.0, math.inf
@@ -31,8 +31,8 @@ def integrated(xi, pull, share=1.0):
 
 
 @pytest.mark.parametrize("share", [1.0, 0.09])
-@pytest.mark.parametrize("pull", [0.0, 0.009, 0.054, 0.085, 0.5, 3.0])
-@pytest.mark.parametrize("xi", [0.0, 0.05, 0.3, 0.497, 0.731, 0.99, 1.0, 1.05, 1.5, 4.0])
+@pytest.mark.parametrize("pull", [0.0, 0.054, 0.5, 3.0])
+@pytest.mark.parametrize("xi", [0.0, 0.3, 0.497, 0.99, 1.0, 1.5])
 def test_it_solves_the_equation(xi, pull, share):
     e, duration = integrated(xi, pull, share)
     rebound = falling_rebound(xi, pull, share)
