@@ -85,8 +85,8 @@ def _numba() -> Any:
         def on_start(self, event: Any) -> None:
             """Tell the user why nothing seems to happen."""
             dispatcher = event.data.get("dispatcher")
-            own = getattr(dispatcher, "py_func", None)
-            if not self.said and own is not None and own.__module__.startswith("mjrock."):
+            function = getattr(dispatcher, "py_func", None)
+            if not self.said and function is not None and function.__module__.startswith("mjrock."):
                 _FirstCompilation.said = True
                 folder = dispatcher._cache.cache_path
                 stored = f"once; they are stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
@@ -145,8 +145,8 @@ def compiled(function: Function) -> Function:
     numba = _numba()
     if numba is None:
         return function
-    made = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
-    if made is not function:  # it is with NUMBA_DISABLE_JIT=1
+    dispatcher = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
+    if dispatcher is not function:  # it is with NUMBA_DISABLE_JIT=1
         with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
-            made._cache = globals()["_Cache"](function)
-    return made  # type: ignore[no-any-return]
+            dispatcher._cache = globals()["_Cache"](function)
+    return dispatcher  # type: ignore[no-any-return]

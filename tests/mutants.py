@@ -179,7 +179,7 @@ def survives(folder: Path, mutant: Mutant | None) -> bool:
 
 def passes(folder: Path, no_jit: str, names: tuple[str, ...]) -> bool:
     """Whether the tests of a round pass in a folder."""
-    tests = [f"tests/test_{name}.py" for name in names]
+    tests = [str(path) for name in names for path in (folder / "tests").rglob(f"test_{name}.py")]
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", *tests]
     setting = os.environ | {"NUMBA_DISABLE_JIT": no_jit, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(folder)}
     try:

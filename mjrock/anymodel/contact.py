@@ -54,14 +54,14 @@ class PairContact(ContactNumbers):
         """
         write([self], model, compiled(model), require_flag("on_geoms", on_geoms))
 
-    def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, made: mujoco.MjModel, on_geoms: bool) -> None:
-        """Write the pair into a model or a specification, of which `made` is the compiled model; not the options."""
-        found = self._found(made)
+    def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
+        """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
+        geoms = self._pair_in(whole)
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            self._write_spec(model, found)
-        elif found.explicit >= 0:
-            self._write_pair(model, found.explicit)
+            self._write_spec(model, geoms)
+        elif geoms.explicit >= 0:
+            self._write_pair(model, geoms.explicit)
         elif on_geoms:
             self._write_geoms(model)
         else:
@@ -86,8 +86,8 @@ class PairContact(ContactNumbers):
         geoms = f"geom1={quoteattr(self.geom1)} geom2={quoteattr(self.geom2)}"
         return f'<pair {geoms} condim="{self.condim}" {attributes}/>'
 
-    def _write_spec(self, spec: mujoco.MjSpec, found: GeomPair) -> None:
-        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*found.names})
+    def _write_spec(self, spec: mujoco.MjSpec, geoms: GeomPair) -> None:
+        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*geoms.names})
         pair = next(named, None) or spec.add_pair(geomname1=self.geom1, geomname2=self.geom2)
         pair.condim, pair.friction = self.condim, self.friction
         pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
@@ -99,7 +99,7 @@ class PairContact(ContactNumbers):
 
     def _write_geoms(self, model: mujoco.MjModel) -> None:
         """Equal geoms of equal priority mix to what they are."""
-        geoms = list(self._found(model).geoms)
+        geoms = list(self._pair_in(model).geoms)
         model.geom_solref[geoms], model.geom_solimp[geoms] = self.solref, self.solimp
         model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
@@ -115,12 +115,12 @@ class PairContact(ContactNumbers):
         """
         return self.caveats_of(compiled(model))
 
-    def caveats_of(self, made: mujoco.MjModel) -> tuple[str, ...]:
+    def caveats_of(self, whole: mujoco.MjModel) -> tuple[str, ...]:
         """The same for a compiled model."""
-        pair = self._found(made)
+        pair = self._pair_in(whole)
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
-    def _found(self, model: mujoco.MjModel) -> GeomPair:
+    def _pair_in(self, model: mujoco.MjModel) -> GeomPair:
         """The pair in a model, which has to be the same two bodies."""
         pair = GeomPair.named(model, self.geom1 or self.ids[0], self.geom2 or self.ids[1])
         if not math.isclose(pair.inverse_weight, self.inverse_weight, rel_tol=1e-9):
@@ -143,11 +143,11 @@ def _text(*values: float) -> str:
 
 
 def write(
-    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, made: mujoco.MjModel, on_geoms: bool
+    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool
 ) -> None:
-    """Write contacts of one time step into a model or a specification, of which `made` is the compiled model."""
+    """Write contacts of one time step into a model or a specification, of which `whole` is the compiled model."""
     for contact in contacts:
-        contact.put_into(model, made, on_geoms)
+        contact.put_into(model, whole, on_geoms)
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
     option.timestep = contacts[0].timestep
     if any(contact.condim > 1 for contact in contacts):

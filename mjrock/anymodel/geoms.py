@@ -1,4 +1,4 @@
-"""Two geoms of anyone's model that can meet: who they are, and how heavy they are to each other."""
+"""Two geoms of anyone's model that can meet: their names, their bodies, and the mass of their approach."""
 
 from __future__ import annotations
 
@@ -42,12 +42,9 @@ def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
 
 
 def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
-    """The number of a geom.
+    """The number of a geom, from its name or number, or from the name of a body that has a single geom.
 
-    Args:
-        model: the model.
-        argument: what the value is called in messages.
-        value: the name or number of the geom, or the name of a body that has a single geom.
+    Messages call the value `argument`.
 
     Raises:
         TypeError: unless the value is a text or a whole number.

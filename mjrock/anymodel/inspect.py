@@ -127,13 +127,13 @@ def inspect_contacts(
     require_flag("candidates", candidates)
     points = None if contacts is None else require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
     force = None if load is None else require_within("load", load, 1e-12, 1e15, "N")
-    made = compiled(model)
-    pose = Pose(made, keyframe, qpos)
-    ends = zip(made.pair_geom1, made.pair_geom2, strict=True)
-    pairs = [GeomPair(made, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
+    whole = compiled(model)
+    pose = Pose(whole, keyframe, qpos)
+    ends = zip(whole.pair_geom1, whole.pair_geom2, strict=True)
+    pairs = [GeomPair(whole, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
     listed = {frozenset(pair.geoms) for pair in pairs}
     if candidates:
-        pairs += [pair for pair in _candidates(made) if frozenset(pair.geoms) not in listed]
+        pairs += [pair for pair in _candidates(whole) if frozenset(pair.geoms) not in listed]
     return tuple(_inspected(pair, pose, points, force) for pair in pairs if pair.inverse_weight > 0)
 
 
@@ -163,7 +163,7 @@ def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | N
     mu = row.mixed.friction[0] if row.mixed.condim > 1 else 0.0
     met = meeting(pair, pose, contacts=points, friction=mu, k=row.k)
     force = load if load is not None else max(weight_of(pair), 1e-9) / met.points
-    found = InspectedContact(
+    contact = InspectedContact(
         *pair.labels,
         explicit=pair.explicit >= 0,
         k=row.k,
@@ -178,7 +178,7 @@ def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | N
         bodies=pair.body_names,
         notes=(),
     )
-    return replace(found, notes=tuple(_notes(pair, pose, row, met, found, contacts)))
+    return replace(contact, notes=tuple(_notes(pair, pose, row, met, contact, contacts)))
 
 
 def _notes(
@@ -214,21 +214,21 @@ def _notes(
             yield foreign
 
 
-def _step_notes(found: InspectedContact, h: float) -> Iterator[str]:
+def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:
     """Where the step is too long for the formula of e.
 
     No row of `contact_for` has an omega h above 1, because its inertia is h^2 k where the step resolves nothing.
     """
-    if not found.mass < math.inf:
+    if not contact.mass < math.inf:
         return
-    moved = found.mass / found.points + found.inertia
-    longest = resolving_step(found.k, found.c, moved)
-    if found.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
-        longest = min(longest, moved / found.c)
+    moved = contact.mass / contact.points + contact.inertia
+    longest = resolving_step(contact.k, contact.c, moved)
+    if contact.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
+        longest = min(longest, moved / contact.c)
     if h <= longest:
         return
-    gain = ", and it can gain energy" if found.frequency * h > UNSOUND else ""
+    gain = ", and it can gain energy" if contact.frequency * h > UNSOUND else ""
     yield (
-        f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: e leaves out the step, and the "
+        f"timestep = {h:g} s is long for it, omega h = {contact.frequency * h:.2g}: e leaves out the step, and the "
         f"rebound can be another{gain}; {rounded_down(longest)} s resolves it"
     )

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 
@@ -92,10 +92,10 @@ def contact_for(
         UserWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what else
             holds the bodies, and of a keyframe in which the contact stops another mass.
     """
-    made = compiled(model)
-    pair = GeomPair.named(made, geom1, geom2)
+    whole = compiled(model)
+    pair = GeomPair.named(whole, geom1, geom2)
     asked = Asked(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
-    contact = contact_of(pair, Pose(made, keyframe, qpos), asked)
+    contact = contact_of(pair, Pose(whole, keyframe, qpos), asked)
     for sentence in (*spoilers(pair, contact), *contact.remarks):
         warnings.warn(sentence, stacklevel=2)
     return contact
@@ -128,10 +128,9 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
     speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
     if asked.mass is not None and asked.at is not None:
         raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
-    coefficients, condim = _friction(pair, asked.friction)
-    mu = coefficients[0] if condim > 1 else 0.0
+    grip = _friction(pair, asked.friction)
     rate = None if k is not None else RESOLVED / h
-    met = meeting(pair, pose, contacts=points, at=asked.at, friction=mu, frequency=rate, k=k)
+    met = meeting(pair, pose, contacts=points, at=asked.at, friction=grip.sliding, frequency=rate, k=k)
     share = _mass(pair, pose, asked.mass, met)
     if k is None:
         k = _stiffest(pair, asked, h, share, met.felt.gravity)
@@ -139,7 +138,6 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
     staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
     dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
-    friction_rate = min(math.sqrt(k / share), 1 / h)  # slip stops in 1 / omega; the page on contacts says why
     contact = PairContact(
         *pair.names,
         ids=pair.geoms,
@@ -152,14 +150,11 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
         contacts=met.points,
         solref=(stiffness, damping),
         solimp=(d, d, 0.001, 0.5, 2.0),
-        solreffriction=(-1e-30, -d * friction_rate) if condim > 1 else (0.0, 0.0),
-        friction=coefficients,
-        condim=condim,
-        impratio=max(1.0, HOLD / friction_rate * share / inertia) if condim > 1 else 1.0,
+        **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
         speed=speed,
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
-        remarks=_remarks(pair, pose, asked, met, k, c, mu),
+        remarks=_remarks(pair, pose, asked, met, k, c, grip.sliding),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
     return replace(contact, remarks=(*contact.remarks, *weighed))
@@ -197,8 +192,8 @@ def _require_one_loss(asked: Asked) -> None:
     losses = {"c": asked.c, "restitution": asked.restitution, "xi": asked.xi}
     given = {name: value for name, value in losses.items() if value is not None}
     if len(given) != 1:
-        found = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
-        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {found}")
+        listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
 
 
 def _dashpot(k: float, mass: float, asked: Asked, gravity: float) -> float:
@@ -264,11 +259,38 @@ def _row(
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
 
 
-def _friction(pair: GeomPair, friction: float | None) -> tuple[tuple[float, float, float, float, float], int]:
-    """The five coefficients of friction, and condim."""
+class Grip(NamedTuple):
+    """What a `PairContact` has for friction."""
+
+    friction: tuple[float, float, float, float, float]
+    condim: int
+    solreffriction: tuple[float, float] = (0.0, 0.0)
+    impratio: float = 1.0
+
+    @property
+    def sliding(self) -> float:
+        """Coefficient of sliding friction [-]."""
+        return self.friction[0] if self.condim > 1 else 0.0
+
+    def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
+        """The same with what stops slip.
+
+        Args:
+            rate: with which friction stops slip, omega at most [1/s]; the page on contacts says why not sooner.
+            impedance, inertia: of the normal row [-, kg].
+            mass: of the contact point [kg].
+        """
+        if self.condim == 1:
+            return self
+        impratio = max(1.0, HOLD / rate * mass / inertia)
+        return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
+
+
+def _friction(pair: GeomPair, friction: float | None) -> Grip:
+    """Friction of the model, or the coefficient that is given."""
     if friction is None:
         mixed = Mixed.of(pair)
         first, second, torsional, rolling, last = mixed.friction
-        return (first, second, torsional, rolling, last), mixed.condim
+        return Grip((first, second, torsional, rolling, last), mixed.condim)
     sliding = require_within("friction", friction, 0.0, 1e6)
-    return (sliding, sliding, *SPINNING), 3 if sliding > 0 else 1
+    return Grip((sliding, sliding, *SPINNING), 3 if sliding > 0 else 1)

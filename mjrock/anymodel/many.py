@@ -59,8 +59,8 @@ class PairContacts:
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
         """What in a model keeps the contacts from being what they say, one sentence each with the geoms it is about."""
-        made = compiled(model)
-        return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats_of(made)))
+        whole = compiled(model)
+        return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats_of(whole)))
 
 
 def contacts_for(
@@ -90,22 +90,22 @@ def contacts_for(
     Warns:
         UserWarning: as `contact_for` does, each sentence once, with the geoms that it is about.
     """
-    made = compiled(model)
+    whole = compiled(model)
     require_kind("pairs", pairs, Mapping)
-    pose = Pose(made, keyframe, qpos)
+    pose = Pose(whole, keyframe, qpos)
     contacts: dict[frozenset[int], PairContact] = {}
     for key, values in pairs.items():
         asked = _asked(key, values, timestep)
-        for geoms in _meant(made, key):
+        for geoms in _meant(whole, key):
             if frozenset(geoms) in contacts:
-                raise ValueError(f"pairs name the geoms {GeomPair(made, geoms).labels} twice, last by {shown(key)}")
-            contacts[frozenset(geoms)] = contact_of(GeomPair.named(made, *geoms), pose, asked)
+                raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
+            contacts[frozenset(geoms)] = contact_of(GeomPair.named(whole, *geoms), pose, asked)
     if not contacts:
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
     sentences = [
         (contact, sentence)
         for contact in contacts.values()
-        for sentence in (*spoilers(GeomPair(made, contact.ids), contact), *contact.remarks)
+        for sentence in (*spoilers(GeomPair(whole, contact.ids), contact), *contact.remarks)
     ]
     for sentence in _merged(sentences):
         warnings.warn(sentence, stacklevel=2)

@@ -6,7 +6,7 @@ With a constant impedance d, a contact row of MuJoCo's Euler step obeys
 
 with r the gap, v and a its rates, and W the inverse weight of the pair, the sum of `body_invweight0` of its two bodies.
 In the direct format solref = (-(1 - d) W k, -(1 - d) W c) and solimp = (d, d, ...). The Euler step is a leapfrog: v
-lies half a step before r, and v+ = v + h a. The inertia m_i of a row is therefore not an error but a choice. With
+lies half a step before r, and v+ = v + h a. So mjrock chooses the inertia m_i of a row. With
 
     m_i = h c / 2 + beta h^2 k
 
@@ -79,13 +79,7 @@ def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) ->
 
 @jitable
 def row(
-    k: float,
-    c: float,
-    timestep: float,
-    inverse_weight: float,
-    newmark_beta: float,
-    ringing: float,
-    overdamped: float,
+    k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float, overdamped: float
 ) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
 
