@@ -42,15 +42,16 @@ class Run:
     @property
     def t(self) -> Array:
         """Times of the samples [s]."""
-        return self.spacing * np.arange(len(self.samples.pose))
+        times: Array = self.spacing * np.arange(len(self.samples.pose), dtype=float)
+        return times
 
     @property
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
         at_rest = float(self.scene.rest_energies.sum()) + self._preloaded
-        energy: Array = self.samples.energy.sum(axis=1)
-        energy -= at_rest
-        return energy
+        kinetic, potential, elastic = self.samples.energy.T
+        total: Array = kinetic + potential + elastic - at_rest
+        return total
 
     @property
     def _preloaded(self) -> float:

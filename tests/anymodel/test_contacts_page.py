@@ -9,6 +9,7 @@ import pytest
 from pairs import FLOOR, ON_A_PLANE, rebound, scene
 
 import mjrock as mr
+from mjrock.problem.damping.falling import falling_rebound
 from mjrock.problem.damping.rebound import rebound_damping, rebound_restitution
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
@@ -37,6 +38,14 @@ def test_its_figures():
     assert rebound_damping(1e-3) == pytest.approx(16, abs=0.5)
     assert "0.58 e xi omega h" in PAGE
     assert 2 / math.sqrt(12) == pytest.approx(0.58, abs=5e-3)
+
+
+def test_its_table_of_gravity():
+    rows = [row.strip("|").split("|") for row in PAGE.splitlines() if row.startswith("| 0.")]
+    assert len(rows) == 5
+    for asked, *left in rows:
+        for pull, e in zip((0.009, 0.054, 0.085), left, strict=True):
+            assert falling_rebound(rebound_damping(float(asked)), pull).restitution == pytest.approx(float(e), abs=2e-3)
 
 
 def test_its_two_lines_measure_e():
@@ -128,10 +137,11 @@ def test_its_table_is_what_the_script_prints():
         <geom name="ball" size=".1" mass="2"/></body></worldbody></mujoco>"""
     )
     (found,) = mr.inspect_contacts(model)
-    figures = (found.k, found.c, found.mass, found.inertia, found.impedance, found.points, found.xi, found.restitution)
+    row = (found.k, found.k_loaded, found.c, found.mass, found.inertia, found.impedance, found.points, found.xi)
+    figures = (*row, found.restitution, found.restitution_at(1.0))
     printed = [float(word) for word in PAGE.splitlines()[-1].split()[3:-1]]
     assert printed == pytest.approx(figures, rel=4e-3)
 
 
 def test_it_is_short():
-    assert len(PAGE.splitlines()) < 130
+    assert len(PAGE.splitlines()) < 160

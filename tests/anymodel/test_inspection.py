@@ -116,12 +116,14 @@ def test_a_ball_on_uneven_ground_can_have_several_points():
     </worldbody></mujoco>"""
     (found,) = mr.inspect_contacts(mujoco.MjModel.from_xml_string(text))
     assert found.mass == pytest.approx(2.0)
-    assert any("several points" in note for note in found.notes)
+    assert any("uneven" in note for note in found.notes)
 
 
 def test_a_box_can_have_several_points():
     text = MODEL.format(h=1e-3, cone="elliptic", impratio=1, flags="", floor="", ball='type="box"', pair="")
-    (found,) = mr.inspect_contacts(mujoco.MjModel.from_xml_string(text.replace('size=".1" ', 'size=".1 .1 .1" ')))
+    model = mujoco.MjModel.from_xml_string(text.replace('size=".1" ', 'size=".1 .1 .1" '))
+    assert mr.inspect_contacts(model)[0].points == 4
+    (found,) = mr.inspect_contacts(model, contacts=1)
     assert any("several points" in note for note in found.notes)
 
 
@@ -133,9 +135,10 @@ def test_the_points_share_the_mass():
         assert (found.points, found.mass) == (points, pytest.approx(2.0))
         assert found.restitution == pytest.approx(0.5, rel=1e-3)
         assert found.frequency == pytest.approx(contact.frequency, rel=1e-3)
-        (single,) = mr.inspect_contacts(model)
+        assert mr.inspect_contacts(model)[0].points == points
+        (single,) = mr.inspect_contacts(model, contacts=1)
         assert single.restitution == pytest.approx(0.69 if points == 4 else 0.5, abs=0.003)
-        assert any("contacts says how many" in note for note in single.notes) == (points == 4)
+        assert any("contacts=None counts them" in note for note in single.notes) == (points == 4)
     for wrong, error in ((0, ValueError), (51, ValueError), (1.5, (TypeError, ValueError))):
         with pytest.raises(error, match="contacts"):
             mr.inspect_contacts(model, contacts=wrong)
@@ -244,11 +247,11 @@ def test_the_script_prints_the_table(tmp_path, capsys):
     script.main([str(path), "--out", str(tmp_path / "out")])
     printed = capsys.readouterr().out
     assert printed == (tmp_path / "out" / "inspect_contacts.txt").read_text()
-    assert "floor  ball  geoms  4.488e+04       1895          2" in printed
+    assert "floor  ball  geoms  4.488e+04  4.488e+04       1895          2" in printed
     assert "2: the cone is pyramidal" in printed
     path.write_text(path.read_text().replace('size=".1" mass', 'type="box" size=".1 .1 .1" mass'))
-    script.main([str(path), "--contacts", "4", "--out", str(tmp_path / "out")])
-    assert "xi and e are those of 4 that share the mass" in capsys.readouterr().out
+    script.main([str(path), "--contacts", "1", "--out", str(tmp_path / "out")])
+    assert "xi and e are those of a single one" in capsys.readouterr().out
     path.write_text("<mujoco/>")
     script.main([str(path), "--out", str(tmp_path / "out")])
     assert "no contact" in capsys.readouterr().out

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
-from pairs import BALL, FLAT_BOX, FLOOR, ON_A_PLANE, made_for, rebound, scene
+from pairs import BALL, FLOOR, ON_A_PLANE, made_for, rebound, scene
 
 import mjrock as mr
 
@@ -95,7 +95,6 @@ def test_it_warns_of_what_spoils_every_contact(options):
 @pytest.mark.parametrize(
     ("text", "asked", "complaint"),
     [
-        (FLAT_BOX, {"geom1": "box"}, "several contact points, each with the stiffness k"),
         (ON_A_PLANE, {"timestep": 1e-3}, "timestep = 0.001 s is long .* 0.00038 s resolves it"),
         (scene(FLOOR, BALL, pair='<pair geom1="ball" geom2="floor" margin=".01"/>'), {}, "a margin of 0.01 m"),
         (scene(FLOOR, BALL, pair='<pair geom1="ball" geom2="floor" adhesion="3"/>'), {}, "an adhesion of 3 N"),

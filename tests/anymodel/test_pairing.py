@@ -116,7 +116,7 @@ def test_a_restitution_is_a_damping_ratio_is_a_dashpot(name):
 @pytest.mark.parametrize("k", [1e5, 1e7])
 def test_k_is_the_force_over_the_indentation(k):
     text = scene(FLOOR, BALL, gravity=9.81)
-    contact, model = made_for(text, "ball", "floor", k=k, restitution=0.1)
+    contact, model = made_for(text, "ball", "floor", k=k, xi=0.45)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, int(60 / (contact.frequency * model.opt.timestep)))
     assert 0.1 - data.qpos[2] == pytest.approx(2 * 9.81 / k, rel=1e-4)
@@ -160,18 +160,22 @@ def test_a_corner_has_its_own_mass():
 
 
 def test_what_is_welded_moves_as_one():
-    """A foot beside the body that it is welded to; the mass is that of the whole, at the centre of the whole."""
+    """A foot beside the body that it is welded to: the blow is beside the centre of the whole, and turns it too."""
     whole = """<body pos="0 0 .1"><freejoint/><geom size=".1" mass="2"/>
     <body name="foot" pos=".3 0 .05"><geom name="foot" size=".1" mass="3"/></body></body>"""
-    contact, _ = made_for(scene(FLOOR, whole), "foot", "floor", restitution=0.5)
-    assert contact.mass == pytest.approx(5.0)
+    contact, _ = made_for(scene(FLOOR, whole), "foot", "floor", restitution=0.5, friction=0.0)
+    apart = np.hypot(0.3, 0.05)
+    inertia = 0.4 * (2 + 3) * 0.1**2 + 2 * 3 / 5 * apart**2
+    assert contact.mass == pytest.approx(1 / (1 / 5 + (0.3 * 2 / 5) ** 2 / inertia))
+    centred = whole.replace(".3 0 .05", "0 0 -.1")
+    assert made_for(scene(FLOOR, centred), "foot", "floor", restitution=0.5)[0].mass == pytest.approx(5.0)
 
 
 def test_joints_count():
     """A ball on a slide that is inclined: only a part of its approach is along the normal."""
     inclined = """<body name="ball" pos="0 0 .1"><joint type="slide" axis="0 .6 .8"/>
     <geom name="ball" size=".1" mass="2"/></body>"""
-    contact, _ = made_for(scene(FLOOR, inclined), "ball", "floor", restitution=0.5)
+    contact, _ = made_for(scene(FLOOR, inclined), "ball", "floor", restitution=0.5, friction=0.0)
     assert contact.mass == pytest.approx(2 / 0.8**2)
     level = inclined.replace("0 .6 .8", "0 1 0")
     with pytest.raises(ValueError, match=r"cannot approach each other along their normal at qpos0.* give mass"):
@@ -184,7 +188,7 @@ def test_the_normal_is_that_of_the_shortest_distance(height, normal):
     table = '<geom name="floor" type="box" size="2 2 .3"/>'
     ball = f"""<body name="ball" pos=".5 .7 {height}"><joint type="slide" axis="0 .6 .8"/>
     <geom name="ball" size=".1" mass="2"/></body>"""
-    contact, _ = made_for(scene(table, ball), "ball", "floor", restitution=0.5)
+    contact, _ = made_for(scene(table, ball), "ball", "floor", restitution=0.5, friction=0.0)
     assert contact.mass == pytest.approx(2 / normal**2, rel=1e-3)
 
 

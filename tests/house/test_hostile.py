@@ -25,6 +25,11 @@ SHORT = mr.Case(WALL, 0.05, 0.02)
 MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
 RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
+PAIRED = mujoco.MjModel.from_xml_string(
+    """<mujoco><option cone="elliptic"/><worldbody><geom name="floor" type="plane" size="1 1 1"/><body pos="0 0 .1">
+    <freejoint/><geom name="ball" size=".1"/></body></worldbody><contact><pair geom1="ball" geom2="floor"/></contact>
+    </mujoco>"""
+)
 PLAN = mr.Plan(base_count=2, side_count=2)
 COLUMN = mr.Masonry.stack([WALL], 5e8)
 
@@ -78,13 +83,33 @@ CALLS = OF_NUMBERS | {
         {
             "model": BALL, "geom1": "ball", "geom2": "floor", "k": 1e6, "c": None, "restitution": 0.5, "xi": None,
             "friction": 0.5, "mass": None, "at": None, "contacts": 1, "timestep": 1e-5, "newmark_beta": 0.25,
+            "keyframe": None, "qpos": [0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0], "speed": 1.0,
         },
     ),
     "contact_for, by c": (
         mr.contact_for,
         {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
     ),
-    "inspect_contacts": (mr.inspect_contacts, {"model": BALL, "candidates": True, "contacts": 1}),
+    "contacts_for": (
+        mr.contacts_for,
+        {
+            "model": BALL, "pairs": {("b*", "floor"): {"k": 1e6, "restitution": 0.5}}, "keyframe": None, "qpos": None,
+            "timestep": 1e-5,
+        },
+    ),
+    "measured_contact": (
+        mr.measured_contact,
+        {"heights": [1.0, 0.5], "mass": 1.0, "contact_times": [0.01], "confidence": 0.9, "gravity": 9.81},
+    ),
+    "hertz_stiffness": (
+        mr.hertz_stiffness,
+        {"radius": 0.1, "E": 1e9, "nu": 0.3, "other": (1e9, 0.3), "force": None, "mass": 1.0, "speed": 1.0},
+    ),
+    "CoulombFriction": (mr.CoulombFriction, {"model": PAIRED}),
+    "inspect_contacts": (
+        mr.inspect_contacts,
+        {"model": BALL, "candidates": True, "contacts": 1, "keyframe": None, "qpos": None, "load": 3.0},
+    ),
     "automatic_timestep": (mr.automatic_timestep, {"wall": WALL, "contacts": CONTACTS, "side_stop": True}),
     "simulate": (
         mr.simulate,
@@ -250,7 +275,8 @@ def test_every_public_entry_is_tried():
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "calibrate", "GroundMotion",
-        "InspectedContact", "PairContact",
+        "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
+        "MeasuredContact",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -44,6 +44,8 @@ WRITES = {
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
+    "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
+    "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
     "sketch": {"sketch.png"},
     "speed": {"speed.txt"},
