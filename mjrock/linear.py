@@ -54,22 +54,37 @@ def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     return csr_array((values[there], (row[there], columns[there])), shape=(rows, unknowns))
 
 
-def means(group: Integers, count: int) -> csr_array:
-    """The matrix that takes means over groups of rows, shape (count, rows); a negative number belongs to no group."""
-    row = np.flatnonzero(group >= 0)
-    sizes = np.bincount(group[row], minlength=count)
-    return csr_array((1.0 / sizes[group[row]], (group[row], row)), shape=(count, len(group)))
+def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
+    """Means of the rows of each group, shape (count, unknowns); a row with a negative number is in none."""
+    grouped = np.flatnonzero(group >= 0)
+    shape = (count, len(group))
+    sums = csr_array((np.ones(len(grouped)), (group[grouped], grouped)), shape=shape) @ rows
+    sums.data /= np.repeat(np.bincount(group[grouped], minlength=count), np.diff(sums.indptr))
+    return csr_array(sums)
 
 
-def balance(stiffness: csr_array, grip: csr_array, force: Array) -> tuple[Array, Array]:
+def fitting(rates: csr_array) -> csr_array | Array:
+    """Rates as they are, or as an array where there are few unknowns."""
+    return rates.toarray() if rates.shape[1] <= FEW else rates
+
+
+def sprung(rates: csr_array | Array, springs: Array) -> csr_array | Array:
+    """Stiffness of springs [N/m] whose rates are these, of the same kind as they are."""
+    if isinstance(rates, np.ndarray):
+        return (rates.T * springs) @ rates
+    return csr_array(rates.T @ diags_array(springs) @ rates)
+
+
+def balance(stiffness: csr_array | Array, grip: csr_array, force: Array) -> tuple[Array, Array]:
     """The motion in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
 
     Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none.
     """
     n, held = stiffness.shape[0], grip.shape[0]
-    if n > FEW:
+    if not isinstance(stiffness, np.ndarray):
         return _Balance(stiffness, grip, LOOSE)(force)
-    matrix = block_array([[stiffness, grip.T], [grip, None]]).toarray() if held else stiffness.toarray()
+    rows = grip.toarray()
+    matrix = np.block([[stiffness, rows.T], [rows, np.zeros((held, held))]])
     solution = np.linalg.lstsq(matrix, np.append(force, np.zeros(held)), rcond=1e-14)[0]
     return solution[:n], solution[n:]
 

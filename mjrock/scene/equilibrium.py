@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array
 
 from ..geometry.kinematics import Forces, Places, gaps
-from ..linear import balance, is_definite, means
+from ..linear import averaged, balance, fitting, is_definite, sprung
 from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential
 
@@ -70,8 +70,8 @@ def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
     scale = GRAVITY * float(masses[1::3].max())
     tolerated = max(1e-9 * scale, ROUNDING * float((ties.k * ties.reach).max(initial=0)))
     for _ in range(ITERATIONS):
-        rates, depth = potential.rates(pose), -potential.openings(pose)
-        stiffness = csr_array(rates.T @ diags_array(np.where(closed, k, LEANING * k)) @ rates)
+        rates, depth = fitting(potential.rates(pose)), -potential.openings(pose)
+        stiffness = sprung(rates, np.where(closed, k, LEANING * k))
         residual = potential.load(pose) + rates.T @ (np.where(closed, k, 0.0) * depth)
         grip = k.max() * held_slips(potential, friction, closed & (depth > 0) if pressed else closed, pose)
         moved, held = balance(stiffness, grip, residual)
@@ -106,10 +106,10 @@ def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array
     places = potential.structure.places
     holds = closed[: len(friction)] & (friction > 0)
     pair = np.sort(np.column_stack([places.body, places.face_body]), axis=1)[holds]
-    pairs, number = np.unique(pair, axis=0, return_inverse=True)
+    pairs, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
     group = np.full(len(friction), -1)
-    group[holds] = number
-    return csr_array(means(group, len(pairs)) @ potential.slip_rates(pose))
+    group[holds] = np.argsort(np.argsort(first))[number]  # in the order in which the contacts name them
+    return averaged(potential.slip_rates(pose), group, len(pairs))
 
 
 def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:

@@ -17,7 +17,7 @@ from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import frames_of, push_body, swung, take_frames
 from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, stretch
 from ..geometry.vectors import dot, plus, vector
-from ..linear import entries
+from ..linear import entries, sprung
 from ..quantities import GRAVITY, Array, Integers
 
 
@@ -172,8 +172,7 @@ class Potential:
 
     def stiffness(self, pose: Array, springs: Array) -> csr_array:
         """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
-        rates = self.rates(pose)
-        return csr_array(rates.T @ diags_array(springs) @ rates)
+        return sprung(self.rates(pose), springs)
 
     def curvature(self, pose: Array) -> csr_array:
         """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).

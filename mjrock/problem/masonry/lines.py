@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array
 
-from ...linear import entries, lowest_square, means
+from ...linear import averaged, entries, lowest_square, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
@@ -100,7 +100,7 @@ def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> csr_arr
 
 def slips(blocks: Sequence[Polygon], lines: Lines, joints: int) -> csr_array:
     """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies)."""
-    return means(lines.joint, joints) @ rates(blocks, lines, lines.along)
+    return averaged(rates(blocks, lines, lines.along), lines.joint, joints)
 
 
 def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -> float:
@@ -112,9 +112,8 @@ def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -
     free = [block for block in blocks if not block.fixed]
     masses = np.array([(block.mass, block.mass, block.inertia) for block in free]).ravel()
     opening = rates(blocks, lines, lines.normal)
-    stiffness = csr_array(opening.T @ diags_array(lines.k) @ opening)
     held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    square = lowest_square(stiffness, masses, slips(blocks, lines, len(friction))[held], RIGID)
+    square = lowest_square(sprung(opening, lines.k), masses, slips(blocks, lines, len(friction))[held], RIGID)
     if square == 0:
         raise ValueError("the blocks have no joint that a motion could compress, and xi refers to no frequency")
     return math.sqrt(square)
