@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import null_space
+from scipy.sparse import csr_array
 
 from ..geometry.kinematics import Forces, Places, gaps
+from ..linear import averaged, balance, fitting, is_definite, sprung
 from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential
 
@@ -69,13 +70,11 @@ def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
     scale = GRAVITY * float(masses[1::3].max())
     tolerated = max(1e-9 * scale, ROUNDING * float((ties.k * ties.reach).max(initial=0)))
     for _ in range(ITERATIONS):
-        rates, depth = potential.rates(pose), -potential.openings(pose)
-        stiffness = (rates.T * np.where(closed, k, LEANING * k)) @ rates
+        rates, depth = fitting(potential.rates(pose)), -potential.openings(pose)
+        stiffness = sprung(rates, np.where(closed, k, LEANING * k))
         residual = potential.load(pose) + rates.T @ (np.where(closed, k, 0.0) * depth)
         grip = k.max() * held_slips(potential, friction, closed & (depth > 0) if pressed else closed, pose)
-        matrix = np.block([[stiffness, grip.T], [grip, np.zeros((len(grip), len(grip)))]])
-        solution = np.linalg.lstsq(matrix, np.append(residual, np.zeros(len(grip))), rcond=1e-14)[0]
-        moved, held = solution[: len(pose)], solution[len(pose) :]
+        moved, held = balance(stiffness, grip, residual)
         if np.abs(residual - grip.T @ held).max() < tolerated and (closed == (depth > 0)).all():
             if is_stable(potential, friction, closed, pose):
                 return pose.reshape(-1, 3)
@@ -94,24 +93,23 @@ def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
 def is_stable(potential: Potential, friction: Array, closed: Flags, pose: Array) -> bool:
     """Whether no motion that friction allows takes energy from a pose at rest, of shape (3 n,)."""
     stiffness = potential.stiffness(pose, np.where(closed, potential.springs, 0.0))
-    size = float(np.abs(stiffness).max())
-    free = null_space(held_slips(potential, friction, closed, pose), rcond=1e-9)
-    hessian = stiffness + potential.curvature(pose)
-    return not free.size or float(np.linalg.eigvalsh(free.T @ hessian @ free)[0]) > -FLAT * size
+    hessian = csr_array(stiffness + potential.curvature(pose))
+    return is_definite(hessian, held_slips(potential, friction, closed, pose), FLAT * float(abs(stiffness).max()))
 
 
-def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array) -> Array:
+def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array) -> csr_array:
     """Rates of the slip between bodies that friction holds, for unit velocities, shape (pairs of bodies, 3 n).
 
     It is the mean slip of the closed points with friction of each pair. Two edges of one joint that both held would
     lock its rotation.
     """
-    places, slips = potential.structure.places, potential.slip_rates(pose)
-    pairs: dict[tuple[int, int], list[int]] = {}
-    for i in np.flatnonzero(closed[: len(friction)] & (friction > 0)):
-        body, face = int(places.body[i]), int(places.face_body[i])
-        pairs.setdefault((min(body, face), max(body, face)), []).append(int(i))
-    return np.reshape([slips[lines].mean(axis=0) for lines in pairs.values()], (-1, slips.shape[1]))
+    places = potential.structure.places
+    holds = closed[: len(friction)] & (friction > 0)
+    pair = np.sort(np.column_stack([places.body, places.face_body]), axis=1)[holds]
+    pairs, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
+    group = np.full(len(friction), -1)
+    group[holds] = np.argsort(np.argsort(first))[number]  # in the order in which the contacts name them
+    return averaged(potential.slip_rates(pose), group, len(pairs))
 
 
 def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:

@@ -7,15 +7,18 @@ Velocities and forces are those of the joints of all bodies, shape (n nv,) with 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array, diags_array
 
 from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import frames_of, push_body, swung, take_frames
 from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, stretch
 from ..geometry.vectors import dot, plus, vector
-from ..quantities import GRAVITY, Array
+from ..linear import entries, sprung
+from ..quantities import GRAVITY, Array, Integers
 
 
 class Structure(NamedTuple):
@@ -121,19 +124,28 @@ class Potential:
         pressed: Array = np.maximum(-self.openings(pose), 0.0)
         return pressed
 
-    def rates(self, pose: Array) -> Array:
+    def rates(self, pose: Array) -> csr_array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
         places, ties, masses = self.structure.places, self.structure.ties, self.structure.masses
-        rates, none = np.zeros((len(places.body) + len(ties.k), len(masses))), np.zeros_like(masses)
+        bodies, none = self._bodies, np.zeros_like(masses)
+        rates = np.zeros((*bodies.shape, places.freedom.nv))
         _rates(places, ties, frames_of(pose, places.freedom), np.zeros_like(masses), none, rates)
-        return rates
+        return entries(rates, bodies, len(masses))
 
-    def slip_rates(self, pose: Array) -> Array:
+    def slip_rates(self, pose: Array) -> csr_array:
         """Rates at which the points move along their faces for unit velocities, shape (m, n nv)."""
         places, masses = self.structure.places, self.structure.masses
-        rates = np.zeros((len(places.body), len(masses)))
+        bodies = self._bodies[: len(places.body)]
+        rates = np.zeros((*bodies.shape, places.freedom.nv))
         _slip_rates(places, frames_of(pose, places.freedom), np.zeros_like(masses), rates)
-        return rates
+        return entries(rates, bodies, len(masses))
+
+    @cached_property
+    def _bodies(self) -> Integers:
+        """The two bodies of each contact and then of each tie, shape (m + t, 2)."""
+        places, ties = self.structure.places, self.structure.ties
+        own = np.concatenate([places.body, ties.body]).astype(np.int64)
+        return np.column_stack([own, np.concatenate([places.face_body, ties.anchor_body]).astype(np.int64)])
 
     def load(self, pose: Array) -> Array:
         """Generalised force of the weight and of the constant forces, shape (n nv,)."""
@@ -158,13 +170,11 @@ class Potential:
         gradient: Array = -self.load(pose) - self.rates(pose).T @ (self.springs * self.pressed(pose))
         return gradient
 
-    def stiffness(self, pose: Array, springs: Array) -> Array:
+    def stiffness(self, pose: Array, springs: Array) -> csr_array:
         """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
-        rates = self.rates(pose)
-        stiffness: Array = (rates.T * springs) @ rates
-        return stiffness
+        return sprung(self.rates(pose), springs)
 
-    def curvature(self, pose: Array) -> Array:
+    def curvature(self, pose: Array) -> csr_array:
         """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
@@ -173,20 +183,26 @@ class Potential:
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
-        frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
-        curvature = np.zeros((len(masses), len(masses)))
-        _curvatures(places, ties, frames, none, self.springs * self.pressed(pose), curvature)
+        frames, none, nv = frames_of(pose, places.freedom), np.zeros_like(masses), places.freedom.nv
+        acting = self.springs * self.pressed(pose)
+        bent = np.zeros((len(acting), 2 * nv, 2 * nv))
+        _curvatures(places, ties, frames, none, acting, bent)
+        bodies = np.repeat(self._bodies, nv, axis=1)
+        unknown = np.where(bodies < 0, -1, nv * bodies + np.tile(np.arange(nv), 2))
+        there = (unknown[:, :, None] >= 0) & (unknown[:, None] >= 0) & (acting != 0)[:, None, None]
+        rows, columns = np.broadcast_to(unknown[:, :, None], bent.shape), np.broadcast_to(unknown[:, None], bent.shape)
+        turning = np.zeros_like(masses)
         for i, body in enumerate(forces.body):
             at = vector(forces.at, i, places.axes)
             arm = plus(at, swung(frames, body, at))
-            curvature[3 * body + 2, 3 * body + 2] += dot(vector(forces.force, i, places.axes), arm)
-        return curvature
+            turning[3 * body + 2] += dot(vector(forces.force, i, places.axes), arm)
+        shape = (len(masses), len(masses))
+        return csr_array((bent[there], (rows[there], columns[there])), shape=shape) + diags_array(turning)
 
-    def hessian(self, pose: Array) -> Array:
+    def hessian(self, pose: Array) -> csr_array:
         """Second derivatives of the energy, shape (n nv, n nv)."""
         closed = self.openings(pose) < 0
-        hessian: Array = self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
-        return hessian
+        return self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
 
 
 @inlined
@@ -206,28 +222,31 @@ def _openings(places: Places, ties: Ties, frames: Array, none: Array, values: Ar
 def _rates(places: Places, ties: Ties, frames: Array, unit: Array, none: Array, rates: Array) -> None:
     nv = len(unit) // len(frames)
     for i in range(len(rates)):
-        for body in _bodies(places, ties, i):
-            for j in range(nv * body, nv * body + nv if body >= 0 else 0):
-                unit[j] = 1.0
-                rates[i, j] = opening(places, ties, i, frames, unit, none).rate
-                unit[j] = 0.0
+        bodies = _bodies(places, ties, i)
+        for side in range(2):
+            for j in range(nv if bodies[side] >= 0 else 0):
+                unit[nv * bodies[side] + j] = 1.0
+                rates[i, side, j] = opening(places, ties, i, frames, unit, none).rate
+                unit[nv * bodies[side] + j] = 0.0
 
 
 @compiled
 def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> None:
     nv = len(unit) // len(frames)
     for i in range(len(rates)):
-        for body in (places.body[i], places.face_body[i]):
-            for j in range(nv * body, nv * body + nv if body >= 0 else 0):
-                unit[j] = 1.0
-                rates[i, j] = along(places, i, frames, unit).rate
-                unit[j] = 0.0
+        bodies = (places.body[i], places.face_body[i])
+        for side in range(2):
+            for j in range(nv if bodies[side] >= 0 else 0):
+                unit[nv * bodies[side] + j] = 1.0
+                rates[i, side, j] = along(places, i, frames, unit).rate
+                unit[nv * bodies[side] + j] = 0.0
 
 
 @compiled
 def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: Array, curvature: Array) -> None:
-    """Add the geometric stiffness of each closed spring. What is quadratic in the velocities in the second rate of an
-    opening is its second derivative along them."""
+    """Write the geometric stiffness of each closed spring, for the velocities of its first and then of its second body.
+
+    What is quadratic in the velocities in the second rate of an opening is its second derivative along them."""
     nv, unit = len(none) // len(frames), none
     for i in range(len(force)):
         if force[i] == 0:
@@ -241,5 +260,5 @@ def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: A
                     unit[row] += 1.0
                     unit[column] += sign
                     bent = opening(places, ties, i, frames, unit, unit).swept
-                    curvature[row, column] -= 0.25 * sign * force[i] * bent
+                    curvature[i, p, r] -= 0.25 * sign * force[i] * bent
                     unit[row], unit[column] = 0.0, 0.0

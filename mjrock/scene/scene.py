@@ -18,6 +18,7 @@ import numpy as np
 
 from ..geometry.frames import PLANE
 from ..geometry.kinematics import Forces, Places, Ties, gaps
+from ..linear import highest_square
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .arrays import GROUND, checked, frozen, nothing
 from .dampers import Dampers
@@ -255,14 +256,13 @@ class Scene:
         No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
         """
         stiffness = self.potential.stiffness(np.zeros_like(self.masses), self.potential.springs)
-        root = np.sqrt(self.masses)
-        return math.sqrt(float(np.linalg.eigvalsh(stiffness / root / root[:, None])[-1]))
+        return math.sqrt(highest_square(stiffness, self.masses))
 
     @cached_property
     def tie_frequency(self) -> float:
         """The highest natural frequency of the bodies on one tie alone [rad/s], zero without ties."""
         rates = self.potential.rates(np.zeros_like(self.masses))[len(self.k) :]
-        return math.sqrt(max(self.tie_k * (rates**2 @ (1 / self.masses)), default=0.0))
+        return math.sqrt(max(self.tie_k * (rates.power(2) @ (1 / self.masses)), default=0.0))
 
     @cached_property
     def rocking_frequency(self) -> float:

@@ -92,7 +92,7 @@ def _carried(scene: Scene, potential: Potential, pose: Array) -> tuple[Array, Ar
     limits = np.append(np.full(contacts, np.inf), scene.ties.stretch)
     down = float(potential.load(pose)[1])
     for _ in range(ITERATIONS):
-        rates, pressed = potential.rates(pose), np.minimum(potential.pressed(pose), limits)
+        rates, pressed = potential.rates(pose).toarray(), np.minimum(potential.pressed(pose), limits)
         springs = rates.T @ (potential.springs * pressed)
         stiffness = float(scene.k[pressed[:contacts] > 0] @ rates[:contacts, 1][pressed[:contacts] > 0] ** 2)
         if stiffness == 0:

@@ -85,8 +85,8 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     blocks, joints = masonry.blocks, masonry.joints
     ends = lines_of(blocks, joints, np.ones(len(joints)), 2)
     root = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, blocks[i].inertia)])
-    opens = rates(blocks, ends, ends.normal) / root
-    slips = rates(blocks, ends, ends.along)[::2] / root  # both ends of a joint slip alike
+    opens = rates(blocks, ends, ends.normal).toarray() / root
+    slips = rates(blocks, ends, ends.along).toarray()[::2] / root  # both ends of a joint slip alike
     after, pressed, rubbed = _projected(root * before, opens, slips, masonry.joint_friction > 0)
     momentum = float(np.linalg.norm(root * before))
     after[np.abs(after) <= NOTHING * momentum] = 0.0  # what stops dead does so to the last digit

@@ -9,7 +9,7 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
-    ("_version", "compiled", "files", "method", "quantities"),
+    ("_version", "compiled", "files", "linear", "method", "quantities"),
     ("geometry",),
     ("problem.ground",),
     ("problem.wall",),
@@ -26,7 +26,7 @@ FLOORS = (
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_MUJOCO = ("geometry", "problem", "scene", "result", "theory", "reference", "distinct")
 LONGEST_MODULE, LONGEST_FUNCTION, MOST_ARGUMENTS = 300, 60, 7
-NUMERICS = ("geometry", "scene", "engine", "distinct", "theory", "reference")
+NUMERICS = ("linear.py", "geometry", "scene", "engine", "distinct", "theory", "reference")
 MODULES = [path for path in sorted(ROOT.rglob("*.py")) if path.name != "__init__.py"]
 
 

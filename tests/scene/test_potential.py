@@ -32,7 +32,7 @@ def test_derivatives_of_the_energy(held):
     np.testing.assert_array_equal(potential.springs, k)
     np.testing.assert_array_equal(potential.pressed(pose), np.maximum(-potential.openings(pose), 0))
     pressed = np.maximum(-potential.openings(pose), 0) * k
-    rates = potential.rates(pose)
+    rates = potential.rates(pose).toarray()
     ways, h = np.eye(6), 1e-5
     gradient = [(potential.energy(pose + h * way) - potential.energy(pose - h * way)) / (2 * h) for way in ways]
     force = potential.load(pose) + rates.T @ pressed
@@ -44,10 +44,10 @@ def test_derivatives_of_the_energy(held):
         return -potential.load(at) - potential.rates(at).T @ closed
 
     second = np.array([(gradient_at(pose + h * way) - gradient_at(pose - h * way)) / (2 * h) for way in ways])
-    found = (rates.T * np.where(pressed > 0, k, 0)) @ rates + potential.curvature(pose)
+    found = (rates.T * np.where(pressed > 0, k, 0)) @ rates + potential.curvature(pose).toarray()
     np.testing.assert_allclose(found, second, rtol=1e-6, atol=1e-8 * np.abs(second).max())
-    np.testing.assert_allclose(potential.hessian(pose), found, rtol=1e-12, atol=1e-12 * np.abs(second).max())
-    bent = np.abs(potential.curvature(pose)).max()
+    np.testing.assert_allclose(potential.hessian(pose).toarray(), found, rtol=1e-12, atol=1e-12 * np.abs(second).max())
+    bent = np.abs(potential.curvature(pose).toarray()).max()
     assert bent > 1e4  # what the check of the second derivatives is about is no trifle
 
 
@@ -70,9 +70,9 @@ def test_rates_are_derivatives_of_openings_and_places(held):
 
     for j, way in enumerate(np.eye(6)):
         opened = (potential.openings(pose + h * way) - potential.openings(pose - h * way)) / (2 * h)
-        np.testing.assert_allclose(potential.rates(pose)[:, j], opened, rtol=0, atol=1e-8)
+        np.testing.assert_allclose(potential.rates(pose).toarray()[:, j], opened, rtol=0, atol=1e-8)
         slid = (along_faces(pose + h * way) - along_faces(pose - h * way)) / (2 * h)
-        np.testing.assert_allclose(potential.slip_rates(pose)[:, j], slid, rtol=0, atol=1e-8)
+        np.testing.assert_allclose(potential.slip_rates(pose).toarray()[:, j], slid, rtol=0, atol=1e-8)
 
 
 def test_at_rest_only_friction_holds_what_springs_do_not(held):
@@ -83,12 +83,12 @@ def test_at_rest_only_friction_holds_what_springs_do_not(held):
         pose = scene.at_rest.ravel()
         assert (scene.potential.pressed(pose)[4] > 0) == taut
         closed = scene.potential.openings(pose) < 0
-        free = null_space(held_slips(scene.potential, scene.friction, closed, pose))
+        free = null_space(held_slips(scene.potential, scene.friction, closed, pose).toarray())
         left = scene.potential.gradient(pose)
         assert free.shape == (6, 4)  # friction holds the slip of two joints
         np.testing.assert_allclose(free.T @ left, 0, rtol=0, atol=1e-8 * scene.mass[0] * mr.GRAVITY)
         assert np.abs(left).max() > 1e3  # which carries some of the force
-        assert np.linalg.eigvalsh(free.T @ scene.potential.hessian(pose) @ free)[0] > 0
+        assert np.linalg.eigvalsh(free.T @ (scene.potential.hessian(pose) @ free))[0] > 0
 
 
 def test_an_equilibrium_that_is_not_stable_is_no_rest():

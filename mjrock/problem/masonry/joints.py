@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -75,6 +76,14 @@ class Joint:
         return bool(abs(self.normal[0]) < LEVEL)
 
 
+class Outline(NamedTuple):
+    """The edges of a convex block, counterclockwise: where they start and end, and their unit normals out of it."""
+
+    corners: Array
+    ends: Array
+    normals: Array
+
+
 def names_of(blocks: Sequence[Polygon]) -> tuple[str, ...]:
     """Names of the blocks: their own, or `block_` and their number."""
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
@@ -94,14 +103,15 @@ def find_joints(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...
         ValueError: if two blocks overlap by more than the tolerance. The message names both.
     """
     names, found = names_of(blocks), []
+    outlines = [Outline(block.corners, np.roll(block.corners, -1, axis=0), _normals(block.corners)) for block in blocks]
     for i, j in _neighbours(blocks, tolerance):
-        deep = _overlap(blocks[i].corners, blocks[j].corners)
+        deep = _overlap(outlines[i], outlines[j])
         if deep > tolerance:
             raise ValueError(
                 f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the tolerance, "
                 f"{tolerance:g} m"
             )
-        found += list(_between(blocks, i, j, names, tolerance))
+        found += list(_between(blocks, (i, j), (outlines[i], outlines[j]), names, tolerance))
     return tuple(found)
 
 
@@ -124,35 +134,42 @@ def _normals(corners: Array) -> Array:
     return made
 
 
-def _overlap(one: Array, other: Array) -> float:
+def _overlap(one: Outline, other: Outline) -> float:
     """Depth by which two convex outlines overlap [m], negative where they are apart: least over the normals."""
     depths = [
-        (a @ normals.T).max(axis=0) - (b @ normals.T).min(axis=0)
-        for a, b, normals in ((one, other, _normals(one)), (other, one, _normals(other)))
+        (a.corners @ a.normals.T).max(axis=0) - (b.corners @ a.normals.T).min(axis=0)
+        for a, b in ((one, other), (other, one))
     ]
     return float(np.concatenate(depths).min())
 
 
-def _between(blocks: Sequence[Polygon], i: int, j: int, names: Sequence[str], tolerance: float) -> Iterator[Joint]:
+def _between(
+    blocks: Sequence[Polygon],
+    pair: tuple[int, int],
+    outlines: tuple[Outline, Outline],
+    names: Sequence[str],
+    tolerance: float,
+) -> Iterator[Joint]:
     """The joints between two blocks."""
-    one, other = blocks[i].corners, blocks[j].corners
-    for a, b, n in zip(one, np.roll(one, -1, axis=0), _normals(one), strict=True):
-        for c, d, m in zip(other, np.roll(other, -1, axis=0), _normals(other), strict=True):
-            if n @ m > 0 or abs(n[0] * m[1] - n[1] * m[0]) > PARALLEL:
-                continue
-            way = (b - a) / np.hypot(*(b - a))
-            first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
-            low, high = max(0.0, first), min(float((b - a) @ way), last)
-            if high - low <= SHORTEST * tolerance:
-                continue
-            rise = (c - d) @ n / (last - first)
-            apart = np.array([(d - a) @ n + rise * (s - first) for s in (low, high)])
-            if np.abs(apart).max() > tolerance:
-                continue
-            ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
-            # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
-            travel = (float((b - a) @ way - first), float(last))
-            yield _joint(blocks, i, j, ends, n, names, tolerance, travel)
+    (i, j), (one, other) = pair, outlines
+    sine = np.abs(np.outer(one.normals[:, 0], other.normals[:, 1]) - np.outer(one.normals[:, 1], other.normals[:, 0]))
+    meeting = np.argwhere((one.normals @ other.normals.T <= 0) & (sine <= PARALLEL))
+    for edge, edge_of_other in meeting.tolist():
+        a, b, n = one.corners[edge], one.ends[edge], one.normals[edge]
+        c, d = other.corners[edge_of_other], other.ends[edge_of_other]
+        way = (b - a) / np.hypot(*(b - a))
+        first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
+        low, high = max(0.0, first), min(float((b - a) @ way), last)
+        if high - low <= SHORTEST * tolerance:
+            continue
+        rise = (c - d) @ n / (last - first)
+        apart = np.array([(d - a) @ n + rise * (s - first) for s in (low, high)])
+        if np.abs(apart).max() > tolerance:
+            continue
+        ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
+        # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
+        travel = (float((b - a) @ way - first), float(last))
+        yield _joint(blocks, i, j, ends, n, names, tolerance, travel)
 
 
 def _joint(

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import null_space
+from scipy.sparse import csr_array
 
-from ...geometry.frames import PLANE, push_body
+from ...linear import averaged, entries, lowest_square, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
@@ -79,7 +79,7 @@ def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
     return float(low[edge]), float(high[edge])
 
 
-def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
+def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> csr_array:
     """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
 
     They are the generalised forces of unit forces that press the two blocks of a line apart.
@@ -89,15 +89,18 @@ def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
     Returns:
         Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies).
     """
-    free = [i for i, block in enumerate(blocks) if not block.fixed]
-    number, frames = {block: body for body, block in enumerate(free)}, np.zeros((len(free), 4))
-    rates = np.zeros((len(lines.k), PLANE.nv * len(free)))
-    for sign, carrier in ((1.0, lines.body), (-1.0, lines.face)):
-        for i, block in enumerate(carrier.tolist()):
-            if block in number:
-                arm = tuple((lines.at[i] - blocks[block].centroid).tolist())
-                push_body(frames, number[block], arm, tuple((sign * directions[i]).tolist()), rates[i])
-    return rates
+    free = np.array([not block.fixed for block in blocks])
+    number = np.where(free, np.cumsum(free) - 1, -1)
+    carriers = np.column_stack([lines.body, lines.face])
+    arms = lines.at[:, None] - np.array([block.centroid for block in blocks])[carriers]
+    x, z = directions.T[:, :, None] * np.array([1.0, -1.0])
+    values = np.stack([x, z, arms[..., 1] * x - arms[..., 0] * z], axis=-1)
+    return entries(values, number[carriers], 3 * int(free.sum()))
+
+
+def slips(blocks: Sequence[Polygon], lines: Lines, joints: int) -> csr_array:
+    """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies)."""
+    return averaged(rates(blocks, lines, lines.along), lines.joint, joints)
 
 
 def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -> float:
@@ -108,12 +111,9 @@ def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -
     """
     free = [block for block in blocks if not block.fixed]
     masses = np.array([(block.mass, block.mass, block.inertia) for block in free]).ravel()
-    open_up = rates(blocks, lines, lines.normal) / np.sqrt(masses)
-    sideways = rates(blocks, lines, lines.along) / np.sqrt(masses)
-    slips = [sideways[lines.joint == joint].mean(axis=0) for joint in np.flatnonzero(friction > 0)]
-    left = null_space(np.reshape(slips, (-1, len(masses))), rcond=1e-9)  # the motions without slip
-    squares = np.linalg.eigvalsh((left.T @ (open_up.T * lines.k)) @ (open_up @ left)) if left.shape[1] else np.zeros(0)
-    squares = squares[squares > RIGID * max(squares, default=0.0)]
-    if not squares.size:
+    opening = rates(blocks, lines, lines.normal)
+    held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
+    square = lowest_square(sprung(opening, lines.k), masses, slips(blocks, lines, len(friction))[held], RIGID)
+    if square == 0:
         raise ValueError("the blocks have no joint that a motion could compress, and xi refers to no frequency")
-    return math.sqrt(float(squares[0]))
+    return math.sqrt(square)

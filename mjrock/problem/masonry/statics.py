@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from scipy.linalg import null_space
 from scipy.optimize import linprog
-from scipy.sparse import csr_array, eye_array, hstack
+from scipy.sparse import diags_array, eye_array, hstack, vstack
 
 from ...quantities import GRAVITY, Array
-from .lines import rates
+from .lines import rates, slips
 from .masonry import Masonry
 
 UNBALANCED = 1e-7
@@ -75,11 +75,11 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names of blocks that can slide without pressing or opening a joint, and of the joints without friction they
     slide on. No stiffness holds them."""
     blocks, lines, friction = masonry.blocks, masonry.lines, masonry.joint_friction
-    opening, sliding = rates(blocks, lines, lines.normal), rates(blocks, lines, lines.along)
-    slips = np.array([sliding[lines.joint == j].mean(axis=0) for j in range(len(friction))])
-    free = null_space(np.vstack([opening, slips[friction > 0]]), rcond=1e-9)
+    sliding = slips(blocks, lines, len(friction))
+    stuck = vstack([rates(blocks, lines, lines.normal), sliding[friction > 0]])
+    free = null_space(stuck.toarray(), rcond=1e-9)
     moving = np.abs(free).max(axis=1, initial=0.0).reshape(-1, 3).max(axis=1)
-    loose = np.abs(slips @ free).max(axis=1, initial=0.0)
+    loose = np.abs(sliding @ free).max(axis=1, initial=0.0)
     return (
         tuple(masonry.names[i] for i, v in zip(masonry.free, moving, strict=True) if v > MOVES),
         tuple(joint.name for joint, v in zip(masonry.joints, loose, strict=True) if v > MOVES),
@@ -101,8 +101,8 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     edges, cost = [], []
     for cone, price in ((friction, 0.0), (dear, DEAR)):
         if cone is not None:
-            mu = cone[lines.joint][:, None]
-            edges.append(csr_array(np.vstack([pressing + mu * rubbing, pressing - mu * rubbing]).T / sizes[:, None]))
+            rubbed = diags_array(cone[lines.joint]) @ rubbing
+            edges.append(diags_array(1 / sizes) @ vstack([pressing + rubbed, pressing - rubbed]).T)
             cost.append(np.full(2 * len(lines.k), price))
     missing = eye_array(len(weight))
     columns = hstack([*edges, missing, -missing])

@@ -1,0 +1,186 @@
+"""Linear algebra of structures: balance, stability and frequencies of bodies on springs, some motions of them held.
+
+Matrices are sparse. Structures of few unknowns are solved in full, by least squares, null spaces and eigenvalues, which
+need no care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
+
+Motions are held by rows `grip` of rates that are zero. They may depend on one another.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.linalg import null_space
+from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+from .quantities import Array, Integers
+
+FEW = 300
+"""Most unknowns that are solved in full."""
+DEPENDENT = 1e-9
+"""Singular value of held motions below which they depend on one another, over the largest [-]."""
+LOOSE = 1e-9
+"""Stiffness that is lent to every unknown while a large structure is balanced, over its own [-]."""
+YIELDING = 1e-6
+"""Compliance that is lent to every held motion while a large structure is balanced, over that of its springs [-]."""
+REFINED, REFINEMENTS = 1e-13, 8
+"""Error at which a balance is exact, over what is balanced [-], and most refinements of it."""
+HOLD = 1e3
+"""Stiffness with which motions are held in the test of a large structure, over its largest one [-]."""
+SHIFT = 1e-9
+"""Square of a frequency by which those of a large structure are shifted, over that of the highest [-]. Motions that
+nothing resists are then no exception."""
+SEARCHED = 1e-12
+"""Tolerance of the search for a frequency of a large structure, over its square [-]."""
+
+
+def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
+    """A matrix with the rates of pairs of bodies.
+
+    Args:
+        values: of each row for the unknowns of its bodies, shape (rows, bodies of a row, unknowns of a body).
+        bodies: their numbers, negative for one that is fixed, shape (rows, bodies of a row).
+        unknowns: of all bodies.
+
+    Returns:
+        The matrix, shape (rows, unknowns).
+    """
+    rows, _, nv = values.shape
+    columns = nv * bodies[:, :, None] + np.arange(nv)
+    there = np.broadcast_to(bodies[:, :, None] >= 0, values.shape)
+    row = np.broadcast_to(np.arange(rows)[:, None, None], values.shape)
+    return csr_array((values[there], (row[there], columns[there])), shape=(rows, unknowns))
+
+
+def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
+    """Means of the rows of each group, shape (count, unknowns); a row with a negative number is in none."""
+    grouped = np.flatnonzero(group >= 0)
+    shape = (count, len(group))
+    sums = csr_array((np.ones(len(grouped)), (group[grouped], grouped)), shape=shape) @ rows
+    sums.data /= np.repeat(np.bincount(group[grouped], minlength=count), np.diff(sums.indptr))
+    return csr_array(sums)
+
+
+def fitting(rates: csr_array) -> csr_array | Array:
+    """Rates as they are, or as an array where there are few unknowns."""
+    return rates.toarray() if rates.shape[1] <= FEW else rates
+
+
+def sprung(rates: csr_array | Array, springs: Array) -> csr_array | Array:
+    """Stiffness of springs [N/m] whose rates are these, of the same kind as they are."""
+    if isinstance(rates, np.ndarray):
+        return (rates.T * springs) @ rates
+    return csr_array(rates.T @ diags_array(springs) @ rates)
+
+
+def balance(stiffness: csr_array | Array, grip: csr_array, force: Array) -> tuple[Array, Array]:
+    """The motion in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
+
+    Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none.
+    """
+    n, held = stiffness.shape[0], grip.shape[0]
+    if not isinstance(stiffness, np.ndarray):
+        return _Balance(stiffness, grip, LOOSE)(force)
+    rows = grip.toarray()
+    matrix = np.block([[stiffness, rows.T], [rows, np.zeros((held, held))]])
+    solution = np.linalg.lstsq(matrix, np.append(force, np.zeros(held)), rcond=1e-14)[0]
+    return solution[:n], solution[n:]
+
+
+class _Balance:
+    """The factors of a large matrix near that of a balance, regular whatever is loose or held twice."""
+
+    def __init__(self, stiffness: csr_array, grip: csr_array, loose: float) -> None:
+        own = np.maximum(stiffness.diagonal(), DEPENDENT * float(stiffness.diagonal().max()))
+        self.stiffness, self.grip, self.back = stiffness, grip, csr_array(grip.T)
+        yielding = diags_array(-YIELDING * (grip.power(2) @ (1 / own)))
+        near = block_array([[stiffness + diags_array(loose * own), self.back], [grip, yielding]], format="csc")
+        self.factors = _factors(near)
+
+    def __call__(self, force: Array) -> tuple[Array, Array]:
+        """As `balance`: what the solution of the near matrix leaves is balanced in turn."""
+        n, held = self.grip.shape[1], self.grip.shape[0]
+        left, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
+        motion, holding = np.zeros(n), np.zeros(held)
+        for _ in range(REFINEMENTS):
+            added = self.factors.solve(left)
+            motion, holding = motion + added[:n], holding + added[n:]
+            left = np.append(force - self.stiffness @ motion - self.back @ holding, -(self.grip @ motion))
+            last, error = error, float(np.abs(left).max())
+            if error < REFINED * scale or error > 0.5 * last:
+                break
+        return motion, holding
+
+
+def _factors(matrix: csc_array) -> Any:
+    """Factors of a symmetric matrix with the pivots on its diagonal."""
+    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def is_definite(matrix: csr_array, grip: csr_array, flat: float) -> bool:
+    """Whether a symmetric matrix has no eigenvalue up to -flat along the motions that grip leaves."""
+    n = matrix.shape[0]
+    if n <= FEW:
+        free = null_space(grip.toarray(), rcond=DEPENDENT)
+        return not free.size or float(np.linalg.eigvalsh(free.T @ (matrix @ free))[0]) > -flat
+    stiff = HOLD * float(np.abs(matrix.diagonal()).max())
+    return _is_positive(csc_array(matrix + stiff * (grip.T @ grip) + flat * eye_array(n)))
+
+
+def _is_positive(matrix: csc_array) -> bool:
+    """Whether a symmetric matrix is positive definite: all pivots are positive, and none had to be avoided."""
+    try:
+        factors = _factors(matrix)
+    except RuntimeError:  # a pivot of zero
+        return False
+    return bool((factors.perm_r == factors.perm_c).all() and (factors.U.diagonal() > 0).all())
+
+
+def highest_square(stiffness: csr_array, masses: Array) -> float:
+    """The highest square of a natural frequency [rad2/s2]."""
+    root = diags_array(1 / np.sqrt(masses))
+    matrix = csr_array(root @ stiffness @ root)
+    if len(masses) <= FEW:
+        return float(np.linalg.eigvalsh(matrix.toarray())[-1])
+    start = np.random.default_rng(0).random(len(masses))
+    return float(eigsh(matrix, 1, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False)[0])
+
+
+def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: float) -> float:
+    """The lowest square of a natural frequency with some motions held [rad2/s2], zero if there is none.
+
+    Args:
+        stiffness: of the springs, positive semi-definite.
+        masses: of the unknowns.
+        grip: what is held.
+        rigid: square up to which a motion is one that nothing resists, over the highest [-].
+    """
+    n, root = len(masses), diags_array(1 / np.sqrt(masses))
+    stiffness, grip = csr_array(root @ stiffness @ root), csr_array(grip @ root)
+    if n <= FEW:
+        return _lowest_in_full(stiffness, grip, rigid)
+    highest = highest_square(stiffness, np.ones(n))
+    if highest == 0:
+        return 0.0
+    balance = _Balance(csr_array(stiffness + SHIFT * highest * eye_array(n)), grip, 0.0)
+    inverse = LinearOperator((n, n), lambda x: balance(x)[0], dtype=float)
+    start, count = inverse @ np.random.default_rng(0).random(n), 1
+    while count < n // 2:
+        # the inverse of the shifted squares is largest for the lowest of them
+        inverses = eigsh(inverse, count, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False)
+        squares = np.sort(1 / inverses) - SHIFT * highest
+        resisted = squares[squares > 0.5 * SHIFT * highest]
+        if resisted.size:
+            return float(resisted[0])
+        count *= 4
+    return _lowest_in_full(stiffness, grip, rigid)
+
+
+def _lowest_in_full(stiffness: csr_array, grip: csr_array, rigid: float) -> float:
+    """As `lowest_square`, of unit masses, by all squares of frequencies."""
+    free = null_space(grip.toarray(), rcond=DEPENDENT)
+    squares = np.linalg.eigvalsh(free.T @ (stiffness @ free)) if free.shape[1] else np.zeros(0)
+    squares = squares[squares > rigid * max(squares, default=0.0)]
+    return float(squares[0]) if squares.size else 0.0
