@@ -17,6 +17,7 @@ from ..result.start import required_start
 from ..scene.course import Course
 from ..scene.of_case import course_of, require_case, scene_of
 from ..scene.scene import Scene
+from .estimate import warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .options import Options
@@ -80,7 +81,8 @@ def simulate(
         SimulationError: if the run produces a NaN, an engine warning, or more energy than was there and was put in.
 
     Warns:
-        UserWarning: if a fixed step is too long to resolve the contacts.
+        UserWarning: if a fixed step is too long to resolve the contacts, or if explicit steps would follow masonry of
+            more than eight blocks in a fraction of the time.
     """
     begun = time.perf_counter()
     require_case(case, contacts)
@@ -95,6 +97,8 @@ def simulate(
         course = replace(course, pose=state[0], velocity=state[1], released=False)
     asked: Asked = AskedMasonry(case) if isinstance(case, MasonryCase) else AskedWall(case, contacts)  # type: ignore[arg-type]
     if options.timestep is None:
+        if isinstance(case, MasonryCase):
+            warn_if_slow(scene, case.masonry)
         run, settings = fitted(asked, scene, course, options)
     else:
         warn_if_coarse(scene, options.timestep)

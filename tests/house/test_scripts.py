@@ -39,6 +39,8 @@ WRITES = {
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "sliding": {"sliding.png", "sliding.txt"},
+    "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
+    "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
@@ -86,6 +88,8 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "trouble",
     "animate",
     "sliding",
+    "solvers_of_masonry",
+    "four_solvers",
 }
 """Scripts that take a while even with --quick."""
 

@@ -1,0 +1,56 @@
+"""What a run of masonry of many blocks would take, in MuJoCo and by explicit steps, before it is made."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+
+from ..problem.masonry.masonry import Masonry
+from ..scene.scene import Scene
+
+FEW = 8
+"""Number of free blocks up to which fitted steps are never far behind explicit ones."""
+WEAK, STRONG = 0.7e-6, 20e-6
+"""Time that fitted steps take of a simulated second, over the lines and the highest frequency [s2]: where little slides
+or strikes, and where much does. Columns of 16 and 64 blocks take 1.2e-6 and 0.7e-6, arches 2e-6 to 5e-6, walls of 10 to
+55 blocks in running bond 0.5e-6 to 2.3e-6 under a weak sine and 7e-6 to 22e-6 under a strong one
+(`scripts/studies/solvers_of_masonry.py`)."""
+SPRUNG, RIGID = 50e-9, 110e-9
+"""Time of an explicit step a line, with shear springs and with rigid friction [s], by the same script."""
+SHARE = 0.4
+"""Explicit step over the longest stable one that `solve_explicit` takes [-]."""
+WORTH_SAYING = 3.0
+"""How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
+
+
+def explicit_seconds(scene: Scene, masonry: Masonry) -> float:
+    """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
+    ratio, lines = masonry.joint_shear / masonry.joint_stiffness, len(scene.k)
+    sprung = bool(np.isfinite(ratio).any())
+    stiffer = float(np.max(ratio[np.isfinite(ratio)], initial=1.0))  # of the springs along normal and face
+    omega = scene.highest_frequency * math.sqrt(stiffer)
+    xi = 0.5 * omega * float((scene.c / scene.k).max())
+    step = SHARE * 2 / omega * (math.sqrt(1 + xi**2) - xi)
+    return lines * (SPRUNG if sprung else RIGID) / step
+
+
+def fitted_seconds(scene: Scene) -> tuple[float, float]:
+    """Time of a second by steps that fit the motion [s], where little slides or strikes and where much does."""
+    unit = len(scene.k) * scene.highest_frequency
+    return WEAK * unit, STRONG * unit
+
+
+def warn_if_slow(scene: Scene, masonry: Masonry) -> None:
+    """Warn of masonry of many blocks that explicit steps would follow in a fraction of the time."""
+    if len(masonry.free) <= FEW:
+        return
+    explicit, (least, most) = explicit_seconds(scene, masonry), fitted_seconds(scene)
+    if WORTH_SAYING * explicit <= math.sqrt(least * most):
+        warnings.warn(
+            f"explicit steps would take some {explicit:.2g} s for a simulated second of these {len(masonry.free)} "
+            f"blocks, and steps that fit the motion in MuJoCo {least:.2g} to {most:.2g} s, the more the blocks slide "
+            "and strike: take mr.solve_explicit(case), or a timestep",
+            stacklevel=3,
+        )

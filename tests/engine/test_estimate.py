@@ -1,0 +1,61 @@
+"""What a run of masonry of many blocks would take, said before it is made."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.engine.estimate import RIGID, SHARE, SPRUNG, explicit_seconds, fitted_seconds, warn_if_slow
+from scripts.measure.masonry_precision import PULSE, column
+
+ARCH = mr.Masonry.arch(5.0, 0.75, voussoirs=12)
+
+
+def test_many_blocks_are_sent_to_explicit_steps_once_and_the_call_works():
+    case = mr.MasonryCase(ARCH, 0.02)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        mr.simulate(case)
+    (said,) = caught
+    assert said.category is UserWarning
+    assert said.filename == __file__
+    explicit, (least, most) = explicit_seconds(mr.masonry_scene(case), ARCH), fitted_seconds(mr.masonry_scene(case))
+    for number in (explicit, least, most):
+        assert f"{number:.2g}" in str(said.message)
+    assert "take mr.solve_explicit(case)" in str(said.message)
+    assert mr.solve_explicit(case).outcome is not mr.Outcome.OVERTURNED
+
+
+@pytest.mark.parametrize(("masonry", "options"), [(column(8), {}), (ARCH, {"timestep": 1e-4})])
+def test_few_blocks_and_fixed_steps_are_not(masonry, options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        warnings.filterwarnings("error", "explicit steps would take")
+        mr.simulate(mr.MasonryCase(masonry, 0.002, PULSE), **options)
+
+
+def test_a_slender_column_is_not_whose_dashpots_cost_explicit_steps_as_much():
+    masonry = column(64)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_if_slow(mr.masonry_scene(mr.MasonryCase(masonry, 0.1)), masonry)
+
+
+@pytest.mark.parametrize("k_s", [None, 4e9])
+@pytest.mark.parametrize("kind", ["arch", "wall"])
+def test_the_estimate_knows_the_explicit_step(kind, k_s):
+    joints = {"k_n": 1e10, "k_s": k_s}
+    arch, wall = mr.Masonry.arch(5.0, 0.75, **joints), mr.Masonry.running_bond(1.6, 0.8, (0.4, 0.2), **joints)
+    masonry = arch if kind == "arch" else wall
+    case = mr.MasonryCase(masonry, 0.001)
+    scene, run = mr.masonry_scene(case), mr.solve_explicit(case)
+    each = explicit_seconds(scene, masonry) / len(scene.k) * SHARE * run.stats["stable_timestep"]
+    assert each == pytest.approx(RIGID if k_s is None else SPRUNG, rel=0.25)
+
+
+def test_the_estimate_grows_with_dashpots():
+    weak, strong = (mr.Masonry.arch(5.0, 0.75, voussoirs=12, xi=xi) for xi in (0.01, 0.2))
+    times = [explicit_seconds(mr.masonry_scene(mr.MasonryCase(one, 0.1)), one) for one in (weak, strong)]
+    assert times[1] > 2 * times[0]
+    assert np.isfinite(times).all()
