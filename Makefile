@@ -65,6 +65,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/ida.py --out docs/figures
 	$(BIN)/python scripts/fragility.py --out docs/figures
 	$(BIN)/python scripts/polarity.py --out docs/figures
+	$(BIN)/python scripts/sensitivity.py --out docs/figures
 	$(BIN)/python scripts/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
 	$(BIN)/python scripts/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures

@@ -45,11 +45,13 @@ from .scene.wall import wall_scene
 from .study.analysis import Analysis, MasonryAnalysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
+from .study.capacity import Capacity
 from .study.contacts_by_matching import as_theory, matched_contacts
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
 from .study.masonry_by_matching import matched_masonry
 from .study.pushover import pushover
+from .study.sensitivity import Sensitivity, sensitivity
 from .study.store import Store
 from .theory.analytical import solve_analytical
 from .theory.impact import RigidImpact, rigid_impact
@@ -62,6 +64,7 @@ __all__ = [
     "AddedMass",
     "Analysis",
     "Block",
+    "Capacity",
     "Case",
     "Comparison",
     "ContactParameters",
@@ -90,6 +93,7 @@ __all__ = [
     "Restitution",
     "RigidImpact",
     "Scene",
+    "Sensitivity",
     "SideStop",
     "SimulationError",
     "Store",
@@ -120,6 +124,7 @@ __all__ = [
     "results",
     "rigid_impact",
     "scene_of",
+    "sensitivity",
     "simulate",
     "solve_analytical",
     "solve_compliant",

@@ -134,6 +134,7 @@ CALLS = {
     "overturning_intensity": (
         mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1},
     ),
+    "Capacity": (mr.Capacity, {"analysis": pushed(1.0), "tolerance": 0.1, "start": 1.0}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
@@ -277,6 +278,7 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
+        "Sensitivity", "sensitivity",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip
