@@ -22,6 +22,7 @@ from .problem.damping.interface import Interface, reference_frequency
 from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
 from .problem.damping.restitution import Restitution
 from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
+from .problem.damping.stiffness_range import MASONRY_TYPES, MasonryType, StiffnessRange, crushed_inset, stiffness_range
 from .problem.ground.motion import GroundMotion
 from .problem.masonry.case import MasonryCase
 from .problem.masonry.joints import Joint
@@ -60,6 +61,7 @@ __all__ = [
     "CALIBRATED",
     "CALIBRATED_BED",
     "GRAVITY",
+    "MASONRY_TYPES",
     "PUBLISHED",
     "AddedMass",
     "Analysis",
@@ -83,6 +85,7 @@ __all__ = [
     "MasonryAnalysis",
     "MasonryCase",
     "MasonryResponse",
+    "MasonryType",
     "Opening",
     "Outcome",
     "PairContact",
@@ -96,6 +99,7 @@ __all__ = [
     "Sensitivity",
     "SideStop",
     "SimulationError",
+    "StiffnessRange",
     "Store",
     "Thrust",
     "Tie",
@@ -108,6 +112,7 @@ __all__ = [
     "contact_for",
     "contact_parameters",
     "contact_stiffness",
+    "crushed_inset",
     "ida",
     "inspect_contacts",
     "joint_stiffness",
@@ -128,6 +133,7 @@ __all__ = [
     "simulate",
     "solve_analytical",
     "solve_compliant",
+    "stiffness_range",
     "wall_mjcf",
     "wall_scene",
     "wall_stiffness",

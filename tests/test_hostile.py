@@ -88,7 +88,13 @@ CALLS = {
     "law.covers": (mr.CALIBRATED.covers, {"wall": WALL, "e": E, "k_n": 5e8, "k_side": 5e8, "amplitude": 0.5}),
     "reference_frequency": (mr.reference_frequency, {"wall": WALL, "k_n": 5e8, "points": 2}),
     "joint_stiffness": (mr.joint_stiffness, {"E": 1e9, "thickness": 0.01}),
-    "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL}),
+    "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL, "points": 2}),
+    "stiffness_range": (
+        mr.stiffness_range,
+        {"wall": WALL, "E": 1e9, "joint": (1e9, 0.01), "frequency": 4.0, "points": 2},
+    ),
+    "StiffnessRange": (mr.StiffnessRange, {"low": 1e8, "best": 2e8, "high": 3e8, "basis": "a guess"}),
+    "crushed_inset": (mr.crushed_inset, {"wall": WALL, "f_c": 2e6, "load": 1e3}),
     "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
     "layered_stiffness": (
         lambda stiffnesses: mr.layered_stiffness(*stiffnesses) if isinstance(stiffnesses, tuple) else
@@ -221,6 +227,8 @@ STANDS_FOR = {
     "theta0": "release rotation",
     "omega0": "release velocity",
     "frequency": "reference frequency",
+    "E": "modulus E",
+    "f_c": "compressive strength",
     "contacts": "the base contacts",
     "wall": "alpha",
 }
@@ -278,7 +286,7 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
-        "Sensitivity", "sensitivity",
+        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip
