@@ -18,11 +18,11 @@ from .engine.simulation import automatic_timestep, simulate
 from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
 from .problem.damping.contacts import Contacts
 from .problem.damping.forms import PowerLaw
+from .problem.damping.inputs import MASONRY_TYPES, MasonryType, StiffnessRange, crushed_inset, stiffness_range
 from .problem.damping.interface import Interface, reference_frequency
 from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
 from .problem.damping.restitution import Restitution
 from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
-from .problem.damping.stiffness_range import MASONRY_TYPES, MasonryType, StiffnessRange, crushed_inset, stiffness_range
 from .problem.ground.motion import GroundMotion
 from .problem.masonry.case import MasonryCase
 from .problem.masonry.joints import Joint
