@@ -46,8 +46,10 @@ from .scene.wall import wall_scene
 from .study.analysis import Analysis, MasonryAnalysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
+from .study.capacities import PairedRatio, fit_capacities, lost, paired_ratio
 from .study.capacity import Capacity
 from .study.contacts_by_matching import as_theory, matched_contacts
+from .study.fragility import Fragility, fit_fragility
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
 from .study.masonry_by_matching import matched_masonry
@@ -73,6 +75,7 @@ __all__ = [
     "Contacts",
     "Damper",
     "DampingLaw",
+    "Fragility",
     "Grid",
     "GroundMotion",
     "Impact",
@@ -89,6 +92,7 @@ __all__ = [
     "Opening",
     "Outcome",
     "PairContact",
+    "PairedRatio",
     "Plan",
     "Polygon",
     "PowerLaw",
@@ -113,10 +117,13 @@ __all__ = [
     "contact_parameters",
     "contact_stiffness",
     "crushed_inset",
+    "fit_capacities",
+    "fit_fragility",
     "ida",
     "inspect_contacts",
     "joint_stiffness",
     "layered_stiffness",
+    "lost",
     "masonry_mjcf",
     "masonry_scene",
     "matched_contacts",
@@ -124,6 +131,7 @@ __all__ = [
     "measured_stiffness",
     "mjcf_of",
     "overturning_intensity",
+    "paired_ratio",
     "pushover",
     "reference_frequency",
     "results",

@@ -138,9 +138,23 @@ CALLS = {
     "scene_of, masonry": (mr.scene_of, {"case": mr.MasonryCase(COLUMN, 0.02), "contacts": None}),
     "mjcf_of": (mr.mjcf_of, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
     "overturning_intensity": (
-        mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1},
+        mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1, "start": 1.0},
     ),
     "Capacity": (mr.Capacity, {"analysis": pushed(1.0), "tolerance": 0.1, "start": 1.0}),
+    "fit_fragility": (
+        mr.fit_fragility,
+        {
+            "intensity": [1.0, 2.0, 3.0, 4.0, 2.5, 3.5], "overturned": [0, 0, 1, 1, 1, 0], "groups": range(6),
+            "resamples": 20, "seed": 0,
+        },
+    ),
+    "fit_capacities": (
+        mr.fit_capacities, {"capacities": [1.0, 2.0, 3.0, 4.0, 5.0], "groups": None, "resamples": 20, "seed": 0},
+    ),
+    "paired_ratio": (
+        mr.paired_ratio, {"capacities": [1.0, 2.0], "over": [1.0, 1.5], "groups": ["a", "b"], "confidence": 0.9},
+    ),
+    "lost": (mr.lost, {"rows": [{"outcome": "at rest", "peak_over_alpha": 0.1}]}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
@@ -286,7 +300,7 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
-        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType",
+        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip

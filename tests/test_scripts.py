@@ -44,6 +44,7 @@ WRITES = {
     "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
+    "fragility_coverage": {"fragility_coverage.txt"},
     "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
     "speed": {"speed.txt"},
