@@ -33,7 +33,7 @@ from .problem.wall.case import Case
 from .problem.wall.damper import Damper
 from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
 from .problem.wall.section import Opening
-from .quantities import GRAVITY
+from .quantities import GRAVITY, Implausible
 from .reference.compliant import solve_compliant
 from .result.compare import Comparison, compare
 from .result.ledger import Ledger
@@ -79,6 +79,7 @@ __all__ = [
     "Grid",
     "GroundMotion",
     "Impact",
+    "Implausible",
     "InspectedContact",
     "Interface",
     "Joint",

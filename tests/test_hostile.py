@@ -300,7 +300,7 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
-        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Fragility", "PairedRatio",
+        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip

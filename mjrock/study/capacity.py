@@ -117,7 +117,7 @@ class Capacity:
         case = self.analysis.case
         motions = {name: getattr(case, name) for name in ("motion", "vertical")}
         with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message=".* peaks at ", category=UserWarning)
+            warnings.filterwarnings("ignore", message=".* peaks at ", category=UserWarning)  # weak and strong are meant
             return replace(
                 self.analysis,
                 case=replace(case, **{name: one and one.scaled(scale) for name, one in motions.items()}),

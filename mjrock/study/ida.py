@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, require_kind, require_row, require_within, shown
+from ..quantities import Array, Implausible, require_kind, require_row, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
 from .campaign_task import Row
@@ -191,7 +192,9 @@ def built(build: Build, scale: float, name: str) -> Analysis:
     """
     if not callable(build):
         raise TypeError(f"{name} = {shown(build)} is no function of a scale")
-    analysis = build(scale)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="the record peaks at ", category=Implausible)  # low scales are meant
+        analysis = build(scale)
     if not isinstance(analysis, Analysis):
         raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
     return analysis

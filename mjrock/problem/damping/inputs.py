@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from ...quantities import GRAVITY, keep, require_kind, require_real, require_stiffness, require_within, shown
 from ..wall.block import Block
@@ -54,20 +53,38 @@ def _type(name: str, italian: str, f_c: Range, E: Range, unit_weight: Range) -> 
     return MasonryType(name, italian, moduli, strengths, (1e3 * unit_weight[0], 1e3 * unit_weight[1]))
 
 
-MASONRY_TYPES: Mapping[str, MasonryType] = MappingProxyType(
-    {
-        kind.name: kind
-        for kind in (
-            _type("irregular rubble", "pietrame disordinata", (1.0, 2.0), (690, 1050), (19, 19)),
-            _type("roughly cut stone", "conci sbozzati", (2.0, 2.0), (1020, 1440), (20, 20)),
-            _type("split stone, well laid", "pietre a spacco, buona tessitura", (2.6, 3.8), (1500, 1980), (21, 21)),
-            _type("irregular soft stone", "irregolare di pietra tenera", (1.4, 2.2), (900, 1260), (13, 16)),
-            _type("regular soft stone", "conci regolari di pietra tenera", (2.0, 3.2), (1200, 1620), (13, 16)),
-            _type("squared stone blocks", "blocchi lapidei squadrati", (5.8, 8.2), (2400, 3300), (22, 22)),
-            _type("solid brick, lime mortar", "mattoni pieni e malta di calce", (2.6, 4.3), (1200, 1800), (18, 18)),
-            _type("hollow brick, cement mortar", "mattoni semipieni", (5.0, 8.0), (3500, 5600), (15, 15)),
-        )
-    }
+class MasonryTypes(Mapping[str, MasonryType]):
+    """Types of masonry by name, that cannot be changed."""
+
+    def __init__(self, types: Iterable[MasonryType]) -> None:
+        self._types = {kind.name: kind for kind in types}
+
+    def __getitem__(self, name: str) -> MasonryType:
+        if name not in self._types:
+            raise KeyError(f"{name!r} is none of {', '.join(self._types)}")
+        return self._types[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._types)
+
+    def __len__(self) -> int:
+        return len(self._types)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} types of masonry, from {next(iter(self))} to {list(self)[-1]}>"
+
+
+MASONRY_TYPES = MasonryTypes(
+    (
+        _type("irregular rubble", "pietrame disordinata", (1.0, 2.0), (690, 1050), (19, 19)),
+        _type("roughly cut stone", "conci sbozzati", (2.0, 2.0), (1020, 1440), (20, 20)),
+        _type("split stone, well laid", "pietre a spacco, buona tessitura", (2.6, 3.8), (1500, 1980), (21, 21)),
+        _type("irregular soft stone", "irregolare di pietra tenera", (1.4, 2.2), (900, 1260), (13, 16)),
+        _type("regular soft stone", "conci regolari di pietra tenera", (2.0, 3.2), (1200, 1620), (13, 16)),
+        _type("squared stone blocks", "blocchi lapidei squadrati", (5.8, 8.2), (2400, 3300), (22, 22)),
+        _type("solid brick, lime mortar", "mattoni pieni e malta di calce", (2.6, 4.3), (1200, 1800), (18, 18)),
+        _type("hollow brick, cement mortar", "mattoni semipieni", (5.0, 8.0), (3500, 5600), (15, 15)),
+    )
 )
 """Types of existing masonry by name. The ranges are those of the source, for poor mortar and leaves that are not
 connected; its Table C8.5.II has factors for better ones. E is that of masonry that has not cracked."""
