@@ -24,6 +24,7 @@ from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingL
 from .problem.damping.restitution import Restitution
 from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
 from .problem.ground.motion import GroundMotion
+from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
 from .problem.masonry.case import MasonryCase
 from .problem.masonry.joints import Joint
 from .problem.masonry.masonry import Masonry
@@ -54,6 +55,7 @@ from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
 from .study.masonry_by_matching import matched_masonry
 from .study.pushover import pushover
+from .study.rocking_spectrum import RockingSpectrum, rocking_spectrum
 from .study.sensitivity import Sensitivity, sensitivity
 from .study.store import Store
 from .theory.analytical import solve_analytical
@@ -98,8 +100,10 @@ __all__ = [
     "Polygon",
     "PowerLaw",
     "Response",
+    "ResponseSpectrum",
     "Restitution",
     "RigidImpact",
+    "RockingSpectrum",
     "Scene",
     "Sensitivity",
     "SideStop",
@@ -135,8 +139,12 @@ __all__ = [
     "paired_ratio",
     "pushover",
     "reference_frequency",
+    "response_spectrum",
     "results",
     "rigid_impact",
+    "rocking_spectrum",
+    "scaled_to_sa",
+    "scaled_to_spectrum",
     "scene_of",
     "sensitivity",
     "simulate",

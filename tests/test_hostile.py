@@ -155,6 +155,14 @@ CALLS = {
         mr.paired_ratio, {"capacities": [1.0, 2.0], "over": [1.0, 1.5], "groups": ["a", "b"], "confidence": 0.9},
     ),
     "lost": (mr.lost, {"rows": [{"outcome": "at rest", "peak_over_alpha": 0.1}]}),
+    "response_spectrum": (mr.response_spectrum, {"motion": MOTION, "periods": [0.5, 1.0], "damping": 0.05}),
+    "scaled_to_sa": (mr.scaled_to_sa, {"motion": MOTION, "period": 0.5, "sa": 2.0, "damping": 0.05}),
+    "scaled_to_spectrum": (
+        mr.scaled_to_spectrum, {"motion": MOTION, "periods": [0.5, 1.0], "target": [2.0, 1.0], "damping": 0.05},
+    ),
+    "rocking_spectrum": (
+        mr.rocking_spectrum, {"motion": MOTION, "R": [2.0], "slenderness": 7.0, "side_stop": True, "rtol": 1e-4},
+    ),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
@@ -300,7 +308,8 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
-        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "Fragility", "PairedRatio",
+        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
+        "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip
