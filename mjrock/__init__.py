@@ -54,6 +54,7 @@ from .study.fragility import Fragility, fit_fragility
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
 from .study.masonry_by_matching import matched_masonry
+from .study.mechanism import MechanismCheck, mechanism_check
 from .study.pushover import pushover
 from .study.rocking_spectrum import RockingSpectrum, rocking_spectrum
 from .study.sensitivity import Sensitivity, sensitivity
@@ -92,6 +93,7 @@ __all__ = [
     "MasonryCase",
     "MasonryResponse",
     "MasonryType",
+    "MechanismCheck",
     "Opening",
     "Outcome",
     "PairContact",
@@ -134,6 +136,7 @@ __all__ = [
     "matched_contacts",
     "matched_masonry",
     "measured_stiffness",
+    "mechanism_check",
     "mjcf_of",
     "overturning_intensity",
     "paired_ratio",

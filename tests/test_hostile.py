@@ -163,6 +163,7 @@ CALLS = {
     "rocking_spectrum": (
         mr.rocking_spectrum, {"motion": MOTION, "R": [2.0], "slenderness": 7.0, "side_stop": True, "rtol": 1e-4},
     ),
+    "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
@@ -309,7 +310,7 @@ def test_every_public_entry_is_tried():
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
-        "RockingSpectrum", "Fragility", "PairedRatio",
+        "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion",
         "InspectedContact", "PairContact",
     }  # fmt: skip
