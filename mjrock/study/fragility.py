@@ -55,7 +55,7 @@ class Fragility:
         """Share overturned at an intensity [-], of any shape.
 
         Raises:
-            TypeError, ValueError: unless the intensities are real numbers that are not negative. Infinity is one.
+            TypeError, ValueError: unless the intensities are real numbers that are not negative. Infinity is allowed.
         """
         return np.asarray(ndtr(_score(_intensities(intensity), self.median, self.dispersion)))
 
@@ -136,13 +136,13 @@ def fit_fragility(
     intensities, or in both polarities, are not independent: a wall that stands at 0.5 g stands at 0.4 g too, with few
     exceptions. Told which record each run belongs to, the fit draws whole records with replacement (the bootstrap over
     clusters) and repeats itself for every draw. The curve stays the same, its intervals get wider. With few records
-    they are widened once more, as Student's distribution does. Of 90 % intervals
-    from 6, 12 and 40 simulated records 91, 91 and 90 % hold the median, 91, 90 and 86 % the dispersion, and 98, 95 and
-    90 % the probability (`scripts/fragility_coverage.py`).
+    they are widened once more, as Student's distribution does. Of 90 % intervals from 6, 12 and 40 simulated records
+    91, 91 and 90 % hold the median, 91, 90 and 86 % the dispersion, and 98, 95 and 90 % the probability
+    (`scripts/studies/fragility_coverage.py`).
 
     Args:
         intensity: of each run, positive, shape (n,).
-        overturned: whether each run overturned, True or False, or 1 or 0, shape (n,). A run without a result is none.
+        overturned: whether each run overturned, True or False, or 1 or 0, shape (n,). Leave runs without a result out.
         groups: what each run belongs to, such as the name or the number of its record, shape (n,), at least 5
             different ones, all text or all numbers. None takes the runs as independent.
         resamples: how many times the groups are drawn, 20 to 100000.
@@ -159,23 +159,10 @@ def fit_fragility(
     """
     x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
-    log_x = np.log(x)
-    ((level, slope),) = probit(log_x, fell, np.ones((1, len(x))))
-    if slope <= 0:
-        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
-    information = curvature(log_x, fell, level, slope)
-    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
-    covariance = np.linalg.inv(towards.T @ information @ towards)
-    made = Fragility(
-        median=math.exp(-level / slope),
-        dispersion=float(1 / slope),
-        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
-        count=len(x),
-        tried=(float(x.min()), float(x.max())),
-    )
-    _warn_beyond(made.median, made.tried)
+    fit = _likeliest(x, fell)
+    _warn_beyond(fit.median, fit.tried)
     if groups is None:
-        return made
+        return fit
     labels = labels_of(groups)
     if labels.shape != x.shape:
         raise ValueError(
@@ -184,21 +171,38 @@ def fit_fragility(
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < FEWEST_GROUPS:
         raise ValueError(f"groups names {len(names)} groups; the valid range is {FEWEST_GROUPS} or more")
-    count = require_whole("resamples", resamples, 20, 100_000)
-    draws = np.random.default_rng(require_whole("seed", seed, 0, 2**53)).multinomial(
-        len(names), np.full(len(names), 1 / len(names)), size=count
-    )
+    count, shares = require_whole("resamples", resamples, 20, 100_000), np.full(len(names), 1 / len(names))
+    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
+    draws = rng.multinomial(len(names), shares, size=count)
     at_once = max(1, MOST_VALUES // len(x))
-    fits = [resampled(log_x, fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
-    found, without = np.concatenate([fit for fit, _ in fits]), sum(number for _, number in fits)
-    found.setflags(write=False)
+    fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
+    curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(number for _, number in fits)
+    curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
         warnings.warn(
             f"{without} of {count} resamples of {len(names)} groups gave no curve, only a step; a penalised fit stands "
             "for them, and the band is wide: run intensities between those tried, or more records",
             stacklevel=2,
         )
-    return replace(made, groups=len(names), resamples=found, without_curve=without)
+    return replace(fit, groups=len(names), resamples=curves, without_curve=without)
+
+
+def _likeliest(x: Array, fell: Flags) -> Fragility:
+    """The curve of greatest likelihood, the runs taken as independent."""
+    log_x = np.log(x)
+    ((level, slope),) = probit(log_x, fell, np.ones((1, len(x))))
+    if slope <= 0:
+        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
+    information = curvature(log_x, fell, level, slope)
+    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
+    covariance = np.linalg.inv(towards.T @ information @ towards)
+    return Fragility(
+        median=math.exp(-level / slope),
+        dispersion=float(1 / slope),
+        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
+        count=len(x),
+        tried=(float(x.min()), float(x.max())),
+    )
 
 
 def _warn_beyond(median: float, tried: tuple[float, float]) -> None:
@@ -218,11 +222,11 @@ def _flags(overturned: ArrayLike) -> Flags:
         TypeError, ValueError: unless each value is True or False, or 1 or 0.
     """
     takes = "whether each run overturned: True or False, or 1 or 0; lost(rows) makes it of the rows of a campaign"
-    found = require_plain("overturned", overturned, takes, "biuf")
-    unclear = np.flatnonzero((found != 0) & (found != 1))
+    values = require_plain("overturned", overturned, takes, "biuf")
+    unclear = np.flatnonzero((values != 0) & (values != 1))
     if unclear.size:
-        raise ValueError(f"overturned holds {found.flat[unclear[0]]:g} at {unclear[0]}; it takes {takes}")
-    return np.asarray(found, dtype=bool)
+        raise ValueError(f"overturned holds {values.flat[unclear[0]]:g} at {unclear[0]}; it takes {takes}")
+    return np.asarray(values, dtype=bool)
 
 
 def labels_of(groups: ArrayLike) -> NDArray[Any]:
@@ -232,12 +236,12 @@ def labels_of(groups: ArrayLike) -> NDArray[Any]:
         TypeError, ValueError: unless they are all text or all numbers, without NaN.
     """
     takes = "the name or the number of the group of each run"
-    found = require_plain("groups", groups, takes, "biufU")
-    if found.dtype.kind == "U" and not all(isinstance(one, str) for one in np.asarray(groups, dtype=object).flat):
+    labels = require_plain("groups", groups, takes, "biufU")
+    if labels.dtype.kind == "U" and not all(isinstance(label, str) for label in np.asarray(groups, dtype=object).flat):
         raise TypeError(f"groups = {shown(groups)} holds text and numbers; it takes {takes}, all of one kind")
-    if found.dtype.kind == "f" and np.isnan(found).any():
+    if labels.dtype.kind == "f" and np.isnan(labels).any():
         raise ValueError(f"groups holds nan; it takes {takes}")
-    return found
+    return labels
 
 
 def _intensities(intensity: ArrayLike) -> Array:
@@ -278,7 +282,7 @@ def _reflected(value: ArrayLike, drawn: Array, confidence: float, groups: int | 
     """The basic bootstrap interval, along the last axis: resamples lie about the estimate as it does about the truth.
 
     Resamples of n groups spread by sqrt((n - 1) / n) too little, and the quantile of few is that of Student's t; the
-    interval is wider by both. `scripts/fragility_coverage.py` counts how often it holds the truth.
+    interval is wider by both. `scripts/studies/fragility_coverage.py` counts how often it holds the truth.
     """
     n = groups or math.inf
     tail = 0.5 + 0.5 * confidence
@@ -286,6 +290,6 @@ def _reflected(value: ArrayLike, drawn: Array, confidence: float, groups: int | 
     ends = 50 * (1 - confidence), 50 * (1 + confidence)
     low, high = np.percentile(drawn, ends, axis=-1, method="nearest")
     with np.errstate(invalid="ignore"):
-        found = value + wider * (value - high), value + wider * (value - low)
-    first, last = (np.where(np.isnan(end), value, end) for end in found)  # both infinite: as certain as the estimate
+        interval = value + wider * (value - high), value + wider * (value - low)
+    first, last = (np.where(np.isnan(end), value, end) for end in interval)  # both infinite: as certain as the estimate
     return np.asarray(first), np.asarray(last)

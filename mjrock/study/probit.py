@@ -49,19 +49,19 @@ def probit(log_x: Array, fell: Flags, weights: Array) -> Array:
     middle, width = log_x.mean(), log_x.std()
     u = (log_x - middle) / width
     sign = np.where(fell, 1.0, -1.0)
-    found = np.zeros((len(weights), 2))
-    found[:, 0] = ndtri((weights @ fell) / weights.sum(axis=1))
+    fits = np.zeros((len(weights), 2))
+    fits[:, 0] = ndtri((weights @ fell) / weights.sum(axis=1))
     for _ in range(ITERATIONS):
-        ratio, slant = _derivatives(sign * (found[:, :1] + found[:, 1:] * u))
+        ratio, slant = _derivatives(sign * (fits[:, :1] + fits[:, 1:] * u))
         g, h = weights * sign * ratio, weights * slant
         gradient = np.stack([g.sum(axis=1), g @ u], axis=1)
         hessian = np.stack([h.sum(axis=1), h @ u, h @ u, h @ (u * u)], axis=1).reshape(-1, 2, 2)
         step = np.linalg.solve(hessian, gradient[..., None])[..., 0]
         size = np.abs(step).max(axis=1, keepdims=True)
-        found += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
-        if size.max() < 1e-10 * (1 + np.abs(found).max()):
+        fits += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
+        if size.max() < 1e-10 * (1 + np.abs(fits).max()):
             break
-    return np.stack([found[:, 0] - found[:, 1] * middle / width, found[:, 1] / width], axis=1)
+    return np.stack([fits[:, 0] - fits[:, 1] * middle / width, fits[:, 1] / width], axis=1)
 
 
 def _derivatives(z: Array) -> tuple[Array, Array]:
@@ -85,9 +85,9 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
     middle, width = log_x.mean(), log_x.std()
     u = (log_x - middle) / width
     design = np.stack([np.ones_like(u), u], axis=1)
-    found = np.tile([0.0, 1.0], (len(weights), 1))
+    fits = np.tile([0.0, 1.0], (len(weights), 1))
     for _ in range(ITERATIONS):
-        eta = np.clip(found[:, :1] + found[:, 1:] * u, -FARTHEST, FARTHEST)
+        eta = np.clip(fits[:, :1] + fits[:, 1:] * u, -FARTHEST, FARTHEST)
         share, density = ndtr(eta), np.exp(-0.5 * eta * eta) / math.sqrt(2 * math.pi)
         spread = share * ndtr(-eta)
         w = weights * density**2 / spread
@@ -97,7 +97,7 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
         score = weights * (fell - share) * density / spread - 0.5 * leverage * eta
         step = np.einsum("mij,mj->mi", inverse, np.stack([score.sum(axis=1), score @ u], axis=1))
         size = np.abs(step).max(axis=1, keepdims=True)
-        found += step / np.maximum(1.0, size)
+        fits += step / np.maximum(1.0, size)
         if size.max() < 1e-8:
             break
-    return np.stack([found[:, 0] - found[:, 1] * middle / width, found[:, 1] / width], axis=1)
+    return np.stack([fits[:, 0] - fits[:, 1] * middle / width, fits[:, 1] / width], axis=1)

@@ -49,10 +49,9 @@ class Pull(NamedTuple):
 def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
     """Elongation of a tie beyond its slack [m], and its lever [m]: the rate of its length with the rotation theta.
 
-    Args:
-        tie: the tie.
-        theta: rotation [rad]; a number, or an array outside compiled functions.
-        side: the toe that the wall turns about, +1 for the outer one.
+    It stands beside `mjrock.geometry` because rocking theory, which uses it, shares no kinematics with the engine.
+
+    theta [rad] may be an array outside compiled functions. `side` is the toe, +1 for the outer one.
     """
     d, z = side * tie.half_base - tie.offset, tie.height
     sine, cosine = np.sin(theta), np.cos(theta)
@@ -65,10 +64,12 @@ def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
 
 def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
     """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties)."""
-    found = np.zeros((len(theta), len(pulls)))
+    plastic = np.zeros((len(theta), len(pulls)))
     for i, pull in enumerate(pulls):
-        found[:, i] = np.maximum(np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness), 0.0)
-    return found
+        plastic[:, i] = np.maximum(
+            np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness), 0.0
+        )
+    return plastic
 
 
 def stored(pulls: Sequence[Pull], theta: Array, plastic: Array) -> Array:
@@ -88,5 +89,5 @@ def taken(pulls: Sequence[Pull], plastic: Array) -> Array:
 
 
 def _elongation(pull: Pull, theta: Array) -> Array:
-    found: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
-    return found
+    elongation: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
+    return elongation
