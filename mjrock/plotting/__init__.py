@@ -8,6 +8,7 @@ from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
 from .pushing import moment_rotation, pushover
 from .style import STYLES, Drawing, panels, save, single
+from .tornado import tornado
 
 __all__ = [
     "MODES",
@@ -40,5 +41,6 @@ __all__ = [
     "save",
     "sensitivity",
     "single",
+    "tornado",
     "work_precision",
 ]

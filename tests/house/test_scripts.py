@@ -49,6 +49,8 @@ WRITES = {
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
+    "fragility_coverage": {"fragility_coverage.txt"},
+    "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
@@ -68,6 +70,8 @@ def main_of(name):
 
 
 LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
+    "sensitivity",
+    "fragility_coverage",
     "agreement",
     "polarity",
     "overturning_spectrum",
