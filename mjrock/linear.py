@@ -32,6 +32,8 @@ HOLD = 1e3
 SHIFT = 1e-9
 """Square of a frequency by which those of a large structure are shifted, over that of the highest [-]. Motions that
 nothing resists are then no exception."""
+MIXTURES = 4
+"""Motions that stand for all that are loose in a large structure."""
 SEARCHED = 1e-12
 """Tolerance of the search for a frequency of a large structure, over its square [-]."""
 
@@ -136,6 +138,20 @@ def _is_positive(matrix: csc_array) -> bool:
     except RuntimeError:  # a pivot of zero
         return False
     return bool((factors.perm_r == factors.perm_c).all() and (factors.U.diagonal() > 0).all())
+
+
+def loose(rows: csr_array) -> Array:
+    """Motions at which no row has a rate, shape (unknowns, motions): a basis, of many unknowns random mixtures."""
+    n = rows.shape[1]
+    if n <= FEW:
+        return null_space(rows.toarray(), rcond=DEPENDENT)  # type: ignore[no-any-return]
+    gram = csc_array(rows.T @ rows)
+    shift = SHIFT * float(gram.diagonal().max())
+    factors = _factors(csc_array(gram + shift * eye_array(n)))
+    motions: Array = np.random.default_rng(0).standard_normal((n, MIXTURES))
+    for _ in range(3):  # each time, what a row resists is divided by its stiffness over the shift
+        motions = shift * factors.solve(motions)
+    return motions
 
 
 def highest_square(stiffness: csr_array, masses: Array) -> float:

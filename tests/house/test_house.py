@@ -9,8 +9,8 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
-    ("_version", "compiled", "files", "linear", "method", "quantities"),
-    ("geometry",),
+    ("_version", "compiled", "files", "method", "quantities"),
+    ("geometry", "linear"),
     ("problem.ground",),
     ("problem.wall",),
     ("problem.damping",),

@@ -6,10 +6,10 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.linalg import null_space
 from scipy.optimize import linprog
-from scipy.sparse import diags_array, eye_array, hstack, vstack
+from scipy.sparse import csr_array, diags_array, eye_array, hstack, vstack
 
+from ...linear import loose
 from ...quantities import GRAVITY, Array
 from .lines import rates, slips
 from .masonry import Masonry
@@ -76,13 +76,12 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     slide on. No stiffness holds them."""
     blocks, lines, friction = masonry.blocks, masonry.lines, masonry.joint_friction
     sliding = slips(blocks, lines, len(friction))
-    stuck = vstack([rates(blocks, lines, lines.normal), sliding[friction > 0]])
-    free = null_space(stuck.toarray(), rcond=1e-9)
+    free = loose(csr_array(vstack([rates(blocks, lines, lines.normal), sliding[friction > 0]])))
     moving = np.abs(free).max(axis=1, initial=0.0).reshape(-1, 3).max(axis=1)
-    loose = np.abs(sliding @ free).max(axis=1, initial=0.0)
+    slides = np.abs(sliding @ free).max(axis=1, initial=0.0)
     return (
         tuple(masonry.names[i] for i, v in zip(masonry.free, moving, strict=True) if v > MOVES),
-        tuple(joint.name for joint, v in zip(masonry.joints, loose, strict=True) if v > MOVES),
+        tuple(joint.name for joint, v in zip(masonry.joints, slides, strict=True) if v > MOVES),
     )
 
 

@@ -1,0 +1,76 @@
+"""Large structures are factorised as they are: the same rest, stability and frequencies as those solved in full."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_array
+
+import mjrock as mr
+from mjrock import linear
+from mjrock.problem.masonry.lines import lowest_frequency
+from mjrock.problem.masonry.statics import slippery
+from mjrock.scene.equilibrium import UnsettledError, is_stable
+from mjrock.scene.masonry import standing_masonry
+
+WALLS = {
+    "bond": lambda: mr.Masonry.running_bond(2.0, 1.5, (0.5, 0.25), thickness=0.3, k_n=2e9, friction=0.65),
+    "arch": lambda: mr.Masonry.arch(3.0, 0.5, k_n=1e9, voussoirs=17),
+    "smooth": lambda: mr.Masonry.running_bond(1.5, 0.75, (0.5, 0.25), friction=lambda j: 0.6 if j.is_bed else 0.0),
+    "stack": lambda: mr.Masonry.stack([mr.Block(0.4, 0.5), mr.Block(0.3, 0.9), mr.Block(0.2, 0.4)], 5e8),
+    "soft": lambda: mr.Masonry.stack([mr.Block(0.3, 1.0), mr.Block(0.3, 1.0)], 1e6),
+}
+
+
+def measured(masonry):
+    """Pose of rest, whether it is stable, and the lowest and the highest frequency, of a scene made anew."""
+    standing_masonry.cache_clear()
+    scene = standing_masonry(masonry)
+    try:
+        pose = scene.at_rest
+        closed = scene.potential.openings(pose.ravel()) < 0
+        stands = is_stable(scene.potential, scene.friction, closed, pose.ravel())
+    except UnsettledError:
+        pose, stands = np.zeros((len(masonry.free), 3)), False
+    lowest = lowest_frequency(masonry.blocks, masonry.lines, masonry.joint_friction)
+    return pose, stands, lowest, scene.highest_frequency
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_both_ways_agree(name, monkeypatch):
+    masonry = WALLS[name]()
+    full = measured(masonry)
+    monkeypatch.setattr(linear, "FEW", 0)
+    sparse = measured(masonry)
+    np.testing.assert_allclose(sparse[0], full[0], rtol=0, atol=1e-9 * np.abs(full[0]).max())
+    assert sparse[1] == full[1] == (name != "soft")
+    assert sparse[2:] == pytest.approx(full[2:], rel=1e-9)
+
+
+def test_motions_that_are_held_twice_or_by_nothing(monkeypatch):
+    """The same row twice, an unknown that nothing resists, and a force that what holds carries alone."""
+    stiffness = csr_array(np.diag([2.0, 3.0, 0.0, 5.0]))
+    grip, force = csr_array([[1.0, 1.0, 0.0, 0.0]] * 2), np.array([1.0, -4.0, 0.0, 10.0])
+    answers = []
+    for few in (300, 0):
+        monkeypatch.setattr(linear, "FEW", few)
+        rates = linear.fitting(csr_array(np.eye(4)))
+        matrix = linear.sprung(rates, np.array([2.0, 3.0, 0.0, 5.0]))
+        motion, holding = linear.balance(matrix, grip, force)
+        np.testing.assert_allclose(motion, [1.0, -1.0, 0.0, 2.0], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(holding, [-0.5, -0.5], rtol=0, atol=1e-12)
+        assert linear.is_definite(stiffness, grip, 1e-9)
+        assert not linear.is_definite(csr_array(np.diag([2.0, 3.0, -1e-3, 5.0])), grip, 1e-9)
+        assert linear.is_definite(csr_array(np.diag([-2.0, 3.0, 0.0, 5.0])), grip, 1e-9)  # held, both move as one
+        assert not linear.is_definite(csr_array(np.diag([-4.0, 3.0, 0.0, 5.0])), grip, 1e-9)
+        answers.append(linear.lowest_square(stiffness, np.ones(4), grip, 1e-12))
+    assert answers == pytest.approx([2.5, 2.5], rel=1e-9)
+
+
+def test_what_slides_on_joints_without_friction(monkeypatch):
+    """The course above the first one slides on it, and takes what stands on it along."""
+    masonry = mr.Masonry.running_bond(
+        2.0, 1.0, (0.5, 0.25), friction=lambda joint: 0.0 if abs(joint.middle[1] - 0.25) < 1e-6 else 0.6
+    )
+    full = slippery(masonry)
+    monkeypatch.setattr(linear, "FEW", 0)
+    assert slippery(masonry) == full
+    assert 0 < len(full[1]) < len(masonry.joints)
