@@ -18,7 +18,7 @@ DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
-RUNS = ["stiffness.md", "law_and_step.md", "solvers.md"]
+RUNS = ["explicit.md", "stiffness.md", "law_and_step.md", "solvers.md"]
 LONG = ["tutorial.md", "analysis.md", "masonry.md", "impacts.md"]
 """Pages whose lines run."""
 
