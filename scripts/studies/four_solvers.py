@@ -38,7 +38,8 @@ REBOUNDS = 3
 
 def restitutions() -> list[list[object]]:
     """|e| of each solver, two-sided and one-sided."""
-    e, rows = mr.Restitution.from_geometry(FIGURE_3), []
+    rows: list[list[object]] = []
+    e = mr.Restitution.from_geometry(FIGURE_3)
     contacts = mr.Contacts.from_law(FIGURE_3, e, k_base=K_N, k_side=K_N)
     for label, side_stop, duration in (("two-sided", False, 6.0), ("one-sided", True, 3.0)):
         case = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, duration, side_stop=side_stop)
