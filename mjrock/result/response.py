@@ -290,12 +290,9 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
 def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, met: bool = False) -> tuple[Outcome, str]:
     """How a run ended, and the same in words; `met` where blocks that fell meet others."""
     if fallen:
-        first = next(iter(fallen.values()))
-        return Outcome.OVERTURNED, (
-            f"{len(fallen)} blocks fell, the first at {first:.4g} s: {named(list(fallen))}. The motion was followed "
-            f"for {t_end:.4g} s"
-            + ("." if met else "; contacts other than those of the joints at rest are not in the model.")
-        )
+        unmet = "" if met else "; contacts other than those of the joints at rest are not in the model"
+        first = f"{len(fallen)} blocks fell, the first at {next(iter(fallen.values())):.4g} s: {named(list(fallen))}."
+        return Outcome.OVERTURNED, f"{first} The motion was followed for {t_end:.4g} s{unmet}."
     if quiet:
         return Outcome.AT_REST, f"The masonry came to rest; last looked at {t_end:.4g} s."
     return Outcome.TIME_ENDED, f"The masonry was still moving when the asked {t_end:.4g} s ended."

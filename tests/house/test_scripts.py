@@ -39,6 +39,7 @@ WRITES = {
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "sliding": {"sliding.png", "sliding.txt"},
+    "heap": {"heap.png", "heap.txt"},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
