@@ -132,7 +132,8 @@ class Encounters:
         start, end = (self.corners[self.first[b] + (edge + i) % np.diff(self.first)[b]] for i in (0, 1))
         length = np.hypot(*(end - start).T)
         normal = np.column_stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]]) / length[:, None]
-        between = (self.origin[a] + at) - (self.origin[b] + start) - overlaps[:, None] * normal
+        start = start + overlaps[:, None] * normal  # the edge is taken to lie where the corner is
+        between = (self.origin[a] + at) - (self.origin[b] + start)
         lines = rows(LINE, len(numbers), body=body, face=face, support=-1, group=self.group, corner=1, low=-length)
         for name, values in (("at", at), ("origin", start), ("normal", normal), ("between", between)):
             lines[f"{name}_x"], lines[f"{name}_z"] = values.T
