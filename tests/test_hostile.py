@@ -56,7 +56,7 @@ CALLS = {
         mr.Tie,
         {
             "height": 3.0, "stiffness": 1e6, "slack": 0.01, "strength": 1e4, "length": 5.0, "anchor_height": 3.0,
-            "block": 0,
+            "block": 0, "ultimate": 0.05,
         },
     ),
     "Thrust": (mr.Thrust, {"height": 3.0, "force": 1e3, "block": 0}),

@@ -12,7 +12,8 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_kind, require_size, require_within
-from ..result.response import Response, State
+from ..result.response import Outcome, Response, State
+from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
@@ -23,7 +24,7 @@ from .reading import Asked, AskedMasonry, AskedWall
 from .record import StepError
 from .run import Run, explained, sound_timestep
 from .run_warnings import warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_slid
-from .start import required_start
+from .start import require_unbreakable, required_start
 from .stepping import fitted_steps, fixed_steps
 
 
@@ -75,11 +76,12 @@ def simulate(
 
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, if the masonry does not
-            stand, or for a value outside its range.
+            stand, for a tie that breaks with a fixed step, or for a value outside its range.
         SimulationError: if the run produces a NaN, an engine warning, or more energy than was there and was put in.
 
     Warns:
-        UserWarning: if a fixed step is too long to resolve the contacts.
+        UserWarning: if a fixed step is too long to resolve the contacts, or a tie without an `ultimate` was drawn out
+            by more than a bar or an anchor follows.
     """
     begun = time.perf_counter()
     require_kind("method", method, Method)
@@ -104,6 +106,7 @@ def simulate(
         advice = f"lower accuracy = {accuracy:g}"
     else:
         timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
+        require_unbreakable(case)
         require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
         warn_if_coarse(scene, timestep)
         coulombs = coulomb is True
@@ -116,6 +119,8 @@ def simulate(
     if isinstance(asked, AskedWall):
         warn_if_slid(run, asked)
         warn_if_open(response, run, asked, advice)
+    if response.outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, response.plastic)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response
 

@@ -32,6 +32,7 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
     "tie_k": ("tie_names",),
     "tie_length": ("tie_names",),
     "tie_strength": ("tie_names",),
+    "tie_ultimate": ("tie_names",),
     "damper_body": ("damper_names",),
     "damper_point": ("damper_names", 2),
     "damper_anchor": ("damper_names", 2),
@@ -42,7 +43,9 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
 }
 """Shape of each array: the names whose number is its length, and two for vectors."""
 POSITIVE = ("mass", "inertia", "k", "tie_k", "tie_length", "tie_strength")
-NOT_NEGATIVE = ("c", "friction", "damper_c")
+NOT_NEGATIVE = ("c", "friction", "damper_c", "tie_ultimate")
+INFINITE = ("tie_strength", "tie_ultimate")
+"""What may be infinite."""
 CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
 """Where the body of a face or an anchor stands, and the body that must be another one."""
 
@@ -78,7 +81,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
         values = values if values.size else values.reshape(wanted)
         if values.shape != wanted:
             raise ValueError(f"{name} has the shape {values.shape}; {wanted} is needed")
-        if np.isnan(values).any() or (name != "tie_strength" and not np.isfinite(values).all()):
+        if np.isnan(values).any() or (name not in INFINITE and not np.isfinite(values).all()):
             raise ValueError(f"{name} holds a value that is not finite")
         made[name] = frozen(values)
     for name in POSITIVE:

@@ -13,10 +13,11 @@ import numpy as np
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
-from ..problem.wall.ties_on_wall import stored
+from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, require_kind, require_size, require_within
-from ..result.response import Outcome, Plastic, Response, describe
+from ..result.response import Outcome, Response, describe
 from ..result.rocking import Impact, Rocking
+from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .forced import rock_forced
 from .free import rock_freely
 from .motion import Motion
@@ -53,6 +54,9 @@ def solve_analytical(
         ValueError: for a tolerance or step out of range, a side stop from which the wall does not rebound, or a
             vertical motion that lifts the wall off its base.
         RuntimeError: if the integration fails.
+
+    Warns:
+        UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
     """
     require_kind("case", case, Case)
     require_kind("e", e, Restitution)
@@ -74,6 +78,8 @@ def solve_analytical(
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
     pose, velocity = case.wall.motion(theta, omega)
     stretched, plastic = _with_ties(case, found, samples, theta)
+    if outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, plastic)
     return Response(
         case=case,
         solver="analytical",
@@ -84,7 +90,7 @@ def solve_analytical(
         rocking=Rocking(tuple(map(Impact._make, found.impacts.tolist())), np.append(released, found.peaks)),
         outcome=outcome,
         plastic=plastic,
-        message=describe(outcome, case, t_end, float(theta[-1])),
+        message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
         stats={
             "wall_time": time.perf_counter() - started,
             "evaluations": found.evaluations,
@@ -133,9 +139,13 @@ def _with_ties(case: Case, found: Motion, t: Array, theta: Array) -> tuple[Array
     if not case.pulls or found.plastic is None:
         return 0.0, {}
     times, yielded = found.plastic
-    plastic = np.column_stack([np.interp(t, times, own) for own in yielded.T])
-    ends = [
-        Plastic(float(gone), float(gone) * pull.strength if gone else 0.0)
-        for gone, pull in zip(yielded[-1], case.pulls, strict=True)
-    ]
-    return stored(case.pulls, theta, plastic), {f"tie_{i}": end for i, end in enumerate(ends)}
+    plastic, ends = np.empty((len(t), len(case.pulls))), {}
+    for i, (pull, own) in enumerate(zip(case.pulls, yielded.T, strict=True)):
+        drawn, broken = np.where(np.isinf(own), pull.ultimate, own), np.flatnonzero(np.isinf(own))
+        plastic[:, i], gone = np.interp(t, times, drawn), float(drawn[-1])
+        ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength if gone else 0.0)
+        if broken.size:
+            when = float(times[broken[0]])
+            plastic[t >= when, i] = np.inf
+            ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength, when, lost(pull))
+    return stored(case.pulls, theta, plastic), ends
