@@ -3,7 +3,7 @@
 from .accuracy import convergence, peers, work_precision
 from .animation import animate, animate_bodies
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
-from .histories import acceleration, comparison, energy, grid, history, rotation
+from .histories import acceleration, comparison, energy, grid, history, rotation, ties
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
 from .pushing import moment_rotation, pushover
@@ -40,5 +40,6 @@ __all__ = [
     "save",
     "sensitivity",
     "single",
+    "ties",
     "work_precision",
 ]

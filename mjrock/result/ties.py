@@ -82,9 +82,13 @@ def _motion(case: Any, tie: Tie, t: Array, pose: Array, ended: Plastic | None) -
 def elongation_of(case: Any, tie: Tie, pose: Array) -> Array:
     """How much longer than its slack length a tie is at poses of shape (n, bodies, 3) [m], negative where it is
     slack."""
-    body, held, centroid = _held(case, tie)
-    arm = held - centroid
-    x, z, theta = pose[:, body].T
+    body, held, centroid = held_by(case, tie)
+    return elongation_at(pose[:, body], tie, held - centroid)
+
+
+def elongation_at(pose: Array, tie: Tie, arm: Array) -> Array:
+    """The same at poses of the body that it holds, shape (n, 3), at a point from its centroid at rest [m]."""
+    x, z, theta = pose.T
     sine, cosine = np.sin(theta), np.cos(theta)
     across = tie.length + x + arm[0] * (cosine - 1) + arm[1] * sine
     up = z - arm[0] * sine + arm[1] * (cosine - 1) - tie.rise
@@ -92,7 +96,7 @@ def elongation_of(case: Any, tie: Tie, pose: Array) -> Array:
     return elongation
 
 
-def _held(case: Any, tie: Tie) -> tuple[int, Array, Array]:
+def held_by(case: Any, tie: Tie) -> tuple[int, Array, Array]:
     """The body that a tie holds, the point where it does and the centroid of the body, at rest [m]."""
     if isinstance(case, Case):
         wall = case.wall
