@@ -46,6 +46,7 @@ from .study.analysis import Analysis, MasonryAnalysis
 from .study.calibration import Plan, calibrate
 from .study.campaign import campaign, results
 from .study.contacts_by_matching import as_theory, matched_contacts
+from .study.fragility import fit_fragility
 from .study.grid import Grid
 from .study.ida import ida, overturning_intensity
 from .study.masonry_by_matching import matched_masonry
@@ -104,6 +105,7 @@ __all__ = [
     "contact_for",
     "contact_parameters",
     "contact_stiffness",
+    "fit_fragility",
     "ida",
     "inspect_contacts",
     "joint_stiffness",
@@ -117,6 +119,7 @@ __all__ = [
     "overturning_intensity",
     "pushover",
     "reference_frequency",
+    "report",
     "results",
     "rigid_impact",
     "scene_of",
@@ -130,10 +133,13 @@ __all__ = [
 
 if TYPE_CHECKING:
     from . import plotting as plotting
+    from .reporting.page import report as report
 else:
 
     def __getattr__(name: str) -> object:
-        """`mjrock.plotting`, imported when it is first asked for, since it takes matplotlib."""
+        """`mjrock.plotting` and `mjrock.report`, imported when first asked for, since they take matplotlib."""
         if name == "plotting":
             return importlib.import_module(".plotting", __name__)
+        if name == "report":
+            return importlib.import_module(".reporting.page", __name__).report
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -139,6 +139,13 @@ CALLS = {
         mr.matched_contacts,
         {"wall": WALL, "e": E, "k_base": 5e8, "points": 2, "amplitude": 0.5, "friction": None, "accuracy": 1e-2},
     ),
+    "fit_fragility": (
+        mr.fit_fragility,
+        {
+            "intensity": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], "overturned": [0, 0, 1, 0, 1, 1], "groups": None,
+            "resamples": 20, "seed": 0,
+        },
+    ),
     "as_theory": (mr.as_theory, {"wall": WALL, "e": E, "side_stop": False, "rebounds": 2, "amplitude": 0.5}),
     "Polygon": (
         mr.Polygon,
@@ -272,12 +279,12 @@ def test_ten_thousand_calls(call):
 
 
 def test_every_public_entry_is_tried():
-    """What is not called here is made by a solver, or tested with the campaigns and the records."""
+    """What is not called here is made by a solver, or tested with the campaigns, the records and the reports."""
     elsewhere = {
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
-        "calibrate", "GroundMotion",
+        "calibrate", "GroundMotion", "report",
         "InspectedContact", "PairContact",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}

@@ -20,6 +20,7 @@ FLOORS = (
     ("anymodel",),
     ("study",),
     ("plotting",),
+    ("reporting",),
 )
 """From the ground up. Rooms of one floor do not import each other."""
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}

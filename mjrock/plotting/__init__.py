@@ -7,6 +7,7 @@ from .histories import acceleration, comparison, energy, grid, history, rotation
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
 from .pushing import moment_rotation, pushover
+from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
 
 __all__ = [
@@ -40,6 +41,7 @@ __all__ = [
     "save",
     "sensitivity",
     "single",
+    "sketch",
     "ties",
     "work_precision",
 ]
