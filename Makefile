@@ -46,6 +46,7 @@ models: $(READY)
 figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
 	$(BIN)/python scripts/compare_wall.py --check --out docs/figures/demo
 	$(BIN)/python scripts/sketch.py --out docs/figures
+	$(BIN)/python scripts/first_pictures.py --out docs/figures
 	$(BIN)/python scripts/figure3.py --out docs/figures
 	$(BIN)/python scripts/animate.py --out docs/figures
 	$(BIN)/python scripts/table2.py --out docs/figures

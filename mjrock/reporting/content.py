@@ -109,7 +109,7 @@ def _settings(response: Response) -> str:
     """How a response was solved."""
     known = ("accuracy", "timestep", "newmark_beta", "rtol", "atol", "steps")
     values = ((name, response.stats.get(name)) for name in known)
-    return ", ".join(f"{name} {value:.3g}" for name, value in values if value is not None)
+    return ", ".join(f"{name} {value:.3g}" if name != "steps" else f"{value} steps" for name, value in values if value)
 
 
 def of_ties(responses: Sequence[Response], names: Sequence[str]) -> Rows:

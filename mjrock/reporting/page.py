@@ -29,6 +29,8 @@ table { border-collapse: collapse; width: 100%; font: .85em/1.35 Helvetica, Aria
 th, td { text-align: left; vertical-align: top; padding: .18em .5em; border-bottom: 1px solid #ddd }
 th { border-bottom: 1px solid #888; font-weight: 600 }
 tr, figure { break-inside: avoid }
+thead { break-after: avoid }
+tr:nth-child(-n+2) { break-before: avoid }
 figure { margin: .6em 0; text-align: center }
 figure img { max-width: 100% }
 ul.cautions { background: #fdf3e7; border-left: 4px solid #e07b2a; padding: .6em 1em .6em 2em }
@@ -184,7 +186,7 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table."""
     head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
     lines = ("".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows)
-    return f"<table><tr>{head}</tr>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+    return f"<table><thead><tr>{head}</tr></thead>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
 
 
 def picture(figure: Figure, caption: str) -> str:
