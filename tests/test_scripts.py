@@ -45,6 +45,7 @@ WRITES = {
     "throughput": {"throughput.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
     "sketch": {"sketch.png"},
+    "first_pictures": {"effects.png", "tutorial.png"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
