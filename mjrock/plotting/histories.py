@@ -39,7 +39,8 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
-        ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top")
+        note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
+        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0})
     return ax
 
 
