@@ -18,6 +18,7 @@ def released(share):
     return mr.Analysis(case, "analytical", e=E, labels={"share": share})
 
 
+@pytest.mark.slow
 def test_the_last_line_and_the_status(tmp_path, capsys):
     path = tmp_path / "walls.sqlite"
     mr.campaign([released(0.5), released(1.1)], path, workers=1)
