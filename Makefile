@@ -8,7 +8,7 @@ OLDEST := .venv-oldest
 .PHONY: demo docs test test-slow test-oldest mutants lint calibrate models figures clean stale
 
 demo: $(READY)
-	$(BIN)/python scripts/compare_wall.py --check --out out/demo
+	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
 
 test: $(READY)
 	$(BIN)/pytest -n auto
@@ -33,47 +33,47 @@ lint: $(READY)
 	$(BIN)/mypy
 
 calibrate: $(READY) # the laws that ship, and what they are worth on walls they have not seen; half an hour on two cores
-	$(BIN)/python scripts/calibrate.py --laws mjrock/problem/damping/laws
-	$(BIN)/python scripts/validate_law.py
+	$(BIN)/python scripts/paper/calibrate.py --laws mjrock/problem/damping/laws
+	$(BIN)/python scripts/paper/validate_law.py
 	cp out/calibrate/calibrated_fit.png docs/figures/damping_corners.png
 	cp out/calibrate/calibrated_bed_fit.png docs/figures/damping_bed.png
 	cp out/calibrate/calibrated_sensitivity.png docs/figures/damping_sensitivity.png
 	cp out/validate_law/validation.png docs/figures/damping_validation.png
 
 models: $(READY)
-	$(BIN)/python scripts/make_models.py
+	$(BIN)/python scripts/models/make_models.py
 
 figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
-	$(BIN)/python scripts/compare_wall.py --check --out docs/figures/demo
-	$(BIN)/python scripts/sketch.py --out docs/figures
-	$(BIN)/python scripts/first_pictures.py --out docs/figures
-	$(BIN)/python scripts/figure3.py --out docs/figures
-	$(BIN)/python scripts/animate.py --out docs/figures
-	$(BIN)/python scripts/table2.py --out docs/figures
-	$(BIN)/python scripts/convergence.py --out docs/figures
-	$(BIN)/python scripts/layouts.py --out docs/figures
-	$(BIN)/python scripts/friction.py --out docs/figures
-	$(BIN)/python scripts/sliding.py --out docs/figures
-	$(BIN)/python scripts/law_range.py --out docs/figures
-	$(BIN)/python scripts/hard_cases.py --out docs/figures
-	$(BIN)/python scripts/trouble.py --out docs/figures
-	$(BIN)/python scripts/work_precision.py --out docs/figures
-	$(BIN)/python scripts/peers.py --out docs/figures
-	$(BIN)/python scripts/masonry_precision.py --out docs/figures
-	$(BIN)/python scripts/stack_losses.py --out docs/figures
-	$(BIN)/python scripts/thresholds.py --out docs/figures
-	$(BIN)/python scripts/overturning_spectrum.py --out docs/figures
-	$(BIN)/python scripts/ida.py --out docs/figures
-	$(BIN)/python scripts/fragility.py --out docs/figures
-	$(BIN)/python scripts/polarity.py --out docs/figures
-	$(BIN)/python scripts/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/cracked_facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
-	$(BIN)/python scripts/drums.py --out docs/figures
-	$(BIN)/python scripts/panel.py --out docs/figures
-	$(BIN)/python scripts/throughput.py --out docs/figures
-	$(BIN)/python scripts/speed.py
+	$(BIN)/python scripts/paper/compare_wall.py --check --out docs/figures/demo
+	$(BIN)/python scripts/paper/sketch.py --out docs/figures
+	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
+	$(BIN)/python scripts/paper/figure3.py --out docs/figures
+	$(BIN)/python scripts/studies/animate.py --out docs/figures
+	$(BIN)/python scripts/paper/table2.py --out docs/figures
+	$(BIN)/python scripts/measure/convergence.py --out docs/figures
+	$(BIN)/python scripts/paper/layouts.py --out docs/figures
+	$(BIN)/python scripts/checks/friction.py --out docs/figures
+	$(BIN)/python scripts/checks/sliding.py --out docs/figures
+	$(BIN)/python scripts/paper/law_range.py --out docs/figures
+	$(BIN)/python scripts/checks/hard_cases.py --out docs/figures
+	$(BIN)/python scripts/checks/trouble.py --out docs/figures
+	$(BIN)/python scripts/measure/work_precision.py --out docs/figures
+	$(BIN)/python scripts/peers/peers.py --out docs/figures
+	$(BIN)/python scripts/measure/masonry_precision.py --out docs/figures
+	$(BIN)/python scripts/measure/stack_losses.py --out docs/figures
+	$(BIN)/python scripts/studies/thresholds.py --out docs/figures
+	$(BIN)/python scripts/studies/overturning_spectrum.py --out docs/figures
+	$(BIN)/python scripts/studies/ida.py --out docs/figures
+	$(BIN)/python scripts/studies/fragility.py --out docs/figures
+	$(BIN)/python scripts/studies/polarity.py --out docs/figures
+	$(BIN)/python scripts/studies/agreement.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/measure/effect_costs.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/studies/facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/studies/cracked_facade.py $(if $(RECORDS),--records $(RECORDS)) --out docs/figures
+	$(BIN)/python scripts/studies/drums.py --out docs/figures
+	$(BIN)/python scripts/studies/panel.py --out docs/figures
+	$(BIN)/python scripts/measure/throughput.py --out docs/figures
+	$(BIN)/python scripts/measure/speed.py
 
 $(READY): INSTALL = pip install --quiet --disable-pip-version-check
 $(OLDEST)/.ready: PYTHON = python3.11

@@ -3,57 +3,69 @@
 Units are SI, angles radians, damping ratios fractions. `Block` is the wall, `Case` the problem, `Contacts` the
 compliant interfaces. `simulate` solves the contact law in MuJoCo, `solve_compliant` the same law in SciPy,
 `solve_analytical` is classical rocking theory, and `compare` sets two answers side by side.
+
+A name is imported when it is first asked for: who wants `contact_for` alone waits for MuJoCo and NumPy only.
 """
 
+import contextlib
 import importlib
+import importlib.metadata
+import sys
 from typing import TYPE_CHECKING
 
 from ._version import __version__
-from .anymodel.contact import PairContact
-from .anymodel.inspect import InspectedContact, inspect_contacts
-from .anymodel.make import contact_for
-from .engine.contact import ContactParameters, contact_parameters, contact_stiffness
-from .engine.model import SimulationError
-from .engine.simulation import automatic_timestep, simulate
-from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
-from .problem.damping.contacts import Contacts
-from .problem.damping.forms import PowerLaw
-from .problem.damping.interface import Interface, reference_frequency
-from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
-from .problem.damping.restitution import Restitution
-from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
-from .problem.ground.motion import GroundMotion
-from .problem.masonry.case import MasonryCase
-from .problem.masonry.joints import Joint
-from .problem.masonry.masonry import Masonry
-from .problem.masonry.polygon import Polygon
-from .problem.wall.block import Block
-from .problem.wall.case import Case
-from .problem.wall.damper import Damper
-from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
-from .problem.wall.section import Opening
-from .quantities import GRAVITY
-from .reference.compliant import solve_compliant
-from .result.compare import Comparison, compare
-from .result.ledger import Ledger
-from .result.response import MasonryResponse, Outcome, Response
-from .result.rocking import Impact
-from .scene.masonry import masonry_scene
-from .scene.of_case import scene_of
-from .scene.scene import Scene
-from .scene.wall import wall_scene
-from .study.analysis import Analysis, MasonryAnalysis
-from .study.calibration import Plan, calibrate
-from .study.campaign import campaign, results
-from .study.contacts_by_matching import as_theory, matched_contacts
-from .study.fragility import fit_fragility
-from .study.grid import Grid
-from .study.ida import ida, overturning_intensity
-from .study.masonry_by_matching import matched_masonry
-from .study.pushover import pushover
-from .study.store import Store
-from .theory.analytical import solve_analytical
-from .theory.impact import RigidImpact, rigid_impact
+
+if TYPE_CHECKING:
+    from . import plotting as plotting
+    from .anymodel.contact import PairContact
+    from .anymodel.coulomb import CoulombFriction
+    from .anymodel.inspect import InspectedContact, inspect_contacts
+    from .anymodel.make import contact_for
+    from .anymodel.many import PairContacts, contacts_for
+    from .engine.contact import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
+    from .engine.model import SimulationError
+    from .engine.simulation import automatic_timestep, simulate
+    from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
+    from .problem.damping.contacts import Contacts
+    from .problem.damping.forms import PowerLaw
+    from .problem.damping.interface import Interface, reference_frequency
+    from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
+    from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
+    from .problem.damping.restitution import Restitution
+    from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
+    from .problem.ground.motion import GroundMotion
+    from .problem.masonry.case import MasonryCase
+    from .problem.masonry.joints import Joint
+    from .problem.masonry.masonry import Masonry
+    from .problem.masonry.polygon import Polygon
+    from .problem.wall.block import Block
+    from .problem.wall.case import Case
+    from .problem.wall.damper import Damper
+    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
+    from .problem.wall.section import Opening
+    from .quantities import GRAVITY
+    from .reference.compliant import solve_compliant
+    from .reporting.page import report
+    from .result.compare import Comparison, compare
+    from .result.ledger import Ledger
+    from .result.response import MasonryResponse, Outcome, Response
+    from .result.rocking import Impact
+    from .scene.masonry import masonry_scene
+    from .scene.of_case import scene_of
+    from .scene.scene import Scene
+    from .scene.wall import wall_scene
+    from .study.analysis import Analysis, MasonryAnalysis
+    from .study.calibration import Plan, calibrate
+    from .study.campaign import campaign, results
+    from .study.contacts_by_matching import as_theory, matched_contacts
+    from .study.fragility import fit_fragility
+    from .study.grid import Grid
+    from .study.ida import ida, overturning_intensity
+    from .study.masonry_by_matching import matched_masonry
+    from .study.pushover import pushover
+    from .study.store import Store
+    from .theory.analytical import solve_analytical
+    from .theory.impact import RigidImpact, rigid_impact
 
 __all__ = [
     "CALIBRATED",
@@ -67,6 +79,7 @@ __all__ = [
     "Comparison",
     "ContactParameters",
     "Contacts",
+    "CoulombFriction",
     "Damper",
     "DampingLaw",
     "Grid",
@@ -77,13 +90,16 @@ __all__ = [
     "Joint",
     "Ledger",
     "Load",
+    "ManyContactParameters",
     "Masonry",
     "MasonryAnalysis",
     "MasonryCase",
     "MasonryResponse",
+    "MeasuredContact",
     "Opening",
     "Outcome",
     "PairContact",
+    "PairContacts",
     "Plan",
     "Polygon",
     "PowerLaw",
@@ -105,7 +121,9 @@ __all__ = [
     "contact_for",
     "contact_parameters",
     "contact_stiffness",
+    "contacts_for",
     "fit_fragility",
+    "hertz_stiffness",
     "ida",
     "inspect_contacts",
     "joint_stiffness",
@@ -114,6 +132,7 @@ __all__ = [
     "masonry_scene",
     "matched_contacts",
     "matched_masonry",
+    "measured_contact",
     "measured_stiffness",
     "mjcf_of",
     "overturning_intensity",
@@ -131,15 +150,85 @@ __all__ = [
     "wall_stiffness",
 ]
 
-if TYPE_CHECKING:
-    from . import plotting as plotting
-    from .reporting.page import report as report
-else:
+HOMES = {
+    "anymodel.contact": "PairContact",
+    "anymodel.coulomb": "CoulombFriction",
+    "anymodel.inspect": "InspectedContact inspect_contacts",
+    "anymodel.make": "contact_for",
+    "anymodel.many": "PairContacts contacts_for",
+    "engine.contact": "ContactParameters ManyContactParameters contact_parameters contact_stiffness",
+    "engine.model": "SimulationError",
+    "engine.simulation": "automatic_timestep simulate",
+    "engine.text": "masonry_mjcf mjcf_of wall_mjcf",
+    "problem.damping.contacts": "Contacts",
+    "problem.damping.forms": "PowerLaw",
+    "problem.damping.interface": "Interface reference_frequency",
+    "problem.damping.law": "CALIBRATED CALIBRATED_BED PUBLISHED DampingLaw",
+    "problem.damping.measured": "MeasuredContact hertz_stiffness measured_contact",
+    "problem.damping.restitution": "Restitution",
+    "problem.damping.stiffness": "joint_stiffness layered_stiffness measured_stiffness wall_stiffness",
+    "problem.ground.motion": "GroundMotion",
+    "problem.masonry.case": "MasonryCase",
+    "problem.masonry.joints": "Joint",
+    "problem.masonry.masonry": "Masonry",
+    "problem.masonry.polygon": "Polygon",
+    "problem.wall.block": "Block",
+    "problem.wall.case": "Case",
+    "problem.wall.damper": "Damper",
+    "problem.wall.effects": "AddedMass Load SideStop Thrust Tie",
+    "problem.wall.section": "Opening",
+    "quantities": "GRAVITY",
+    "reference.compliant": "solve_compliant",
+    "reporting.page": "report",
+    "result.compare": "Comparison compare",
+    "result.ledger": "Ledger",
+    "result.response": "MasonryResponse Outcome Response",
+    "result.rocking": "Impact",
+    "scene.masonry": "masonry_scene",
+    "scene.of_case": "scene_of",
+    "scene.scene": "Scene",
+    "scene.wall": "wall_scene",
+    "study.analysis": "Analysis MasonryAnalysis",
+    "study.calibration": "Plan calibrate",
+    "study.campaign": "campaign results",
+    "study.contacts_by_matching": "as_theory matched_contacts",
+    "study.fragility": "fit_fragility",
+    "study.grid": "Grid",
+    "study.ida": "ida overturning_intensity",
+    "study.masonry_by_matching": "matched_masonry",
+    "study.pushover": "pushover",
+    "study.store": "Store",
+    "theory.analytical": "solve_analytical",
+    "theory.impact": "RigidImpact rigid_impact",
+}
+"""The public names of each module."""
+HOME = {name: module for module, names in HOMES.items() for name in names.split()}
 
-    def __getattr__(name: str) -> object:
-        """`mjrock.plotting` and `mjrock.report`, imported when first asked for, since they take matplotlib."""
-        if name == "plotting":
-            return importlib.import_module(".plotting", __name__)
-        if name == "report":
-            return importlib.import_module(".reporting.page", __name__).report
+
+def _require_mujoco(version: str) -> None:
+    """Raise an ImportError that says what to install, if MuJoCo is older than this package takes."""
+    if int(version.split(".")[0]) < 4:
+        raise ImportError(f"mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'")
+
+
+if "mujoco" in sys.modules:
+    _require_mujoco(sys.modules["mujoco"].__version__)
+else:
+    with contextlib.suppress(importlib.metadata.PackageNotFoundError):  # importing mujoco then says that it is missing
+        _require_mujoco(importlib.metadata.version("mujoco"))
+
+
+def __getattr__(name: str) -> object:
+    """A public name, or `mjrock.plotting`, imported when it is first asked for."""
+    if name == "plotting":
+        return importlib.import_module(".plotting", __name__)
+    if name not in HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f".{HOME[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """The public names."""
+    return [*__all__, "plotting"]

@@ -2,20 +2,38 @@
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import sys
+from collections.abc import Sequence
 
-COMMANDS = {"status": ".study.status"}
-"""Where the function `main` of each command is."""
+COMMANDS = {"inspect": ".anymodel.command", "status": ".study.status"}
+"""Where the function `answer` of each command is, which takes its arguments and returns a text."""
+HELP = {"inspect": "contacts of a MuJoCo model in physical units", "status": "how far a campaign is, from its store"}
 
 
-def main() -> None:
-    """Hand the arguments to the command that is named."""
-    name, *rest = sys.argv[1:] or [""]
-    if name not in COMMANDS:
-        sys.exit(f"usage: python -m mjrock {{{','.join(COMMANDS)}}} ...; {name!r} is no command")
-    importlib.import_module(COMMANDS[name], "mjrock").main(rest)
+def parser() -> argparse.ArgumentParser:
+    """The command that is named; the arguments after it are its own."""
+    told = "; ".join(f"{name}: {text}" for name, text in HELP.items())
+    made = argparse.ArgumentParser(
+        "python -m mjrock", f"python -m mjrock {{{','.join(COMMANDS)}}} ...", "What can be asked without a script."
+    )
+    made.add_argument("command", choices=COMMANDS, help=told)
+    return made
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command. Returns the exit code: 2 for what the user can mend."""
+    given = list(sys.argv[1:] if argv is None else argv)
+    module = COMMANDS[parser().parse_args(given[:1]).command]
+    try:
+        text = importlib.import_module(module, "mjrock").answer(given[1:])
+    except (ValueError, TypeError, OSError) as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 2
+    sys.stdout.write(text + "\n")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -14,6 +14,7 @@ import contextlib
 import hashlib
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,13 +24,8 @@ NOWHERE = "no folder is found that can be written; name one in the environment v
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-try:
-    import numba
-    import numba.core.caching
-    import numba.extending
-    from numba.core import event
-except ImportError:
-    numba = None
+_waiting: list[tuple[Callable[..., Any], dict[str, bool]]] = []
+"""Functions that compiled loops call, and how, until there is a loop: numba takes half a second to import."""
 
 
 def _notice(text: str) -> None:
@@ -50,24 +46,24 @@ def _sources() -> str:
     return digest.hexdigest()
 
 
-if numba is None:
-    _notice("numba is not installed; the loops run as plain Python, some fifty times slower")
-
-    def compiled(function: Function) -> Function:
-        """The function as it is: there is no numba."""
-        return function
-
-    inlined = jitable = compiled
-
-else:
-    SOURCES = _sources()
+@cache
+def _numba() -> Any:
+    """numba, or None where there is none; what waits is made known to it."""
+    try:
+        import numba
+        import numba.core.caching
+        import numba.extending
+        from numba.core import event
+    except ImportError:
+        _notice("numba is not installed; the loops run as plain Python, some fifty times slower")
+        return None
 
     class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]
         """numba's cache on disk, which is a convenience: whatever is wrong with it, the function is compiled anew."""
 
         def __init__(self, function: Function) -> None:
             super().__init__(function)
-            self._cache_file._source_stamp = SOURCES
+            self._cache_file._source_stamp = sources
 
         def load_overload(self, *key: Any) -> Any:
             """The compiled function, or None where it cannot be read."""
@@ -89,8 +85,8 @@ else:
         def on_start(self, event: Any) -> None:
             """Tell the user why nothing seems to happen."""
             dispatcher = event.data.get("dispatcher")
-            own = getattr(dispatcher, "py_func", None)
-            if not self.said and own is not None and own.__module__.startswith("mjrock."):
+            function = getattr(dispatcher, "py_func", None)
+            if not self.said and function is not None and function.__module__.startswith("mjrock."):
                 _FirstCompilation.said = True
                 folder = dispatcher._cache.cache_path
                 stored = f"once; they are stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
@@ -99,20 +95,58 @@ else:
         def on_end(self, event: Any) -> None:
             """Nothing to say."""
 
+    sources = _sources()
     event.register("numba:compile", _FirstCompilation())
+    globals().update(numba=numba, SOURCES=sources, _Cache=_Cache, _FirstCompilation=_FirstCompilation)
+    while _waiting:
+        function, how = _waiting.pop(0)
+        _register(numba, function, how)
+    return numba
 
-    jitable = numba.extending.register_jitable
-    inlined = numba.extending.register_jitable(forceinline=True)
 
-    def compiled(function: Function) -> Function:
-        """Compile a function at its first call, and store the result on disk where that is possible.
+def _register(numba: Any, function: Callable[..., Any], how: dict[str, bool]) -> None:
+    register = numba.extending.register_jitable
+    register(**how)(function) if how else register(function)
 
-        The function allocates nothing: it writes into arrays that it is given. numba then need not count references to
-        arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
-        numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
-        """
-        made = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
-        if made is not function:  # it is with NUMBA_DISABLE_JIT=1
-            with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
-                made._cache = _Cache(function)
-        return made  # type: ignore[no-any-return]
+
+def __getattr__(name: str) -> Any:
+    """numba and what is made of it, where there is numba."""
+    if name in ("numba", "SOURCES", "_Cache", "_FirstCompilation") and _numba() is not None:
+        return globals()[name]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def _callable(function: Function, **how: bool) -> Function:
+    """Make a function known to numba, now or with the first loop."""
+    if "numba" in globals():
+        _register(_numba(), function, how)
+    else:
+        _waiting.append((function, how))
+    return function
+
+
+def jitable(function: Function) -> Function:
+    """A function that compiled loops call; called from Python it runs as Python."""
+    return _callable(function)
+
+
+def inlined(function: Function) -> Function:
+    """The same for a function whose call would take longer than its arithmetic."""
+    return _callable(function, forceinline=True)
+
+
+def compiled(function: Function) -> Function:
+    """Compile a function at its first call, and store the result on disk where that is possible.
+
+    The function allocates nothing: it writes into arrays that it is given. numba then need not count references to
+    arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
+    numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
+    """
+    numba = _numba()
+    if numba is None:
+        return function
+    dispatcher = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
+    if dispatcher is not function:  # it is with NUMBA_DISABLE_JIT=1
+        with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
+            dispatcher._cache = globals()["_Cache"](function)
+    return dispatcher  # type: ignore[no-any-return]

@@ -61,7 +61,7 @@ class Method(NamedTuple):
         held_friction: friction coefficient of the outer edge of a wall that holds, with a side stop, on two lines [-].
             On a bed of n lines it is n/2 times that. This edge must not slip when the side impact pushes the hardly
             loaded base. On the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on nothing
-            changes (`scripts/friction.py`). The inner edge takes as much of it as `self_work` allows.
+            changes (`scripts/checks/friction.py`). The inner edge takes as much of it as `self_work` allows.
         free_friction: the same of both edges of a wall without a side stop [-]. It holds any wall in free rocking,
             whose base is pushed with at most (3/4) sin(2 alpha) / (2 - (3/2) sin(alpha)^2) of its load. It is no
             larger, because two edges that both stick while the wall turns over do work against each other. With mu = 30

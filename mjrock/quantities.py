@@ -1,4 +1,4 @@
-"""What every module shares: the acceleration of gravity, and checks of what is given against what can be."""
+"""The acceleration of gravity, types of arrays, and checks of arguments."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 
 
-def keep(made: object, **checked: object) -> None:
-    """Set fields of a frozen dataclass that is being made to what their checks returned.
+def keep(instance: object, **checked: object) -> None:
+    """Set fields of a frozen dataclass to what their checks returned, while it is made.
 
     A check takes any real number and returns a float. The number given is not kept: NumPy computes with its small
     numbers in their own few bits, in which 200 * 2 is 144.
     """
     for name, value in checked.items():
-        object.__setattr__(made, name, value)
+        object.__setattr__(instance, name, value)
 
 
 def spelt(value: object) -> str:
@@ -49,7 +49,9 @@ def spelt(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """A value and its type on one line, short enough for a message."""
+    """A value and its type on one line, short enough for a message; None says enough."""
+    if value is None:
+        return "None"
     text = " ".join(spelt(value).split())
     return f"{text[:60]}{'...' if len(text) > 60 else ''} of type {type(value).__name__}"
 
@@ -58,7 +60,7 @@ def require_real(name: str, value: object) -> float:
     """Return `value` as a float.
 
     Raises:
-        TypeError: with the name and the value, unless it is a real number. True and False are none.
+        TypeError: with the name and the value, unless it is a real number. True and False are not.
         ValueError: if it is too large for a float.
     """
     if isinstance(value, bool | np.bool_) or not isinstance(value, RealNumber):
@@ -104,7 +106,7 @@ def require_whole(name: str, value: object, low: int, high: int) -> int:
 def require_kind(name: str, value: object, *kinds: type) -> None:
     """Raise a TypeError that names the value and what is needed, unless it is of one of these types."""
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
-        needed = " or ".join(kind.__name__ for kind in kinds)
+        needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
 
 
@@ -173,7 +175,7 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
         given = np.asarray(values)
     except ValueError:
         raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
-    if given.dtype.kind not in kinds:
+    if given.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
         held = "values of these kinds" if "b" in kinds else "real numbers"
         raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")
     if _is_masked(values):
@@ -183,26 +185,45 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
 
 
 def require_reals(name: str, values: ArrayLike, takes: str) -> Array:
-    """`values` as an array of floats, see `require_plain`. True and False are no real numbers."""
+    """`values` as an array of floats, see `require_plain`. True and False are refused, also among numbers."""
     return np.asarray(require_plain(name, values, takes, "iuf"), dtype=float)
 
 
-def require_row(name: str, values: ArrayLike, one: str) -> Array:
+def require_row(name: str, values: ArrayLike, element: str) -> Array:
     """Return a copy of `values` as a row of finite numbers, shape (n,).
 
     Args:
         name: what it is called.
         values: the numbers.
-        one: what each of them is.
+        element: what each of them is.
 
     Raises:
         TypeError: unless they are real numbers.
-        ValueError: if they are ragged or masked, no row, none at all, or not finite.
+        ValueError: if they are ragged, masked or not finite, not a row, or an empty one.
     """
-    made = np.array(require_reals(name, values, f"a row of at least one {one}"))
-    if made.ndim != 1 or not made.size:
-        raise ValueError(f"{name} has the shape {made.shape}; a row of at least one {one} is needed")
-    return _finite(name, made)
+    row = np.array(require_reals(name, values, f"a row of at least one {element}"))
+    if row.ndim != 1 or not row.size:
+        raise ValueError(f"{name} has the shape {row.shape}; a row of at least one {element} is needed")
+    return _finite(name, row)
+
+
+def require_increasing(name: str, values: ArrayLike, element: str, high: float, valid: str) -> Array:
+    """Return a copy of `values` as a row of increasing numbers from 0 to `high`, see `require_row`.
+
+    Raises:
+        TypeError, ValueError: as `require_row`; with the `valid` range in words, unless they increase within it.
+    """
+    row = require_row(name, values, element)
+    if not (row[0] >= 0 and row[-1] <= high and (np.diff(row) > 0).all()):
+        raise ValueError(f"{name} = {shown(values)} has to increase within the valid range {valid}")
+    return row
+
+
+def _holds_truth(values: object) -> bool:
+    """Whether a list, or a list in it, has True or False among its values: NumPy makes numbers of them."""
+    if isinstance(values, list | tuple):
+        return any(map(_holds_truth, values))
+    return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
 def _is_masked(values: ArrayLike) -> bool:
@@ -218,16 +239,16 @@ def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
         TypeError: if it is no array of real numbers.
         ValueError: if it is ragged or masked, has another shape, or a value that is not finite.
     """
-    made = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
-    if made.shape != shape:
-        raise ValueError(f"{name} has the shape {made.shape}; {shape} is needed")
-    return _finite(name, made)
+    array = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))
+    if array.shape != shape:
+        raise ValueError(f"{name} has the shape {array.shape}; {shape} is needed")
+    return _finite(name, array)
 
 
-def _finite(name: str, made: Array) -> Array:
-    if not np.isfinite(made).all():
+def _finite(name: str, array: Array) -> Array:
+    if not np.isfinite(array).all():
         raise ValueError(f"{name} holds a value that is not finite")
-    return made
+    return array
 
 
 NAMED = 5

@@ -1,7 +1,7 @@
 import pytest
 
 import mjrock as mr
-from paper import FIGURE_3, K_N
+from scripts.shared.paper import FIGURE_3, K_N
 
 
 @pytest.fixture(scope="session")

@@ -30,10 +30,10 @@ MARKS = b"\n@compiled\n", b"\n@jitable\n", b"\n@inlined\n"
 """What stands before a compiled function."""
 OTHERS = ("engine/contact.py", "engine/run.py", "scene/equilibrium.py", "scene/masonry.py", "result/history.py")
 """Modules of the method without compiled functions."""
-TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect")
+TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 OWN = {
-    **{f"anymodel/{name}.py": ("contact", "pair", "pairing", "inspection") for name in TOOLS},
+    **{f"anymodel/{name}.py": ("contact", "pair", "pairing", "inspection", "standing") for name in TOOLS},
     "geometry/frames.py": ("frames", "kinematics"),
     "geometry/kinematics.py": ("kinematics", "frames", "slipping"),
     "geometry/vectors.py": ("frames", "kinematics"),
@@ -179,7 +179,7 @@ def survives(folder: Path, mutant: Mutant | None) -> bool:
 
 def passes(folder: Path, no_jit: str, names: tuple[str, ...]) -> bool:
     """Whether the tests of a round pass in a folder."""
-    tests = [f"tests/test_{name}.py" for name in names]
+    tests = [str(path) for name in names for path in (folder / "tests").rglob(f"test_{name}.py")]
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", *tests]
     setting = os.environ | {"NUMBA_DISABLE_JIT": no_jit, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(folder)}
     try:

@@ -1,9 +1,39 @@
 """Scenes that several tests use."""
 
+import dataclasses
+
+import mujoco
 import numpy as np
 
 import mjrock as mr
+from mjrock.engine import stepping
+from mjrock.engine.mjcf import pair_rows
+from mjrock.engine.model import engine_of
 from mjrock.scene.course import Course
+
+
+def fields(scene):
+    """The parts of a scene, to make another one of them."""
+    return {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+
+
+def fixed_steps(scene, course, timestep):
+    """The fixed steps of a scene."""
+    with engine_of(scene) as engine:
+        engine.follow(timestep, pair_rows(scene, timestep, 0.25))
+        engine.release(course)
+        return stepping.fixed_steps(engine, scene, course, timestep, 0.25)
+
+
+def stock_takes(poses, text, atol):
+    """Stock MuJoCo, released as a text says, takes these poses; what it ends with."""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    for pose in poses:
+        np.testing.assert_allclose(data.qpos, np.ravel(pose), rtol=0, atol=atol)
+        mujoco.mj_step(model, data)
+    return data
 
 
 def course(scene, velocity=None, duration=1.0, motion=None, *, pose=None, vertical=None):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
@@ -32,18 +33,7 @@ class PairContact(ContactNumbers):
         Raises:
             ValueError: if one of the geoms has no name.
         """
-        self._require_names()
-        options = [f"timestep={_text(self.timestep)}"]
-        numbers = {"solref": self.solref, "solimp": self.solimp}
-        if self.condim > 1:
-            options += ['cone="elliptic"', f"impratio={_text(self.impratio)}"]
-            numbers |= {"solreffriction": self.solreffriction, "friction": self.friction}
-        attributes = " ".join(f"{name}={_text(*values)}" for name, values in numbers.items())
-        return (
-            f"<option {' '.join(options)}/>\n<contact>\n"
-            f"  <pair geom1={quoteattr(self.geom1)} geom2={quoteattr(self.geom2)}"
-            f' condim="{self.condim}" {attributes}/>\n</contact>\n'
-        )
+        return document([self])
 
     def apply(self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False) -> None:
         """Write the contact into a model, with the options that it needs.
@@ -62,13 +52,16 @@ class PairContact(ContactNumbers):
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
                 have another inverse weight.
         """
-        require_flag("on_geoms", on_geoms)
-        found = self._found(compiled(model))
+        write([self], model, compiled(model), require_flag("on_geoms", on_geoms))
+
+    def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
+        """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
+        geoms = self._pair_in(whole)
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            self._write_spec(model, found)
-        elif found.explicit >= 0:
-            self._write_pair(model, found.explicit)
+            self._write_spec(model, geoms)
+        elif geoms.explicit >= 0:
+            self._write_pair(model, geoms.explicit)
         elif on_geoms:
             self._write_geoms(model)
         else:
@@ -77,14 +70,24 @@ class PairContact(ContactNumbers):
                 "apply the contact to its MjSpec before compiling, put the text of .xml into the MJCF, or let both "
                 "geoms take it with on_geoms=True"
             )
-        option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
-        option.timestep = self.timestep
-        if self.condim > 1:
-            option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-            option.impratio = max(float(option.impratio), self.impratio)
 
-    def _write_spec(self, spec: mujoco.MjSpec, found: GeomPair) -> None:
-        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*found.names})
+    @property
+    def pair_xml(self) -> str:
+        """The explicit pair alone, as text.
+
+        Raises:
+            ValueError: if one of the geoms has no name.
+        """
+        self._require_names()
+        numbers = {"solref": self.solref, "solimp": self.solimp}
+        if self.condim > 1:
+            numbers |= {"solreffriction": self.solreffriction, "friction": self.friction}
+        attributes = " ".join(f"{name}={_text(*values)}" for name, values in numbers.items())
+        geoms = f"geom1={quoteattr(self.geom1)} geom2={quoteattr(self.geom2)}"
+        return f'<pair {geoms} condim="{self.condim}" {attributes}/>'
+
+    def _write_spec(self, spec: mujoco.MjSpec, geoms: GeomPair) -> None:
+        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*geoms.names})
         pair = next(named, None) or spec.add_pair(geomname1=self.geom1, geomname2=self.geom2)
         pair.condim, pair.friction = self.condim, self.friction
         pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
@@ -96,7 +99,7 @@ class PairContact(ContactNumbers):
 
     def _write_geoms(self, model: mujoco.MjModel) -> None:
         """Equal geoms of equal priority mix to what they are."""
-        geoms = list(self._found(model).geoms)
+        geoms = list(self._pair_in(model).geoms)
         model.geom_solref[geoms], model.geom_solimp[geoms] = self.solref, self.solimp
         model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
@@ -110,10 +113,14 @@ class PairContact(ContactNumbers):
         Raises:
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.
         """
-        pair = self._found(compiled(model))
-        return (*missing(pair, self), *spoilers(pair, self))
+        return self.caveats_of(compiled(model))
 
-    def _found(self, model: mujoco.MjModel) -> GeomPair:
+    def caveats_of(self, whole: mujoco.MjModel) -> tuple[str, ...]:
+        """The same for a compiled model."""
+        pair = self._pair_in(whole)
+        return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
+
+    def _pair_in(self, model: mujoco.MjModel) -> GeomPair:
         """The pair in a model, which has to be the same two bodies."""
         pair = GeomPair.named(model, self.geom1 or self.ids[0], self.geom2 or self.ids[1])
         if not math.isclose(pair.inverse_weight, self.inverse_weight, rel_tol=1e-9):
@@ -133,3 +140,25 @@ class PairContact(ContactNumbers):
 
 def _text(*values: float) -> str:
     return f'"{" ".join(repr(float(value)) for value in values)}"'
+
+
+def write(
+    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool
+) -> None:
+    """Write contacts of one time step into a model or a specification, of which `whole` is the compiled model."""
+    for contact in contacts:
+        contact.put_into(model, whole, on_geoms)
+    option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
+    option.timestep = contacts[0].timestep
+    if any(contact.condim > 1 for contact in contacts):
+        option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+        option.impratio = max([float(option.impratio), *(contact.impratio for contact in contacts)])
+
+
+def document(contacts: Sequence[PairContact]) -> str:
+    """The options that contacts of one time step need together, and their explicit pairs."""
+    pairs = "".join(f"  {contact.pair_xml}\n" for contact in contacts)
+    options = [f"timestep={_text(contacts[0].timestep)}"]
+    if any(contact.condim > 1 for contact in contacts):
+        options += ['cone="elliptic"', f"impratio={_text(max(contact.impratio for contact in contacts))}"]
+    return f"<option {' '.join(options)}/>\n<contact>\n{pairs}</contact>\n"

@@ -1,15 +1,14 @@
-"""Two geoms of anyone's model that can meet: who they are, and how heavy they are to each other."""
+"""Two geoms of anyone's model that can meet: their names, their bodies, and the mass of their approach."""
 
 from __future__ import annotations
 
 import os
-import warnings
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
-from ..quantities import Array, require_array, require_kind, require_text, shown
+from ..quantities import Array, require_kind, require_text, shown
 
 GEOM, BODY = mujoco.mjtObj.mjOBJ_GEOM, mujoco.mjtObj.mjOBJ_BODY
 FARTHEST = 1e10
@@ -43,12 +42,9 @@ def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
 
 
 def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
-    """The number of a geom.
+    """The number of a geom, from its name or number, or from the name of a body that has a single geom.
 
-    Args:
-        model: the model.
-        argument: what the value is called in messages.
-        value: the name or number of the geom, or the name of a body that has a single geom.
+    Messages call the value `argument`.
 
     Raises:
         TypeError: unless the value is a text or a whole number.
@@ -123,6 +119,21 @@ class GeomPair:
         return geom_name(self.model, self.geoms[0]), geom_name(self.model, self.geoms[1])
 
     @property
+    def labels(self) -> tuple[str, str]:
+        """The names; a geom without a name has that of its body, with its own number in brackets."""
+        first, second = (
+            name or f"{body if not body.startswith('[') else ''}[{geom}]"
+            for name, body, geom in zip(self.names, self.body_names, self.geoms, strict=True)
+        )
+        return first, second
+
+    @property
+    def body_names(self) -> tuple[str, str]:
+        """The names of the bodies, or their numbers in brackets."""
+        first, second = (mujoco.mj_id2name(self.model, BODY, body) or f"[{body}]" for body in self.bodies)
+        return first, second
+
+    @property
     def bodies(self) -> tuple[int, int]:
         """The numbers of the bodies."""
         first, second = (int(self.model.geom_bodyid[geom]) for geom in self.geoms)
@@ -150,77 +161,64 @@ class GeomPair:
         kinds = [self.model.geom_type[geom] for geom in self.geoms]
         return any(kind in UNEVEN for kind in kinds) or not any(kind in ONE_POINT for kind in kinds)
 
-    def mass(self, data: mujoco.MjData | None = None, at: object = None) -> float:
-        """Effective mass of an approach along the contact's normal, at the model's `qpos0` [kg].
+    @property
+    def is_uneven(self) -> bool:
+        """Whether one of the geoms is not convex, so that the number of points changes from place to place."""
+        return any(self.model.geom_type[geom] in UNEVEN for geom in self.geoms)
 
-        1/m is the rate at which the geoms part along the normal for a unit impulse. The normal is that of a plane, else
-        it points along the shortest distance of the geoms.
-
-        Args:
-            data: state of the model at `qpos0`, if there is one; see `at_rest`.
-            at: the contact point in the world's frame [m], shape (3,). None takes the centres of mass of what moves
-                with each geom, for which 1/m is 1/m1 + 1/m2 of two free bodies.
-
-        Returns:
-            The mass; infinity, if the geoms cannot approach each other along the normal.
-
-        Raises:
-            TypeError, ValueError: unless `at` is a point.
-        """
-        data = data if data is not None else at_rest(self.model)
-        point = None if at is None else require_array("at", at, (3,))
-        if point is not None and np.abs(point).max() > FARTHEST:
-            raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
-        jacobian = np.zeros((3, self.model.nv))
-        for body, sign in zip(self.bodies, (1.0, -1.0), strict=True):
-            rows = np.zeros((3, self.model.nv))
-            mujoco.mj_jac(self.model, data, rows, None, self._centre(data, body) if point is None else point, body)
-            jacobian += sign * rows
-        along = self._normal(data) @ jacobian
-        if not np.any(np.abs(along) > 1e-9):
-            return np.inf
-        moved = np.zeros((1, self.model.nv))
-        mujoco.mj_solveM(self.model, data, moved, along[None, :])
-        return float(1 / (along @ moved[0]))
-
-    def _centre(self, data: mujoco.MjData, body: int) -> Array:
-        """Centre of mass of all bodies that are welded together with this one."""
+    def centre(self, data: mujoco.MjData, body: int) -> Array:
+        """Centre of mass of all bodies that are welded together with this one [m]."""
         model = self.model
         group = model.body_weldid == model.body_weldid[body]
         mass = model.body_mass[group]
         return np.array(mass @ data.xipos[group] / max(mass.sum(), mujoco.mjMINVAL))
 
-    def _normal(self, data: mujoco.MjData) -> Array:
-        for geom in self.geoms:
-            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
-                return np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2])
-        between = data.geom_xpos[self.geoms[1]] - data.geom_xpos[self.geoms[0]]
-        apart = self._shortest(data)
-        if np.linalg.norm(apart) < TOUCHING * np.linalg.norm(between):
-            place = np.array(data.geom_xpos[self.geoms[1]])
-            data.geom_xpos[self.geoms[1]] += ASIDE * between
-            apart = self._shortest(data)
-            data.geom_xpos[self.geoms[1]] = place
-        vector = next(one for one in (apart, between, np.array((0.0, 0.0, 1.0))) if np.any(np.abs(one) > 1e-12))
-        return np.array(vector / np.linalg.norm(vector))
+    def apart(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
+        """The normal along which the first geom parts from the second, and how far they are from each other.
 
-    def _shortest(self, data: mujoco.MjData) -> Array:
-        """Vector between the nearest points of the geoms [m]; zero where MuJoCo knows none."""
+        The normal is that of a plane, else it points along the shortest distance of the geoms.
+
+        Returns:
+            The unit vector along which the first geom moves away, the distance [m], and the nearest points of both
+            geoms [m], shape (2, 3), or None where MuJoCo knows none.
+        """
+        between = data.geom_xpos[self.geoms[0]] - data.geom_xpos[self.geoms[1]]
+        distance, ends = self._shortest(data)
+        for geom, sign in zip(self.geoms, (-1.0, 1.0), strict=True):
+            if self.model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
+                return sign * np.array(data.geom_xmat[geom].reshape(3, 3)[:, 2]), distance, ends
+        apart = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
+        if np.linalg.norm(apart) < TOUCHING * np.linalg.norm(between):
+            place = np.array(data.geom_xpos[self.geoms[0]])
+            data.geom_xpos[self.geoms[0]] += ASIDE * between
+            aside, moved = self._shortest(data)
+            data.geom_xpos[self.geoms[0]] = place
+            apart = np.zeros(3) if moved is None else np.copysign(1.0, aside) * (moved[0] - moved[1])
+        up = np.array((0.0, 0.0, 1.0))
+        vector = next(vector for vector in (apart, between, up) if np.any(np.abs(vector) > 1e-12))
+        return np.array(vector / np.linalg.norm(vector)), distance, ends
+
+    def _shortest(self, data: mujoco.MjData) -> tuple[float, Array | None]:
+        """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo knows none."""
         ends = np.zeros(6)
         try:
-            mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST, ends)
+            distance = float(mujoco.mj_geomDistance(self.model, data, *self.geoms, FARTHEST, ends))
         except mujoco.FatalError:
-            return np.zeros(3)
-        return ends[3:] - ends[:3]
+            return 0.0, None
+        known = distance < FARTHEST and np.any(ends != 0)
+        return (distance, ends.reshape(2, 3)) if known else (0.0, None)
 
 
-def at_rest(model: mujoco.MjModel) -> mujoco.MjData:
-    """The state of a model at `qpos0`, with its mass matrix."""
-    data = mujoco.MjData(model)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
-        mujoco.mj_makeM(model, data)
-        mujoco.mj_factorM(model, data)
-    return data
+def tree_mass(pair: GeomPair) -> float:
+    """Mass of all that moves with the bodies of a pair [kg], to the roots of their trees."""
+    model = pair.model
+    moving = [int(model.body_rootid[body]) for body in pair.bodies if model.body_weldid[body] != 0]
+    return float(sum(model.body_subtreemass[root] for root in {*moving}))
+
+
+def weight_of(pair: GeomPair) -> float:
+    """Weight of the lighter tree of a pair, of those that move [N]."""
+    model = pair.model
+    moving = [int(model.body_rootid[body]) for body in pair.bodies if model.body_weldid[body] != 0]
+    lightest = min((float(model.body_subtreemass[root]) for root in moving), default=0.0)
+    return lightest * float(np.linalg.norm(model.opt.gravity))

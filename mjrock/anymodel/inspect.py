@@ -1,31 +1,24 @@
-"""What the contacts of anyone's MuJoCo model are in N/m and N s/m: `inspect_contacts`.
-
-MuJoCo's two formats of solref become the spring K and dashpot B of a row. With the impedance d at zero penetration and
-W of the two bodies,
-
-    k = K d^2 / ((1 - d) W),    c = B d / ((1 - d) W),    m_i = d / ((1 - d) W).
-
-In the direct format K = stiffness / dw^2 and B = damping / dw, else K = 1 / (dw timeconst dampratio)^2 and
-B = 2 / (dw timeconst), where dw is the impedance at the full width. With friction and the pyramidal cone all three
-change by the factor of `Mixed.pyramid`. An Euler step of length h uses up h c / 2 of the inertia m_i (see `contact`).
-What is left moves with the mass in a contact.
-"""
+"""What the contacts of anyone's MuJoCo model are in N/m and N s/m: `inspect_contacts`."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
-import numpy as np
 
-from ..engine.contact import IMPEDANCE_RANGE
 from ..problem.damping.rebound import rebound_restitution
-from ..quantities import require_flag, require_whole
-from .geoms import GeomPair, at_rest, compiled
-from .mixing import Mixed
-from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down
+from ..quantities import Array, require_flag, require_whole, require_within
+from .geoms import GeomPair, compiled, tree_mass, weight_of
+from .holding import holding
+from .meeting import Meeting, Pose, elsewhere, meeting
+from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
+from .numbers import rebound_at
+from .row_of_model import Row
+
+IMMOVABLE = 10.0
+"""Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +26,17 @@ class InspectedContact:
     """A contact of a model in physical units, at zero penetration.
 
     Args:
-        geom1, geom2: names of the geoms, or their numbers in brackets.
+        geom1, geom2: names of the geoms; without a name, that of the body with the number of the geom in brackets.
         explicit: whether an explicit `<pair>` says so, or MuJoCo mixes it from the two geoms.
         k, c: spring [N/m] and dashpot [N s/m] of each contact point.
         inertia: inertia that the row adds in a contact, beyond what the Euler step takes [kg].
-        mass: effective mass of an approach of the centres of mass along the normal at `qpos0` [kg]; infinity if there
-            is none.
+        mass: effective mass of the whole contact in the pose [kg]; infinity if the geoms cannot approach each other.
         impedance: d at zero penetration [-].
         points: contact points that share the mass; frequency, xi and restitution are those of so many.
+        load: static load of each contact point [N], the weight of what moves, shared by the points, or what was given.
+        k_loaded: load over the indentation at which the contact carries it [N/m].
+        gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
+        bodies: names of the two bodies, or their numbers in brackets.
         notes: what else is to be known of it, one sentence each.
     """
 
@@ -53,6 +49,10 @@ class InspectedContact:
     mass: float
     impedance: float
     points: int
+    load: float
+    k_loaded: float
+    gravity: float
+    bodies: tuple[str, str]
     notes: tuple[str, ...]
 
     @property
@@ -74,9 +74,21 @@ class InspectedContact:
         """Coefficient of restitution e of an approach along the normal that meets these points [-].
 
         It is that of a spring and dashpot that never pull, exp(-2 xi acos(xi) / sqrt(1 - xi^2)), beyond xi = 1 with
-        acosh(xi) and sqrt(xi^2 - 1). It leaves out the time step; a note says where the step is too long for it.
+        acosh(xi) and sqrt(xi^2 - 1). It leaves out gravity, see `restitution_at`, and the time step; a note says where
+        the step is too long for it.
         """
         return math.nan if math.isnan(self.xi) else rebound_restitution(self.xi)
+
+    def restitution_at(self, speed: float) -> float:
+        """Coefficient of restitution e at a speed of approach [m/s], with gravity [-]; 0 if the body stays.
+
+        Raises:
+            TypeError, ValueError: unless the speed is a positive number.
+        """
+        if math.isnan(self.xi):
+            return math.nan
+        share = self.mass / self.points / self._moved
+        return rebound_at(speed, self.xi, self.frequency, self.gravity, share)
 
     @property
     def _moved(self) -> float:
@@ -85,7 +97,13 @@ class InspectedContact:
 
 
 def inspect_contacts(
-    model: mujoco.MjModel | mujoco.MjSpec, *, candidates: bool = True, contacts: int = 1
+    model: mujoco.MjModel | mujoco.MjSpec,
+    *,
+    candidates: bool = True,
+    contacts: int | None = None,
+    keyframe: str | int | None = None,
+    qpos: Sequence[float] | Array | None = None,
+    load: float | None = None,
 ) -> tuple[InspectedContact, ...]:
     """Every contact that a model can make, in physical units.
 
@@ -93,26 +111,30 @@ def inspect_contacts(
         model: a compiled model or a specification; it is not changed.
         candidates: whether geoms without an explicit pair are listed too, where MuJoCo lets them collide: contype and
             conaffinity match, and their bodies are neither one, nor parent and child, nor excluded.
-        contacts: contact points that share the mass, 1 to 50, of geoms that can meet in several points: 4 for a box
-            that lands flat on a plane. 1 is a single point that bears the whole mass.
+        contacts: contact points that share the mass, 1 to 50, of geoms that can meet in several points. None counts
+            those in which the geoms meet in the pose. 1 is a single point that bears the whole mass.
+        keyframe: name or number of the keyframe in which the geoms meet.
+        qpos: positions of the joints in which they meet, shape (nq,). Without either it is `qpos0`.
+        load: static load of each contact point [N], positive. None shares the weight of what moves among the points.
 
     Returns:
         Explicit pairs first, then candidates. Pairs of which neither body can move are left out.
 
     Raises:
-        TypeError: unless it is a model, and `contacts` a whole number.
-        ValueError: if the specification does not compile, or `contacts` is outside its range.
+        TypeError: unless it is a model, and the others of their kind.
+        ValueError: if the specification does not compile, or a value is outside its range.
     """
     require_flag("candidates", candidates)
-    points = require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
-    made = compiled(model)
-    data = at_rest(made)
-    ends = zip(made.pair_geom1, made.pair_geom2, strict=True)
-    pairs = [GeomPair(made, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
+    points = None if contacts is None else require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
+    force = None if load is None else require_within("load", load, 1e-12, 1e15, "N")
+    whole = compiled(model)
+    pose = Pose(whole, keyframe, qpos)
+    ends = zip(whole.pair_geom1, whole.pair_geom2, strict=True)
+    pairs = [GeomPair(whole, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
     listed = {frozenset(pair.geoms) for pair in pairs}
     if candidates:
-        pairs += [pair for pair in _candidates(made) if frozenset(pair.geoms) not in listed]
-    return tuple(_inspected(pair, data, points) for pair in pairs if pair.inverse_weight > 0)
+        pairs += [pair for pair in _candidates(whole) if frozenset(pair.geoms) not in listed]
+    return tuple(_inspected(pair, pose, points, force) for pair in pairs if pair.inverse_weight > 0)
 
 
 def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
@@ -135,91 +157,78 @@ def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
                 yield pair
 
 
-def _inspected(pair: GeomPair, data: mujoco.MjData, contacts: int) -> InspectedContact:
-    mixed, option = Mixed.of(pair), pair.model.opt
-    if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_OVERRIDE):
-        solref, solimp = option.o_solref, option.o_solimp
-    else:
-        solref, solimp = mixed.solref, mixed.solimp
-    h = float(option.timestep)
-    d, full = (float(np.clip(value, *IMPEDANCE_RANGE)) for value in solimp[:2])
-    constant = d == full or solimp[2] <= mujoco.mjMINVAL
-    if constant:
-        d = 0.5 * (d + full)
-    spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, _is_safe(pair.model))
-    scale = d / ((1 - d) * pair.inverse_weight)
-    if mixed.condim > 1 and option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
-        scale *= mixed.pyramid(float(option.impratio))
-    k, c = scale * d * spring, scale * dashpot
-    staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    first, second = (name or f"[{geom}]" for name, geom in zip(pair.names, pair.geoms, strict=True))
-    found = InspectedContact(
-        first,
-        second,
+def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
+    row = Row.of(pair)
+    points = contacts if contacts is not None and pair.makes_several_points else None if contacts is None else 1
+    mu = row.mixed.friction[0] if row.mixed.condim > 1 else 0.0
+    met = meeting(pair, pose, contacts=points, friction=mu, k=row.k)
+    force = load if load is not None else max(weight_of(pair), 1e-9) / met.points
+    contact = InspectedContact(
+        *pair.labels,
         explicit=pair.explicit >= 0,
-        k=k,
-        c=c,
-        inertia=scale if staged else max(0.0, scale - 0.5 * h * c),
-        mass=pair.mass(data),
-        impedance=d,
-        points=contacts if pair.makes_several_points else 1,
+        k=row.k,
+        c=row.c,
+        inertia=row.inertia,
+        mass=met.felt.mass,
+        impedance=row.impedance,
+        points=met.points,
+        load=force,
+        k_loaded=row.loaded(force),
+        gravity=max(0.0, met.felt.gravity),
+        bodies=pair.body_names,
         notes=(),
     )
-    notes = (*_notes(pair, mixed, constant), *_step_notes(found, h), *model_spoilers(pair.model))
-    return replace(found, notes=(*notes, *_points_notes(pair, found.points)))
+    return replace(contact, notes=tuple(_notes(pair, pose, row, met, contact, contacts)))
 
 
-def _notes(pair: GeomPair, mixed: Mixed, constant: bool) -> Iterator[str]:
-    option = pair.model.opt
+def _notes(
+    pair: GeomPair, pose: Pose, row: Row, met: Meeting, found: InspectedContact, contacts: int | None
+) -> Iterator[str]:
     yield from duplicates(pair)
-    if not constant:
-        yield "the impedance grows with penetration, and stiffness and damping with it"
-    if mixed.condim > 1 and option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
-        yield "the cone is pyramidal: k and c hold for a head-on approach"
-    elif mixed.condim > 1 and max(mixed.friction[:2]) ** 2 > 0.02 * option.impratio:
-        yield f"impratio = {option.impratio:g} is small: sliding changes the normal force"
-    if mixed.margin != 0:
-        yield f"it begins at a distance of {mixed.margin:g} m"
-    if mixed.adhesion != 0:
-        yield f"it pulls with up to {mixed.adhesion:g} N"
+    yield from row.notes()
+    yield from _step_notes(found, float(pair.model.opt.timestep))
+    yield from model_spoilers(pair.model)
+    if pair.is_uneven:
+        yield uneven(found.points)
+    elif contacts == 1 and pair.makes_several_points:
+        yield (
+            "it can have several points: xi and e are those of a single one that bears the whole mass; contacts=None "
+            "counts them"
+        )
+    if not found.mass < math.inf:
+        yield "mass is infinite: the geoms cannot approach each other along their normal, and there is no xi and no e"
+        return
+    total = tree_mass(pair)
+    if max(found.mass, 1 / pair.inverse_weight) > IMMOVABLE * total:
+        yield (
+            f"k, c and mass belong to a body that can hardly move this way: 1/W is {1 / pair.inverse_weight:.2g} kg "
+            f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
+        )
+        return
+    if found.k > 0:
+        yield from holding(pair.model, pose.data, met.felt, found.k * met.points, found.xi, found.mass)
+    if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
+        mu = row.mixed.friction[0] if row.mixed.condim > 1 else 0.0
+        foreign = elsewhere(pair, pose, met, contacts, mu)
+        if foreign:
+            yield foreign
 
 
-def _points_notes(pair: GeomPair, points: int) -> Iterator[str]:
-    if pair.makes_several_points:
-        shared = f"{points} that share the mass" if points > 1 else "a single one that bears the whole mass"
-        yield f"it can have several points: xi and e are those of {shared}; contacts says how many do, 4 for a flat box"
-
-
-def _step_notes(found: InspectedContact, h: float) -> Iterator[str]:
+def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:
     """Where the step is too long for the formula of e.
 
     No row of `contact_for` has an omega h above 1, because its inertia is h^2 k where the step resolves nothing.
     """
-    if not found.mass < math.inf:
+    if not contact.mass < math.inf:
         return
-    moved = found.mass / found.points + found.inertia
-    longest = resolving_step(found.k, found.c, moved)
-    if found.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
-        longest = min(longest, moved / found.c)
+    moved = contact.mass / contact.points + contact.inertia
+    longest = resolving_step(contact.k, contact.c, moved)
+    if contact.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
+        longest = min(longest, moved / contact.c)
     if h <= longest:
         return
-    gain = ", and it can gain energy" if found.frequency * h > UNSOUND else ""
+    gain = ", and it can gain energy" if contact.frequency * h > UNSOUND else ""
     yield (
-        f"timestep = {h:g} s is long for it, omega h = {found.frequency * h:.2g}: e leaves out the step, and the "
+        f"timestep = {h:g} s is long for it, omega h = {contact.frequency * h:.2g}: e leaves out the step, and the "
         f"rebound can be another{gain}; {rounded_down(longest)} s resolves it"
     )
-
-
-def _reference(first: float, second: float, full: float, h: float, safe: bool) -> tuple[float, float]:
-    """K [1/s2] and B [1/s] of a row, with the impedance `full` at the full width."""
-    if (first > 0) != (second > 0):
-        first, second = 0.02, 1.0  # MuJoCo takes its default in place of a mixture of the two formats
-    if first <= 0:
-        return -first / full**2, -second / full
-    timeconst = max(first, 2 * h) if safe else first
-    return 1 / max(mujoco.mjMINVAL, (full * timeconst * second) ** 2), 2 / max(mujoco.mjMINVAL, full * timeconst)
-
-
-def _is_safe(model: mujoco.MjModel) -> bool:
-    """Whether MuJoCo keeps time constants above two steps."""
-    return not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

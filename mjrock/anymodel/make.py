@@ -5,18 +5,22 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import mujoco
-import numpy as np
 
 from ..engine.contact import WITHIN, inertia_of, longest_step, pair_values, row
 from ..method import METHOD
+from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
 from ..quantities import Array, require_whole, require_within, shown, spelt
 from .contact import PairContact
 from .geoms import GeomPair, compiled
+from .holding import holding
+from .meeting import Meeting, Pose, elsewhere, meeting
 from .mixing import Mixed
-from .notes import UNSOUND, resolving_step, rounded_down, spoilers
+from .notes import RESOLVED, UNSOUND, resolving_step, rounded_down, spoilers, stiffest, weight_spoilers
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -31,7 +35,7 @@ def contact_for(
     geom1: str | int,
     geom2: str | int,
     *,
-    k: float,
+    k: float | None = None,
     c: float | None = None,
     restitution: float | None = None,
     xi: float | None = None,
@@ -39,31 +43,39 @@ def contact_for(
     mass: float | None = None,
     at: Sequence[float] | Array | None = None,
     contacts: int | None = None,
+    keyframe: str | int | None = None,
+    qpos: Sequence[float] | Array | None = None,
+    speed: float | None = None,
     timestep: float | None = None,
     newmark_beta: float = 0.25,
 ) -> PairContact:
     """A contact of two geoms with a stiffness in N/m and a restitution, a damping ratio or a dashpot.
 
     The contact is a spring and dashpot that never pull: f = max(0, k x + c v) at each contact point. The loss is given
-    once, as `restitution`, `xi` or `c`. The first two refer to an effective mass. By default it is that of an approach
-    of the two centres of mass along the normal, 1 / (1/m1 + 1/m2) for two free bodies, with the joints as they are at
-    `qpos0`, shared equally by the `contacts`. It does not hold for a blow off the centre, such as on one corner of a
-    box: give that point as `at`, or the `mass` that is felt there.
+    once, as `restitution`, `xi` or `c`. The first two refer to an effective mass, that of the contact points in a pose
+    of the model. By default the pose is `qpos0`, and the points are found by moving the geoms together along their
+    normal. The points share the mass. What moves with them counts: joints, armature, equality constraints, and the
+    friction that keeps a point from slipping.
 
     Args:
-        model: a compiled model or a specification; it is not changed. See `PairContact.apply`.
+        model: a compiled model or a specification; it is not changed. See `PairContact.apply`. A specification is
+            compiled at each call; `contacts_for` compiles it once for many contacts.
         geom1, geom2: names or numbers of the geoms. The name of a body stands for its geom, if it has just one.
-        k: stiffness of each contact point [N/m], positive. A box that is to have 1e5 N/m on four corners has k=2.5e4
-            and contacts=4.
+        k: stiffness of each contact point [N/m], positive. A box that is to have 1e5 N/m on four corners has k=2.5e4.
+            None is the stiffest that the time step resolves.
         c: dashpot of each contact point [N s/m], not negative.
         restitution: e of an approach along the normal, within [0, 1] [-]. e below 0.001 is taken as 0.001, because an
-            infinite dashpot would be needed for 0.
+            infinite dashpot would be needed for 0. Without `speed` it leaves out gravity.
         xi: damping ratio c / (2 sqrt(k m)) [-], not negative.
         friction: coefficient of sliding friction [-]; 0 makes the contact frictionless. None keeps what the model has.
         mass: effective mass of the whole contact [kg], positive. None takes it from the model.
-        at: contact point that meets first, in the world's frame at `qpos0` [m], shape (3,). None takes the centres of
-            mass. It is not given together with `mass`.
-        contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None is 1.
+        at: contact point that meets first, in the world's frame and in the pose [m], shape (3,). None is the middle of
+            the points that meet. It is not given together with `mass`.
+        contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None counts
+            them. Another number than is counted refers to the centres of mass, unless `at` is given.
+        keyframe: name or number of the keyframe in which the geoms meet.
+        qpos: positions of the joints in which they meet, shape (nq,). It is not given together with `keyframe`.
+        speed: speed of the approach for which `restitution` holds with gravity [m/s], positive.
         timestep: MuJoCo's step [s], positive. None takes the model's.
         newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is average acceleration.
 
@@ -77,21 +89,55 @@ def contact_for(
             and stiffness or damping that MuJoCo cannot represent at this step.
 
     Warns:
-        UserWarning: of what in the model spoils the contact and is not mended by `apply`, and of a long step.
+        UserWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what else
+            holds the bodies, and of a keyframe in which the contact stops another mass.
     """
-    made = compiled(model)
-    pair = GeomPair.named(made, geom1, geom2)
-    k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
-    h = require_within("timestep", made.opt.timestep if timestep is None else timestep, 1e-12, 1e3, "s")
-    beta = require_within("newmark_beta", newmark_beta, 0.0, 1e6)
-    points = 1 if contacts is None else require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
-    share = _mass(pair, mass, at) / points
-    c = _dashpot(k, share, c, restitution, xi)
-    staged = made.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
+    whole = compiled(model)
+    pair = GeomPair.named(whole, geom1, geom2)
+    asked = Asked(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
+    contact = contact_of(pair, Pose(whole, keyframe, qpos), asked)
+    for sentence in (*spoilers(pair, contact), *contact.remarks):
+        warnings.warn(sentence, stacklevel=2)
+    return contact
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a contact: the arguments of `contact_for` by name, as they were given."""
+
+    k: Any = None
+    c: Any = None
+    restitution: Any = None
+    xi: Any = None
+    friction: Any = None
+    mass: Any = None
+    at: Any = None
+    contacts: Any = None
+    speed: Any = None
+    timestep: Any = None
+    newmark_beta: Any = 0.25
+
+
+def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
+    """The contact of a pair in a pose; it says in `remarks` what in this pose keeps it from being what was asked."""
+    option = pair.model.opt
+    k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
+    h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
+    beta = require_within("newmark_beta", asked.newmark_beta, 0.0, 1e6)
+    points = None if asked.contacts is None else require_whole("contacts", asked.contacts, 1, mujoco.mjMAXCONPAIR)
+    speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
+    if asked.mass is not None and asked.at is not None:
+        raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
+    grip = _friction(pair, asked.friction)
+    rate = None if k is not None else RESOLVED / h
+    met = meeting(pair, pose, contacts=points, at=asked.at, friction=grip.sliding, frequency=rate, k=k)
+    share = _mass(pair, pose, asked.mass, met)
+    if k is None:
+        k = _stiffest(pair, asked, h, share, met.felt.gravity)
+    c = _dashpot(k, share, asked, met.felt.gravity)
+    staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
     dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, beta, staged)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
-    coefficients, condim = _friction(pair, friction)
-    rate = min(math.sqrt(k / share), 1 / h)  # slip stops in 1 / omega; see the page on contacts for why not sooner
     contact = PairContact(
         *pair.names,
         ids=pair.geoms,
@@ -100,49 +146,87 @@ def contact_for(
         mass=share,
         inverse_weight=pair.inverse_weight,
         timestep=h,
-        integrator=mujoco.mjtIntegrator(made.opt.integrator).name.removeprefix("mjINT_"),
-        contacts=contacts if contacts is None else points,
+        integrator=mujoco.mjtIntegrator(option.integrator).name.removeprefix("mjINT_"),
+        contacts=met.points,
         solref=(stiffness, damping),
         solimp=(d, d, 0.001, 0.5, 2.0),
-        solreffriction=(-1e-30, -d * rate) if condim > 1 else (0.0, 0.0),
-        friction=coefficients,
-        condim=condim,
-        impratio=max(1.0, HOLD / rate * share / inertia) if condim > 1 else 1.0,
+        **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
+        speed=speed,
+        gravity=max(0.0, met.felt.gravity),
+        pose=pose.label,
+        remarks=_remarks(pair, pose, asked, met, k, c, grip.sliding),
     )
-    for sentence in spoilers(pair, contact):
-        warnings.warn(sentence, stacklevel=2)
-    return contact
+    weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
+    return replace(contact, remarks=(*contact.remarks, *weighed))
 
 
-def _mass(pair: GeomPair, mass: float | None, at: object) -> float:
-    """The effective mass of the whole contact [kg]."""
+def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:
+    """The effective mass of a contact point [kg]."""
     if mass is not None:
-        if at is not None:
-            raise ValueError(f"mass = {shown(mass)} and at = {shown(at)} are both given; give one of them")
-        return require_within("mass", mass, 1e-30, 1e30, "kg")
-    found = pair.mass(at=at)
-    if not found < np.inf:
+        return require_within("mass", mass, 1e-30, 1e30, "kg") / met.points
+    if not met.felt.mass < math.inf:
         raise ValueError(
-            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at qpos0, so that the model "
-            "gives no mass for the restitution; give mass"
+            f"geom1 and geom2 = {pair.names} cannot approach each other along their normal at {pose.label}, so that "
+            "the model gives no mass for the restitution; give mass"
         )
-    return found
+    return met.share
 
 
-def _dashpot(k: float, mass: float, c: float | None, restitution: float | None, xi: float | None) -> float:
-    """The dashpot of a contact point [N s/m], from the one of the three that is given."""
-    given = {name: value for name, value in (("c", c), ("restitution", restitution), ("xi", xi)) if value is not None}
+def _damping_ratio(asked: Asked, omega: float, gravity: float) -> float:
+    """The damping ratio [-] of a frequency, from the restitution or the damping ratio that is given."""
+    if asked.restitution is None:
+        return require_within("damping ratio xi", asked.xi, 0.0, 1e6)
+    e = max(require_within("restitution", asked.restitution, 0.0, 1.0), LEAST_RESTITUTION)
+    if asked.speed is None or gravity <= 0:
+        return rebound_damping(e)
+    pull = gravity / (omega * float(asked.speed))
+    if pull > MOST_PULL:
+        slowest = gravity / (omega * MOST_PULL)
+        raise ValueError(
+            f"speed = {float(asked.speed):g} m/s is too slow to rebound; the valid range is from {slowest:.3g} m/s on"
+        )
+    return falling_damping(e, pull)
+
+
+def _require_one_loss(asked: Asked) -> None:
+    losses = {"c": asked.c, "restitution": asked.restitution, "xi": asked.xi}
+    given = {name: value for name, value in losses.items() if value is not None}
     if len(given) != 1:
-        found = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
-        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {found}")
-    if c is not None:
-        return require_within("damping c", c, 0.0, 1e30, "N s/m")
-    if restitution is not None:
-        e = require_within("restitution", restitution, 0.0, 1.0)
-        ratio = rebound_damping(max(e, LEAST_RESTITUTION))
-    else:
-        ratio = require_within("damping ratio xi", xi, 0.0, 1e6)
-    return 2 * ratio * math.sqrt(k * mass)
+        listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+        raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
+
+
+def _dashpot(k: float, mass: float, asked: Asked, gravity: float) -> float:
+    """The dashpot of a contact point [N s/m], from the one of the three that is given."""
+    _require_one_loss(asked)
+    if asked.c is not None:
+        return require_within("damping c", asked.c, 0.0, 1e30, "N s/m")
+    return 2 * _damping_ratio(asked, math.sqrt(k / mass), gravity) * math.sqrt(k * mass)
+
+
+def _stiffest(pair: GeomPair, asked: Asked, h: float, mass: float, gravity: float) -> float:
+    """The stiffest contact that the step resolves, rounded down [N/m]."""
+    _require_one_loss(asked)
+    if asked.c is not None:
+        raise ValueError(f"k = None takes restitution or xi, and c = {spelt(asked.c)} is given; give k")
+    omega = RESOLVED / h
+    for _ in range(20):  # with gravity the damping depends on the frequency, a little
+        k = stiffest(h, _damping_ratio(asked, omega, gravity), mass)
+        omega = math.sqrt(k / mass)
+    most = 0.4 * inertia_of(WITHIN[1], pair.inverse_weight) / h**2
+    return float(rounded_down(min(0.999 * k, most), 3))
+
+
+def _remarks(pair: GeomPair, pose: Pose, asked: Asked, met: Meeting, k: float, c: float, mu: float) -> tuple[str, ...]:
+    """What in the pose keeps a contact from being what was asked, one sentence each."""
+    if asked.mass is not None or not met.felt.mass < math.inf:
+        return ()
+    xi = c / (2 * math.sqrt(k * met.share))
+    found = list(holding(pair.model, pose.data, met.felt, k * met.points, xi, met.felt.mass))
+    if asked.c is None and asked.at is None:
+        contacts = None if asked.contacts is None else met.points
+        found += filter(None, [elsewhere(pair, pose, met, contacts, mu)])
+    return tuple(found)
 
 
 def _row(
@@ -159,7 +243,8 @@ def _row(
         resolving = min(longest, resolving_step(k, c, mass))
         raise ValueError(
             f"stiffness k = {k:g} N/m at timestep = {h:g} s is beyond what MuJoCo represents; "
-            f"the longest step is {rounded_down(longest, 3)} s, and {rounded_down(resolving)} s resolves the contact"
+            f"the longest step is {rounded_down(longest, 3)} s, and {rounded_down(resolving)} s resolves the contact; "
+            "k = None takes the stiffest contact that this step resolves"
         )
     sound = h * math.sqrt(k / mass) <= UNSOUND
     beta, ringing = (newmark_beta, 0.0) if sound else (max(newmark_beta, 0.5), 1.0)
@@ -174,11 +259,38 @@ def _row(
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
 
 
-def _friction(pair: GeomPair, friction: float | None) -> tuple[tuple[float, float, float, float, float], int]:
-    """The five coefficients of friction, and condim."""
+class Grip(NamedTuple):
+    """What a `PairContact` has for friction."""
+
+    friction: tuple[float, float, float, float, float]
+    condim: int
+    solreffriction: tuple[float, float] = (0.0, 0.0)
+    impratio: float = 1.0
+
+    @property
+    def sliding(self) -> float:
+        """Coefficient of sliding friction [-]."""
+        return self.friction[0] if self.condim > 1 else 0.0
+
+    def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
+        """The same with what stops slip.
+
+        Args:
+            rate: with which friction stops slip, omega at most [1/s]; the page on contacts says why not sooner.
+            impedance, inertia: of the normal row [-, kg].
+            mass: of the contact point [kg].
+        """
+        if self.condim == 1:
+            return self
+        impratio = max(1.0, HOLD / rate * mass / inertia)
+        return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
+
+
+def _friction(pair: GeomPair, friction: float | None) -> Grip:
+    """Friction of the model, or the coefficient that is given."""
     if friction is None:
         mixed = Mixed.of(pair)
         first, second, torsional, rolling, last = mixed.friction
-        return (first, second, torsional, rolling, last), mixed.condim
+        return Grip((first, second, torsional, rolling, last), mixed.condim)
     sliding = require_within("friction", friction, 0.0, 1e6)
-    return (sliding, sliding, *SPINNING), 3 if sliding > 0 else 1
+    return Grip((sliding, sliding, *SPINNING), 3 if sliding > 0 else 1)

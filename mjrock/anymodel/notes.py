@@ -28,6 +28,11 @@ GAINS = 0.5
 """omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
 with 1.09 at 0.9 and with 2.4 at 1.9."""
 
+NOTHING, SMALL = 0.03, 0.2999
+"""Restitutions between which gravity is warned of where no speed is given [-]."""
+MOST_SPEED = 1e4
+"""Largest speed of approach that is looked at [m/s]."""
+
 ENABLED = {
     mujoco.mjtEnableBit.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of "
     "the solref and solimp of every contact",
@@ -64,12 +69,17 @@ def spoilers(pair: GeomPair, contact: ContactNumbers) -> Iterator[str]:
             yield f"the pair has a margin of {mixed.margin:g} m, at which the spring begins; set it to 0"
         if mixed.adhesion != 0:
             yield f"the pair has an adhesion of {mixed.adhesion:g} N, with which the contact pulls"
-    if contact.contacts is None and pair.makes_several_points:
-        yield (
-            "these geoms can meet in several contact points, each with the stiffness k and here with the whole mass; "
-            "give contacts, the number of points that share it (1 keeps the whole mass)"
-        )
+    if pair.is_uneven:
+        yield uneven(contact.contacts)
     yield from step_spoilers(contact)
+
+
+def uneven(points: int) -> str:
+    """What uneven ground does."""
+    return (
+        "one of the geoms is uneven, and the number of contact points changes from place to place; the mass is that "
+        f"of {points}"
+    )
 
 
 def duplicates(pair: GeomPair) -> Iterator[str]:
@@ -97,6 +107,28 @@ def resolving_step(k: float, c: float, mass: float) -> float:
     return min(RESOLVED / omega, SCATTER * math.sqrt(12) * mass / max(e * c, 1e-300))
 
 
+def stiffest(h: float, xi: float, mass: float) -> float:
+    """The stiffest contact of a mass and a damping ratio that a step resolves [N/m]; see `resolving_step`."""
+    e = rebound_restitution(xi)
+    omega = min(RESOLVED, SCATTER * math.sqrt(12) / max(2 * e * xi, 1e-300)) / h
+    return mass * omega**2
+
+
+def weight_spoilers(contact: ContactNumbers) -> Iterator[str]:
+    """What the weight of the bodies does to a small restitution."""
+    e = rebound_restitution(contact.xi)
+    if contact.speed is not None or contact.gravity <= 0 or not NOTHING < e < SMALL:
+        return
+    slow, fast = NOTHING * contact.gravity, MOST_SPEED
+    for _ in range(60):
+        middle = math.sqrt(slow * fast)
+        slow, fast = (slow, middle) if contact.restitution_at(middle) > 0.5 * e else (middle, fast)
+    yield (
+        f"gravity lowers so small a restitution: e = {e:.3g} becomes {contact.restitution_at(1.0):.2g} at 1 m/s, and "
+        f"less than half of it below {slow:.2g} m/s; give speed, that of the approach"
+    )
+
+
 def rounded_down(value: float, digits: int = 2) -> str:
     """A positive number as text with so many digits, never above what it is."""
     return f"{float(Context(prec=digits, rounding=ROUND_DOWN).create_decimal_from_float(value)):g}"
@@ -106,15 +138,16 @@ def step_spoilers(contact: ContactNumbers) -> Iterator[str]:
     """What a long step does to the restitution."""
     h, omega = contact.timestep, contact.frequency
     longest = resolving_step(contact.k, contact.c, contact.mass)
+    softer = f"or k = {rounded_down(0.999 * stiffest(h, contact.xi, contact.mass))} N/m at this step"
     if omega * h > UNSOUND:
         yield (
             f"timestep = {h:g} s does not resolve a contact of omega = {omega:.4g} rad/s: it rebounds with less than "
-            f"0.6 whatever is asked; {rounded_down(longest)} s resolves it"
+            f"0.6 whatever is asked; {rounded_down(longest)} s resolves it, {softer}"
         )
     elif h > longest:
         yield (
             f"timestep = {h:g} s is long for a contact of omega = {omega:.4g} rad/s and xi = {contact.xi:.3g}: the "
-            f"restitution depends on where in a step the geoms touch; {rounded_down(longest)} s resolves it"
+            f"restitution depends on where in a step the geoms touch; {rounded_down(longest)} s resolves it, {softer}"
         )
 
 

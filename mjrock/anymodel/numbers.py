@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..problem.damping.falling import MOST_PULL, falling_rebound
 from ..problem.damping.rebound import rebound_restitution
+from ..quantities import require_within
 
 
 @dataclass(frozen=True)
@@ -19,9 +21,13 @@ class ContactNumbers:
         mass: effective mass that each contact point stops [kg].
         inverse_weight: W of the pair [1/kg], the sum of `body_invweight0` of both bodies.
         timestep, integrator: step [s] and integrator of MuJoCo for which the numbers hold.
-        contacts: contact points that share the mass, or None where it was not said.
+        contacts: contact points that share the mass.
         solref, solimp, solreffriction, friction, condim: what the `<pair>` carries.
         impratio: smallest impratio of the model with which the friction holds [-]; 1 without friction.
+        speed: speed of approach for which the contact was made [m/s], or None where it leaves out gravity.
+        gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
+        pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
+        remarks: what in this pose keeps the contact from being what was asked, one sentence each.
     """
 
     geom1: str
@@ -33,13 +39,17 @@ class ContactNumbers:
     inverse_weight: float
     timestep: float
     integrator: str
-    contacts: int | None
+    contacts: int
     solref: tuple[float, float]
     solimp: tuple[float, float, float, float, float]
     solreffriction: tuple[float, float]
     friction: tuple[float, float, float, float, float]
     condim: int
     impratio: float
+    speed: float | None = None
+    gravity: float = 0.0
+    pose: str = "qpos0"
+    remarks: tuple[str, ...] = ()
 
     @property
     def frequency(self) -> float:
@@ -53,5 +63,35 @@ class ContactNumbers:
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution e of an approach along the normal, see `rebound_restitution` [-]."""
-        return rebound_restitution(self.xi)
+        """Coefficient of restitution e of an approach along the normal [-].
+
+        It is that of the speed for which the contact was made, with gravity. Without one it leaves out gravity, see
+        `rebound_restitution`.
+        """
+        return rebound_restitution(self.xi) if self.speed is None else self.restitution_at(self.speed)
+
+    def restitution_at(self, speed: float) -> float:
+        """Coefficient of restitution e at a speed of approach [m/s], with gravity [-]; 0 if the body stays.
+
+        Raises:
+            TypeError, ValueError: unless the speed is a positive number.
+        """
+        return rebound_at(speed, self.xi, self.frequency, self.gravity)
+
+
+def rebound_at(speed: float, xi: float, frequency: float, gravity: float, share: float = 1.0) -> float:
+    """Coefficient of restitution at a speed, see `falling_rebound` [-].
+
+    Args:
+        speed: speed of approach [m/s], 1e-9 to 1e9.
+        xi, frequency: damping ratio [-] and circular frequency [rad/s].
+        gravity: acceleration that brings the geoms together [m/s2]; a negative one is taken as none.
+        share: part of what moves that has weight [-].
+    """
+    speed = require_within("speed", speed, 1e-9, 1e9, "m/s")
+    if frequency == 0 or xi == math.inf or xi > 1e6:
+        return rebound_restitution(xi)
+    pull = max(0.0, gravity) / (frequency * speed)
+    if pull == 0:
+        return rebound_restitution(xi)
+    return 0.0 if pull > MOST_PULL else falling_rebound(xi, pull, share).restitution

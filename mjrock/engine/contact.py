@@ -6,7 +6,7 @@ With a constant impedance d, a contact row of MuJoCo's Euler step obeys
 
 with r the gap, v and a its rates, and W the inverse weight of the pair, the sum of `body_invweight0` of its two bodies.
 In the direct format solref = (-(1 - d) W k, -(1 - d) W c) and solimp = (d, d, ...). The Euler step is a leapfrog: v
-lies half a step before r, and v+ = v + h a. The inertia m_i of a row is therefore not an error but a choice. With
+lies half a step before r, and v+ = v + h a. So mjrock chooses the inertia m_i of a row. With
 
     m_i = h c / 2 + beta h^2 k
 
@@ -18,11 +18,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any, overload
 
 import numpy as np
 
 from ..compiled import jitable
-from ..quantities import Array, require_array, require_real, require_within, shown
+from ..quantities import Array, require_array, require_real, require_reals, require_within, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
@@ -78,13 +79,7 @@ def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) ->
 
 @jitable
 def row(
-    k: float,
-    c: float,
-    timestep: float,
-    inverse_weight: float,
-    newmark_beta: float,
-    ringing: float,
-    overdamped: float,
+    k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float, overdamped: float
 ) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
 
@@ -128,10 +123,40 @@ def longest_step(k: float, inverse_weight: float) -> float:
     return math.sqrt(0.4 * inertia_of(WITHIN[1], inverse_weight) / k)
 
 
+@dataclass(frozen=True)
+class ManyContactParameters:
+    """What MuJoCo's `<pair>`s carry for arrays of contacts, such as one for each environment.
+
+    Args:
+        solref: (-stiffness, -damping) [1/s2, 1/s], shape (..., 2).
+        solimp: (d0, dwidth, width, midpoint, power), shape (..., 5).
+        inertia: m_i, the inertia of each contact row [kg].
+    """
+
+    solref: Array
+    solimp: Array
+    inertia: Array
+
+
+@overload
 def contact_parameters(
     k: float, c: float, *, timestep: float, inverse_weight: float, newmark_beta: float = 0.25
-) -> ContactParameters:
+) -> ContactParameters: ...
+
+
+@overload
+def contact_parameters(
+    k: Array, c: Array | float, *, timestep: Array | float, inverse_weight: Array | float, newmark_beta: float = 0.25
+) -> ManyContactParameters: ...
+
+
+def contact_parameters(
+    k: Any, c: Any, *, timestep: Any, inverse_weight: Any, newmark_beta: Any = 0.25
+) -> ContactParameters | ManyContactParameters:
     """MuJoCo's parameters for a unilateral spring and dashpot, integrated as Newmark's method does.
+
+    Arrays give arrays: stiffness that differs from environment to environment, or the contacts of another engine that
+    hands N/m and N s/m to MuJoCo. They have shapes that NumPy broadcasts.
 
     Args:
         k: stiffness [N/m], positive.
@@ -143,6 +168,9 @@ def contact_parameters(
     Raises:
         ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
     """
+    given = {"stiffness k": k, "damping c": c, "timestep": timestep, "inverse_weight": inverse_weight}
+    if any(isinstance(value, list | tuple) or np.ndim(value) > 0 for value in given.values()):
+        return _many_parameters(given, newmark_beta)
     k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
     c = require_within("damping c", c, 0.0, 1e30, "N s/m")
     timestep = require_within("timestep", timestep, 1e-12, 1e3, "s")
@@ -158,6 +186,23 @@ def contact_parameters(
             f"range {low:g} to {high:g}, where MuJoCo would clamp it and change the stiffness; {remedy}"
         )
     return ContactParameters(solref=(stiffness, damping), solimp=(d, d, 0.001, 0.5, 2.0), inertia=inertia)
+
+
+def _many_parameters(given: dict[str, Any], newmark_beta: Any) -> ManyContactParameters:
+    """The parameters of arrays of contacts, one by one."""
+    arrays = [require_reals(name, value, "numbers or arrays of numbers") for name, value in given.items()]
+    try:
+        together = np.broadcast_arrays(*arrays)
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(given, arrays, strict=True))
+        raise ValueError(f"the shapes of {shapes} do not go together") from None
+    solref, solimp = np.empty((*together[0].shape, 2)), np.empty((*together[0].shape, 5))
+    inertia = np.empty(together[0].shape)
+    for i in np.ndindex(inertia.shape):
+        k, c, h, weight = (float(array[i]) for array in together)
+        made = contact_parameters(k, c, timestep=h, inverse_weight=weight, newmark_beta=newmark_beta)
+        solref[i], solimp[i], inertia[i] = made.solref, made.solimp, made.inertia
+    return ManyContactParameters(solref, solimp, inertia)
 
 
 def contact_stiffness(

@@ -31,10 +31,10 @@ from .rows import Step, impratio_of, row_of
 
 def ground_work(scene: Scene, course: Course, steps: Steps) -> Array:
     """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
-    work, windows = np.zeros(len(steps.t)), steps.windows
-    for axis, shaking in enumerate(course.ground):
+    work, windows, freedom = np.zeros(len(steps.t)), steps.windows, scene.places.freedom
+    for axis, shaking in zip((0, freedom.translations - 1), course.ground, strict=True):
         if len(shaking.accel):
-            momentum = windows.mean[:, axis::3] @ scene.mass
+            momentum = windows.mean[:, axis :: freedom.nv] @ scene.mass
             _ground_work(shaking, steps.t, steps.h, windows.width, momentum, work)
     return work
 
@@ -104,7 +104,7 @@ def lost_by_breaking(scene: Scene, broken: Integers, steps: int) -> dict[str, Ar
 
 
 def given_back(scene: Scene, steps: Steps) -> Array:
-    """Energy that ties and constant forces regain after each step but the last [J], shape (steps - 1,).
+    """Energy that ties and constant forces regain after each step of the plane but the last [J], shape (steps - 1,).
 
     An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken on the
     way is then there again. It would else add up under a thrust that a resting wall bears for long.

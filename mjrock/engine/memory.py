@@ -36,8 +36,9 @@ class Memory(NamedTuple):
         accelerate: `mj_forwardSkip`, which takes them, the stage that is already done, and 1.
         model, data: addresses.
         options: timestep [s] and impratio [-].
-        pose, velocity, acceleration, applied: of all joints, shape (3 n,).
-        guess: the acceleration that the engine starts its search from, shape (3 n,).
+        pose: of all joints, shape (n nq,).
+        velocity, acceleration, applied: of all joints, shape (n nv,).
+        guess: the acceleration that the engine starts its search from, shape (n nv,).
         rows: of all pairs.
         dimension: of all pairs, 1 without friction and 3 with it, shape (m,).
         plastic: state of the tendons that yield: between which lengths each is slack [m], shape (2 yielding,).
@@ -103,11 +104,11 @@ def functions() -> tuple[Any, ...]:
     if version != mujoco.mj_versionString():
         raise RuntimeError(f"{path} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
     two = (ctypes.c_void_p, ctypes.c_void_p)
-    made = library.mj_step, library.mj_forward, library.mj_step2, library.mj_forwardSkip
-    for function in made:
+    entries = library.mj_step, library.mj_forward, library.mj_step2, library.mj_forwardSkip
+    for function in entries:
         function.argtypes, function.restype = two, None
     library.mj_forwardSkip.argtypes = (*two, ctypes.c_int, ctypes.c_int)
-    return made
+    return entries
 
 
 def library_file(folder: Path) -> Path:
@@ -117,13 +118,13 @@ def library_file(folder: Path) -> Path:
         RuntimeError: if there is none, or more than one.
     """
     pattern = LIBRARIES.get(sys.platform, LIBRARIES["linux"])
-    found = sorted(folder.glob(pattern))
-    if len(found) != 1:
+    files = sorted(folder.glob(pattern))
+    if len(files) != 1:
         raise RuntimeError(
-            f"{len(found)} files match {pattern} in {folder}, where the library of MuJoCo {mujoco.__version__} is "
+            f"{len(files)} files match {pattern} in {folder}, where the library of MuJoCo {mujoco.__version__} is "
             "expected; reinstall mujoco"
         )
-    return found[0]
+    return files[0]
 
 
 @cache
@@ -159,10 +160,10 @@ def _type(described: Any) -> Any:
     """The type of ctypes for a number or an array of MuJoCo's description."""
     if not hasattr(described, "extents"):
         return TYPES[described.name]
-    made = _type(described.inner_type)
+    kind = _type(described.inner_type)
     for extent in reversed(described.extents):
-        made *= extent
-    return made
+        kind *= extent
+    return kind
 
 
 def _options(model: mujoco.MjModel) -> Array:

@@ -64,12 +64,7 @@ SPARSE_FROM = 4
 stack takes half the time with sparse rows, one of four blocks as much."""
 
 
-def scene_mjcf(
-    scene: Scene,
-    timestep: float,
-    newmark_beta: float = 0.25,
-    keyframe: Keyframe | None = None,
-) -> str:
+def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyframe: Keyframe | None = None) -> str:
     """The model of a scene as MJCF text. The same arguments give the same bytes.
 
     Names: each body and the geom that shows it; each contact point, its pair and its geom by group and number, such as
@@ -239,7 +234,7 @@ def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
     if nz == 1:
         yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
         return
-    met = np.array([own == name for own in scene.face_names])
+    met = np.array([face == name for face in scene.face_names])
     along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
     places = along @ np.array([nz, -nx])
     half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())

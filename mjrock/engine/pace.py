@@ -130,12 +130,6 @@ def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
 
     It also ends where a tie that can yield is longest. A tie yields up to its greatest length, which a long step would
     pass by.
-
-    Args:
-        pace: the limits.
-        ties: the ties.
-        openings: of the contacts and the ties.
-        h: the step [s].
     """
     first = len(openings.value) - len(ties.k)
     for i in range(len(ties.k)):

@@ -1,4 +1,4 @@
-"""Reading: what a motion says of a wall, or of the joints of masonry. All else of a run is the same for both."""
+"""Reading: the peaks of a wall, or the openings and falls of masonry. All else of a run is the same for both."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MARKS = 1000
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """What a motion says.
+    """What is read from a motion.
 
     Args:
         outcome, message: how it ended.
@@ -58,7 +58,7 @@ class Asked(Protocol):
         """What was asked."""
 
     def read(self, scene: Scene, course: Course, steps: Steps, energy: Array) -> Reading:
-        """What a motion says; `energy` is that at the steps above the scene at rest [J]."""
+        """Read a motion; `energy` is that at the steps above the scene at rest [J]."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,10 @@ class AskedMasonry:
 
 
 def left_behind(scene: Scene, course: Course, steps: Steps) -> dict[str, float]:
-    """When a run ended that a block left by going too far or turning over [s], by the name of each that did."""
+    """When a run ended that a block left by going too far or turning over [s], by the name of each that did.
+
+    Distances are those of a plane, shifts and one rotation.
+    """
     end = float(steps.t[-1])
     if end >= course.duration - 0.5 * float(steps.h[-1]):
         return {}

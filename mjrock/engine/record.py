@@ -114,7 +114,7 @@ class Steps:
         return velocity
 
     def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, State]:
-        """Samples of a motion: times [s], poses and velocities of shape (n, bodies, 3), and the state at the end.
+        """Samples of a motion in the plane: times [s], poses and velocities (n, bodies, 3), and the state at the end.
 
         Args:
             duration: up to when samples that are interpolated reach [s].
@@ -150,8 +150,9 @@ class Windows(NamedTuple):
     """The windows of the leapfrog, in which the force of a step acts, from half a step before a pose to half a step
     after it.
 
-    The first starts at the release: before it no force has acted. Over a window a constant force does the work that is
-    its product with the mean velocity and the width, without error.
+    They are those of the plane, in which a pose moves by its velocities. The first starts at the release: before it no
+    force has acted. Over a window a constant force does the work that is its product with the mean velocity and the
+    width, without error.
 
     Args:
         t: start of each window [s], shape (steps,).

@@ -83,11 +83,11 @@ def row_of(law: Law, inertia: RowInertia, i: int, step: Step) -> tuple[float, fl
 
 
 @jitable
-def impratio_of(inertia: RowInertia, i: int, own: float, h: float) -> float:
+def impratio_of(inertia: RowInertia, i: int, normal: float, h: float) -> float:
     """Inertia that the friction row of contact i should have in a step h, over that of its normal row [-]."""
     if inertia.friction[i] == 0:
         return math.inf
-    return max(inertia.growth * h, 1.0) * inertia.friction[i] / own
+    return max(inertia.growth * h, 1.0) * inertia.friction[i] / normal
 
 
 @jitable
@@ -95,11 +95,11 @@ def set_rows(law: Law, inertia: RowInertia, step: Step, rows: Rows) -> float:
     """Write the rows of all contacts for a step, and return the `impratio` of the model [-]."""
     impratio = math.inf
     for i in range(len(law.k)):
-        dashpot, own = row_of(law, inertia, i, step)
+        dashpot, normal = row_of(law, inertia, i, step)
         W = inertia.weight[i]
-        rows.solref[i, 0], rows.solref[i, 1], d = pair_values(law.k[i], dashpot, own, W)
+        rows.solref[i, 0], rows.solref[i, 1], d = pair_values(law.k[i], dashpot, normal, W)
         rows.solimp[i, 0] = rows.solimp[i, 1] = d
         if inertia.friction[i] > 0:
             rows.solreffriction[i, 0], rows.solreffriction[i, 1] = -1e-30, -d / step.h
-        impratio = min(impratio, impratio_of(inertia, i, own, step.h))
+        impratio = min(impratio, impratio_of(inertia, i, normal, step.h))
     return impratio if impratio < math.inf else 1.0

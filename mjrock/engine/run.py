@@ -43,7 +43,7 @@ class Run:
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
         broken: the step from which each tie no longer acts, see `mjrock.scene.potential.breaks`.
-        reading: what the motion says of the wall or of the joints.
+        reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, and of what the ground put in or took [J].
     """
 
@@ -141,9 +141,9 @@ def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, sc
     at = np.arange(marks[-1] + 1) if yields else marks
     broken = (breaks(scene.ties, steps.pose, scene.places.freedom),) if yields else ()
     stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
-    own = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
-    own = own[marks] if yields else own
-    gains = own - np.minimum.accumulate(own)
+    balance = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
+    balance = balance[marks] if yields else balance
+    gains = balance - np.minimum.accumulate(balance)
     worst = int(gains.argmax())
     if not gains[worst] <= ENERGY_GAIN * scale:
         raise StepError(

@@ -15,8 +15,8 @@ from .run import Run, sound_timestep
 
 SCATTER = 0.1
 """Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
-step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts/convergence.py`). Without a side stop
-|e| scatters by less than 0.002 omega h."""
+step. It is measured on 24 walls of Table 1 from omega h = 0.06 to 0.8 (`scripts/measure/convergence.py`). Without a
+side stop |e| scatters by less than 0.002 omega h."""
 WORTH_SAYING = 0.02
 """Scatter of |e| that is warned of [-]."""
 OPEN = 0.05
@@ -80,6 +80,5 @@ def warn_if_open(response: Response, run: Run, asked: AskedWall, advice: str) ->
     unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
     if unpaid > OPEN:
         warnings.warn(
-            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}",
-            stacklevel=3,
+            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}", stacklevel=3
         )

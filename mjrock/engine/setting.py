@@ -63,4 +63,4 @@ def push(memory: Memory, setting: Setting, frames: Array, t: float) -> None:
     memory.applied[:] = 0.0
     if setting.damps:
         damp(dampers, frames, setting.damping, axes, memory.applied)
-    push_ground(setting.ground, setting.masses, t, memory.options[TIMESTEP], memory.applied)
+    push_ground(setting.ground, setting.masses, axes, t, memory.options[TIMESTEP], memory.applied)

@@ -11,14 +11,15 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
-from ..quantities import require_flag, require_kind, require_size, require_within
+from ..quantities import require_flag, require_kind
 from ..result.response import Outcome, Response, State
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
-from ..scene.of_case import course_of, scene_of
+from ..scene.of_case import course_of, require_case, scene_of
 from ..scene.scene import Scene
 from .mjcf import pair_rows
 from .model import engine_of
+from .options import Options
 from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
 from .record import StepError
@@ -84,95 +85,71 @@ def simulate(
             by more than a bar or an anchor follows.
     """
     begun = time.perf_counter()
-    require_kind("method", method, Method)
-    scene = scene_of(case, contacts, method)
-    accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
-    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
-    require_flag("ledger", ledger)
-    if coulomb is not None:
-        require_flag("coulomb", coulomb)
-    if output_step is not None:
-        output_step = require_within("output_step", output_step, 1e-9, case.duration, "s")
-    course = course_of(case, scene)
-    if start is not None:
-        pose, velocity = required_start(start, case, len(scene.names))
-        course = replace(course, pose=pose, velocity=velocity, released=False)
-    asked: Asked = AskedMasonry(case) if isinstance(case, MasonryCase) else AskedWall(case, contacts)  # type: ignore[arg-type]
-    if timestep is None:
-        spacing = output_step or 1e-3
-        require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
-        run, settings = fitted(asked, scene, course, accuracy, coulomb=coulomb is not False, method=method)
-        response = run.response(spacing, 1, ledger, settings)
-        advice = f"lower accuracy = {accuracy:g}"
-    else:
-        timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
+    require_case(case, contacts)
+    options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method)
+    if options.timestep is not None:
         require_unbreakable(case)
-        require_size("the steps of this run", case.duration / timestep, "take a longer timestep, or fitted steps")
-        warn_if_coarse(scene, timestep)
-        coulombs = coulomb is True
-        run, settings = fixed(asked, scene, course, timestep, newmark_beta, coulomb=coulombs, method=method)
-        stride = max(1, round(output_step / timestep)) if output_step else 1
-        response = run.response(None, stride, ledger, settings)
-        advice = "take a shorter timestep"
-        if coulomb is not True:
-            warn_if_lifted(scene, run.steps)
+    state = None if start is None else required_start(start, case)
+    scene = scene_of(case, contacts, method)
+    course = course_of(case, scene)
+    if state is not None:
+        course = replace(course, pose=state[0], velocity=state[1], released=False)
+    asked: Asked = AskedMasonry(case) if isinstance(case, MasonryCase) else AskedWall(case, contacts)  # type: ignore[arg-type]
+    if options.timestep is None:
+        run, settings = fitted(asked, scene, course, options)
+    else:
+        warn_if_coarse(scene, options.timestep)
+        run, settings = fixed(asked, scene, course, options, options.timestep)
+    response = run.response(options.spacing, options.stride, options.ledger, settings)
+    if not (options.timestep is None or options.slides):
+        warn_if_lifted(scene, run.steps)
     if isinstance(asked, AskedWall):
         warn_if_slid(run, asked)
-        warn_if_open(response, run, asked, advice)
+        warn_if_open(response, run, asked, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response
 
 
-def fitted(
-    asked: Asked, scene: Scene, course: Course, accuracy: float, *, coulomb: bool, method: Method
-) -> tuple[Run, dict[str, Any]]:
+def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[Run, dict[str, Any]]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
         SimulationError: if it breaks down with a hundredth of the accuracy too.
     """
-    used = accuracy
+    used, method = options.accuracy, options.method
     while True:
         h = short_step(scene, used, method)
         try:
             with engine_of(scene) as engine:
                 engine.place(course)
                 begun = time.perf_counter()
-                steps = fitted_steps(engine, scene, course, used, coulomb=coulomb, method=method)
+                steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
             took = time.perf_counter() - begun
             run = Run.judged(asked, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, "stepping_time": took}
         except StepError as error:
-            if used < 0.02 * accuracy:
+            if used < 0.02 * options.accuracy:
                 raise explained(error, scene, h, used) from None
             used /= 10
 
 
-def fixed(
-    asked: Asked,
-    scene: Scene,
-    course: Course,
-    timestep: float,
-    newmark_beta: float,
-    *,
-    coulomb: bool,
-    method: Method,
-) -> tuple[Run, dict[str, Any]]:
-    """A run at one step, and what it took.
+def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float) -> tuple[Run, dict[str, Any]]:
+    """A run at steps of one length h [s], and what it took.
 
     Raises:
         SimulationError: if it breaks down.
     """
+    beta, method = options.newmark_beta, options.method
     try:
         with engine_of(scene) as engine:
-            engine.follow(timestep, pair_rows(scene, timestep, newmark_beta, method))
+            engine.follow(h, pair_rows(scene, h, beta, method))
             engine.release(course)
             begun = time.perf_counter()
-            steps = fixed_steps(engine, scene, course, timestep, newmark_beta, coulomb=coulomb, method=method)
+            steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
         took = time.perf_counter() - begun
         run = Run.judged(asked, scene, course, steps)
     except StepError as error:
-        raise explained(error, scene, timestep, None) from None
-    return run, {"timestep": timestep, "accuracy": None, "newmark_beta": newmark_beta, "stepping_time": took}
+        raise explained(error, scene, h, None) from None
+    return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, "stepping_time": took}

@@ -90,8 +90,8 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         if meets.gap > -ROUNDING:
             continue
         mu, slip = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
-        own = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
-        stopping = own * abs(slip) / memory.options[TIMESTEP]
+        inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
+        stopping = inertia * abs(slip) / memory.options[TIMESTEP]
         pressing = normal_force(memory, points, i, meets, frames)
         beyond = memory.options[IMPRATIO] * stopping > sliding.method.slides * mu * pressing
         if beyond and mu * stopping > sliding.method.neglected * pressing:

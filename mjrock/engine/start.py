@@ -18,7 +18,7 @@ LARGEST = 1e3
 """Largest displacement or rate of a start [m, m/s, rad/s]."""
 
 
-def required_start(start: object, case: Case | MasonryCase, bodies: int) -> State:
+def required_start(start: object, case: Case | MasonryCase) -> State:
     """A start as pose and velocity of all bodies, each of shape (bodies, 3) and finite.
 
     Raises:
@@ -29,6 +29,7 @@ def required_start(start: object, case: Case | MasonryCase, bodies: int) -> Stat
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
+    bodies = 1 if isinstance(case, Case) else len(case.masonry.free)
     pose, velocity = (
         require_array(f"start, {name}", part, (bodies, 3)) for name, part in zip(PARTS, start, strict=True)
     )

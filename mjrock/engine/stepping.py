@@ -33,12 +33,7 @@ def fitted_steps(
 ) -> Steps:
     """Steps that fit the motion, until the duration of the course or until a body lies on its face.
 
-    Args:
-        engine: of the scene, with pose and velocity of the start, see `Engine.place`.
-        scene, course: what stands, and what happens to it.
-        accuracy: the relative tolerance that is aimed at [-].
-        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`.
-        method: the constants of the method.
+    The engine is at the start, see `Engine.place`. With `coulomb` contacts that slide obey Coulomb's law.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
@@ -74,14 +69,8 @@ def fixed_steps(
 ) -> Steps:
     """Steps of one length, until the duration of the course or until a body lies on its face.
 
-    Args:
-        engine: of the scene, at the release, with the step and the rows of that length.
-        scene, course: what stands, and what happens to it.
-        timestep: length of the steps [s].
-        newmark_beta: Newmark's beta of the rows [-].
-        coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`; without it they have the
-            rows of the model text.
-        method: the constants of the method, with which the rows were made.
+    The engine is at the release, with the step and the rows of that length. With `coulomb` contacts that slide obey
+    Coulomb's law; without it they have the rows of the model text.
 
     Raises:
         StepError: if the engine warns or the state is not finite.

@@ -119,7 +119,7 @@ def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
 
 @jitable
 def rolled(places: Places, i: int, moved: Moved) -> float:
-    """How far point i moves along its face in a step without slip, as the bodies turn [m]."""
+    """How far point i moves along its face in a step without slip, as the bodies turn in the plane [m]."""
     body, face = places.body[i], places.face_body[i]
     turned = moved.pose[3 * body + 2] - moved.from_pose[3 * body + 2]
     if face >= 0:
@@ -131,11 +131,9 @@ def rolled(places: Places, i: int, moved: Moved) -> float:
 def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> None:
     """Shift the body on joint j so that point i, the deepest of the joint and sticking, is where it stuck.
 
-    Args:
-        points: the contacts.
-        joints: the joints, whose state is brought up to date.
-        j, i: the joint and the point, -1 where the deepest point does not stick.
-        moved: the step, whose pose and frames after it are changed.
+    A body of the plane is shifted along the one direction of the face.
+
+    i is -1 where the deepest point does not stick. Joints, and pose and frames after the step, are brought up to date.
     """
     places, q, frames = points.places, moved.pose, moved.frames
     if i < 0 or joints.stuck[j] != i:

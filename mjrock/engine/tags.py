@@ -10,8 +10,8 @@ import numpy as np
 
 def section(name: str, lines: Iterator[str]) -> list[str]:
     """A section of the text, or nothing where it would be empty."""
-    found = list(lines)
-    return [f"<{name}>", *found, f"</{name}>"] if found else []
+    elements = list(lines)
+    return [f"<{name}>", *elements, f"</{name}>"] if elements else []
 
 
 def value_text(value: object) -> str:

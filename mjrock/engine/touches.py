@@ -126,16 +126,8 @@ def step_to_touch(
 ) -> float:
     """Length of a step that ends half a short step after the touch that falls within it, or zero if none does [s].
 
-    Of several touches in one short window, the hardest is the start of the window.
-
-    Args:
-        springs: of the contacts and the ties.
-        openings: how they open and close now.
-        now: the step that is about to be made [s].
-        h: the length of step that the pace allows [s].
-        least: energy that may be misplaced [J].
-        short: the short step [s].
-        touches: room for the touches.
+    Of several touches in one short window, the hardest is the start of the window. `now` is the step that is about to
+    be made, `short` the short step [s], and the other arguments are those of `predict`.
     """
     first = predict(springs, openings, now, h, least, touches)
     if first == math.inf:

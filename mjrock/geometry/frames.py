@@ -21,6 +21,12 @@ from ..quantities import Array
 from .vectors import Vector, moment, plus, vector
 
 
+@inlined
+def velocities(axes: tuple[int, ...]) -> int:
+    """Velocities of a body."""
+    return 3 if len(axes) == 2 else 6
+
+
 class Freedom(NamedTuple):
     """How bodies may move.
 
@@ -38,7 +44,7 @@ class Freedom(NamedTuple):
     @property
     def nv(self) -> int:
         """Velocities of a body."""
-        return 3 if len(self.axes) == 2 else 6
+        return velocities(self.axes)
 
     @property
     def translations(self) -> int:
@@ -136,8 +142,8 @@ def spin(frames: Array, v: Array, body: int, axes: tuple[int, ...]) -> Vector:
     """Angular velocity of a body in the axes of the world, or the same of an acceleration."""
     if len(axes) == 2:
         return (v[3 * body + 2],)
-    own = v[6 * body + 3], v[6 * body + 4], v[6 * body + 5]
-    return plus(own, swung(frames, body, own))
+    local = v[6 * body + 3], v[6 * body + 4], v[6 * body + 5]
+    return plus(local, swung(frames, body, local))
 
 
 @jitable
@@ -149,10 +155,10 @@ def push_body(frames: Array, body: int, arm: Vector, force: Vector, total: Array
         total[3 * body + 1] += force[1]
         total[3 * body + 2] += turning[0]
     else:
-        own = plus(turning, unswung(frames, body, turning))
+        local = plus(turning, unswung(frames, body, turning))
         for axis in range(3):
             total[6 * body + axis] += force[axis]
-            total[6 * body + 3 + axis] += own[axis]
+            total[6 * body + 3 + axis] += local[axis]
 
 
 @inlined

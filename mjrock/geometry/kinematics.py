@@ -231,10 +231,10 @@ def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array, axes: tuple[int
         acceleration = minus(acceleration, plus(linear(a, anchor, axes), spun(spin(frames, a, anchor, axes), arm)))
         centripetal = minus(centripetal, spun(turning, spun(turning, arm)))
     length = math.sqrt(dot(across, across))
-    way = scaled(1 / length, across)
-    longer = dot(way, velocity)
-    swept = dot(way, centripetal) + (dot(velocity, velocity) - longer * longer) / length
-    return Gap(ties.reach[i] - length, -longer, -dot(way, acceleration), -swept)
+    direction = scaled(1 / length, across)
+    longer = dot(direction, velocity)
+    swept = dot(direction, centripetal) + (dot(velocity, velocity) - longer * longer) / length
+    return Gap(ties.reach[i] - length, -longer, -dot(direction, acceleration), -swept)
 
 
 @inlined

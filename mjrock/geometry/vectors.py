@@ -70,11 +70,7 @@ def moment(r: Vector, force: Vector) -> Vector:
     """r x force: the moment of a force at r, with the components of a spin."""
     if len(r) == 2:
         return (r[1] * force[0] - r[0] * force[1],)
-    return (
-        r[1] * force[2] - r[2] * force[1],
-        r[2] * force[0] - r[0] * force[2],
-        r[0] * force[1] - r[1] * force[0],
-    )
+    return (r[1] * force[2] - r[2] * force[1], r[2] * force[0] - r[0] * force[2], r[0] * force[1] - r[1] * force[0])
 
 
 @inlined

@@ -69,16 +69,16 @@ def peers(points: Sequence[tuple[str, str, float, float, float]]) -> Figure:
     axes = figure.subplots(2, len(cases), squeeze=False, sharex=True, sharey="row")
     for setup in setups:
         code = setup.split(",")[0]
-        rank = [one for one in setups if one.split(",")[0] == code].index(setup)
+        rank = [other for other in setups if other.split(",")[0] == code].index(setup)
         look = {
             "color": PEER_COLORS[codes.index(code)],
             "marker": "osD^"[rank],
             "linestyle": ("-", "--", ":", "-.")[rank],
         }
         for column, case in zip(axes.T, cases, strict=True):
-            own = [point[2:] for point in points if point[:2] == (case, setup)]
+            rows = [point[2:] for point in points if point[:2] == (case, setup)]
             for ax, which in zip(column, (1, 2), strict=True):
-                line = [(row[0], row[which]) for row in own if np.isfinite(row[which])]
+                line = [(row[0], row[which]) for row in rows if np.isfinite(row[which])]
                 ax.loglog(*np.reshape(line, (-1, 2)).T, linewidth=1.3, markersize=5, label=setup, **look)
     for column, case in zip(axes.T, cases, strict=True):
         column[0].set_title(case, fontsize=10)
@@ -97,10 +97,10 @@ def peers(points: Sequence[tuple[str, str, float, float, float]]) -> Figure:
 def _errors(ax: Axes, points: Sequence[tuple[float, float, str]], methods: Sequence[str]) -> None:
     """Errors against a cost, a line a method, and the front that no method beats."""
     for i, (method, marker) in enumerate(zip(methods, "os^vD<>pPX*hd", strict=False)):
-        own = sorted((cost, error) for cost, error, name in points if name == method)
-        if own:
+        errors = sorted((cost, error) for cost, error, name in points if name == method)
+        if errors:
             color = f"C{i}" if i < 10 else ("0.15", "navy", "gold")[i - 10]
-            ax.loglog(*np.transpose(own), marker=marker, markersize=5, linewidth=1.2, color=color, label=method)
+            ax.loglog(*np.transpose(errors), marker=marker, markersize=5, linewidth=1.2, color=color, label=method)
     front: list[tuple[float, float]] = []
     for cost, error, name in sorted(points):
         if name != "rocking theory" and (not front or error < front[-1][1]):

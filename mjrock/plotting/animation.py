@@ -204,19 +204,19 @@ def scene(
     clock.set_animated(True)
     if halves is not None:
         axes = halves[1].subplots(len(histories), 1, sharex=True, squeeze=False)[:, 0]
-        for one, draw in zip(axes, histories, strict=True):
-            draw(one)
-            one.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
-            updates.append(_marker(one, bodies.t))
-            one.label_outer()
+        for panel, draw in zip(axes, histories, strict=True):
+            draw(panel)
+            panel.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
+            updates.append(_marker(panel, bodies.t))
+            panel.label_outer()
     figure.suptitle(title, fontsize=10)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
 
     def update(frame: int) -> None:
         clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")
-        for one in updates:
-            one(frame)
+        for move in updates:
+            move(frame)
 
     update(0)
     return figure, update

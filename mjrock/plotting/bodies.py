@@ -9,16 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..problem.wall.case import Case
-from ..quantities import (
-    Array,
-    keep,
-    require_array,
-    require_kind,
-    require_reals,
-    require_row,
-    require_within,
-    shown,
-)
+from ..quantities import Array, keep, require_array, require_kind, require_reals, require_row, require_within, shown
 from ..result.response import Response
 
 
@@ -28,11 +19,11 @@ def _outlines(name: str, given: object) -> tuple[Array, ...]:
         given = list(given)
     if not isinstance(given, Sequence) or isinstance(given, str):
         raise TypeError(f"{name} = {shown(given)} is no sequence of outlines")
-    made = []
-    for i, one in enumerate(given):
-        corners = require_reals(f"{name}[{i}]", one, "corners x, z [m], shape (n, 2)")
-        made.append(require_array(f"{name}[{i}]", corners, (len(np.atleast_1d(corners)), 2)))
-    return tuple(made)
+    outlines = []
+    for i, outline in enumerate(given):
+        corners = require_reals(f"{name}[{i}]", outline, "corners x, z [m], shape (n, 2)")
+        outlines.append(require_array(f"{name}[{i}]", corners, (len(np.atleast_1d(corners)), 2)))
+    return tuple(outlines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,10 +95,7 @@ class Bodies:
         The displacement of each point from rest is drawn times `magnify`. A point that does not move, such as the toe
         that a wall turns about, then stays where it is; what is magnified is slightly distorted.
 
-        Args:
-            frame: which of the times.
-            body: which of the bodies.
-            points: about the centroid of the body at rest [m], shape (n, 2).
+        The points are given about the centroid of the body at rest [m], shape (n, 2).
         """
         x, z, theta = self.poses[frame, body]
         sine, cosine = np.sin(theta), np.cos(theta)

@@ -11,6 +11,23 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from numpy.typing import ArrayLike
 
+from ..quantities import Array, require_reals
+
+
+def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
+    """Rows of real numbers that are drawn against each other, as arrays.
+
+    Raises:
+        TypeError: with the name of the row that holds something else.
+        ValueError: unless they are rows of one length, of at least one number.
+    """
+    checked = {name: require_reals(name, row, "a row of real numbers") for name, row in rows.items()}
+    shapes = {name: row.shape for name, row in checked.items()}
+    if len(set(shapes.values())) > 1 or any(row.ndim != 1 or not row.size for row in checked.values()):
+        given = ", ".join(f"{name} has the shape {shape}" for name, shape in shapes.items())
+        raise ValueError(f"{given}; rows of one length are needed")
+    return tuple(checked.values())
+
 
 def damping_curves(
     ax: Axes, families: Sequence[tuple[str, tuple[ArrayLike, ArrayLike], tuple[ArrayLike, ArrayLike]]]
@@ -21,8 +38,15 @@ def damping_curves(
     """
     for i, ((label, matches, curve), marker) in enumerate(zip(families, "os^vD<>p", strict=False)):
         color = colormaps["viridis"](0.9 * i / max(1, len(families) - 1))
-        ax.semilogy(*curve, color=color, linewidth=1.2)
-        ax.semilogy(*matches, linestyle="", marker=marker, markersize=4, color=color, label=label)
+        ax.semilogy(*equal_rows(e=curve[0], xi=curve[1]), color=color, linewidth=1.2)
+        ax.semilogy(
+            *equal_rows(e=matches[0], xi=matches[1]),
+            linestyle="",
+            marker=marker,
+            markersize=4,
+            color=color,
+            label=label,
+        )
     ax.set_xlabel("restitution asked for $|e|$ [-]")
     ax.set_ylabel(r"damping ratio $\xi$ [-]")
     ax.locator_params(axis="x", nbins=6)
@@ -33,10 +57,10 @@ def damping_curves(
 
 def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike) -> Axes:
     """Predicted against matched damping ratios, on logarithmic axes, coloured by the softness of the base."""
-    x, y = np.asarray(matched, dtype=float), np.asarray(predicted, dtype=float)
+    x, y, softness = equal_rows(matched=matched, predicted=predicted, color=color)
     limits = 0.8 * min(x.min(), y.min()), 1.25 * max(x.max(), y.max())
     ax.loglog(limits, limits, color="0.5", linewidth=0.8)
-    ax.scatter(x, y, c=np.log10(np.asarray(color, dtype=float)), s=6, cmap="viridis", linewidth=0)
+    ax.scatter(x, y, c=np.log10(softness), s=6, cmap="viridis", linewidth=0)
     ax.set_xlim(limits)
     ax.set_ylim(limits)
     ax.set_xlabel(r"matched $\xi$ [-]")
@@ -49,7 +73,8 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
     figure = Figure(figsize=(2.3 * len(variables), 2.5), layout="constrained")
     axes = figure.subplots(1, len(variables), sharey=True, squeeze=False)[0]
     for ax, (name, (values, scale)) in zip(axes, variables.items(), strict=True):
-        ax.plot(values, residual, linestyle="", marker="o", markersize=2, markeredgewidth=0, alpha=0.6, color="#12406b")
+        x, y = equal_rows(**{name: values, "residual": residual})
+        ax.plot(x, y, linestyle="", marker="o", markersize=2, markeredgewidth=0, alpha=0.6, color="#12406b")
         ax.axhline(1, color="0.5", linewidth=0.8)
         ax.set_xscale(scale)
         ax.xaxis.set_minor_formatter(NullFormatter())
@@ -63,7 +88,7 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
 def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Axes:
     """Damping ratio, over its mean, as each parameter goes through its range; a line a parameter."""
     for (name, (shares, ratios)), marker in zip(curves.items(), "os^vD<>p", strict=False):
-        ax.semilogy(shares, ratios, marker=marker, markersize=4, linewidth=1.2, label=name)
+        ax.semilogy(*equal_rows(shares=shares, ratios=ratios), marker=marker, markersize=4, linewidth=1.2, label=name)
     ax.axhline(1, color="0.6", linewidth=0.6)
     ax.set_xlabel("place in the range of Table 1 [-]")
     ax.set_ylabel(r"$\xi$ over its mean [-]")
@@ -73,13 +98,13 @@ def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> 
 
 def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Axes:
     """Restitution obtained against the one asked for; samples are (asked for, obtained) by law. NaN is not drawn."""
-    wanted = np.concatenate([np.asarray(asked, dtype=float) for asked, _ in samples.values()])
+    rows = [equal_rows(asked=asked, obtained=given) for asked, given in samples.values()]
+    wanted = np.concatenate([asked for asked, _ in rows])
     limits = wanted.min(), wanted.max()
     ax.plot(limits, limits, color="0.5", linewidth=0.8)
-    for (name, (asked, found)), marker, color in zip(
-        samples.items(), "x.s", ("#f0a35e", "#12406b", "0.4"), strict=False
-    ):
-        ax.plot(asked, found, linestyle="", marker=marker, markersize=5, color=color, label=name)
+    looks = zip("x.s", ("#f0a35e", "#12406b", "0.4"), strict=True)
+    for name, row, (marker, color) in zip(samples, rows, looks, strict=False):
+        ax.plot(*row, linestyle="", marker=marker, markersize=5, color=color, label=name)
     ax.set_xlabel("restitution asked for $|e|$ [-]")
     ax.set_ylabel("restitution obtained $|e|$ [-]")
     ax.legend(frameon=False, fontsize=8)

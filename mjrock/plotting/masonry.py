@@ -18,8 +18,8 @@ BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
 def moved(corners: Array, centroid: Array, pose: Array) -> Array:
     """Corners of a block that has moved by a pose x, z, theta [m, m, rad], shape (n, 2)."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
-    made: Array = (corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2]
-    return made
+    placed: Array = (corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2]
+    return placed
 
 
 def blocks(

@@ -20,12 +20,7 @@ ICONS = {
 
 
 def standalone(text: str, title: str) -> str:
-    """The page of matplotlib's player with characters for its icons, which it would load from the web.
-
-    Args:
-        text: what matplotlib wrote.
-        title: of the page.
-    """
+    """The page of matplotlib's player with characters for its icons, which it would load from the web."""
     text = re.sub(r"<link\b[^>]*>", "", text)
-    text = re.sub(r'<i class="fa ([^"]*)"></i>', lambda found: ICONS.get(found[1], "&#8226;"), text)
+    text = re.sub(r'<i class="fa ([^"]*)"></i>', lambda icon: ICONS.get(icon[1], "&#8226;"), text)
     return f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>\n{text}'

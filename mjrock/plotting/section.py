@@ -77,12 +77,12 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
     updates = [_openings(ax, case, bodies)]
     updates += [_tie(ax, case, i, bodies, text) for i, text in enumerate(tie_texts(ties, left, height))]
-    updates += [_force(ax, case, one, bodies) for one in forces]
-    updates += [_mass(ax, case, one, bodies) for one in case.wall.masses]
+    updates += [_force(ax, case, effect, bodies) for effect in forces]
+    updates += [_mass(ax, case, added, bodies) for added in case.wall.masses]
 
     def update(frame: int) -> None:
-        for one in updates:
-            one(frame)
+        for move in updates:
+            move(frame)
 
     return update
 
@@ -135,7 +135,7 @@ def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     """Sill and head of each opening as dashed lines through the thickness."""
     wall = case.block
     profile = wall.profile or ((0.0, 2 * wall.b), (2 * wall.h, 2 * wall.b))
-    heights = sorted({z for one in wall.openings for z in (one.sill, one.head) if z > 0})
+    heights = sorted({z for opening in wall.openings for z in (opening.sill, opening.head) if z > 0})
     segments, lines = [], []
     for z in heights:
         outer = float(np.interp(z, *np.transpose(profile))) - wall.b
@@ -189,17 +189,17 @@ def pulling(case: Case, tie: Tie, bodies: Bodies) -> Array:
     return np.asarray((elongation > yielded) & (np.maximum.accumulate(elongation) - tie.stretch <= tie.breaks_at))
 
 
-def _force(ax: Axes, case: Case, one: Load | Thrust, bodies: Bodies) -> Update:
+def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Update:
     """A load as an arrow downwards onto its point, a thrust as one from its point along the force."""
-    length, loads = 2 * ARROW * case.block.h, isinstance(one, Load)
-    point = _local(case, one.offset if isinstance(one, Load) else 0.0, one.height)
-    along = np.array([0.0, -length]) if loads else np.array([np.sign(one.force) * length, 0.0])
+    length, loads = 2 * ARROW * case.block.h, isinstance(effect, Load)
+    point = _local(case, effect.offset if isinstance(effect, Load) else 0.0, effect.height)
+    along = np.array([0.0, -length]) if loads else np.array([np.sign(effect.force) * length, 0.0])
     arrow = FancyArrowPatch((0, 0), (1, 0), arrowstyle="-|>", mutation_scale=12, color=FORCE, linewidth=1.6, zorder=6)
     arrow.set_animated(True)
     ax.add_patch(arrow)
     place = "center" if loads else "right"
     text = ax.text(
-        0, 0, f"{one.force / 1e3:g} kN", fontsize=7, color=FORCE, ha=place, va="bottom", zorder=6, animated=True
+        0, 0, f"{effect.force / 1e3:g} kN", fontsize=7, color=FORCE, ha=place, va="bottom", zorder=6, animated=True
     )
 
     def update(frame: int) -> None:
@@ -211,11 +211,11 @@ def _force(ax: Axes, case: Case, one: Load | Thrust, bodies: Bodies) -> Update:
     return update
 
 
-def _mass(ax: Axes, case: Case, one: AddedMass, bodies: Bodies) -> Update:
+def _mass(ax: Axes, case: Case, added: AddedMass, bodies: Bodies) -> Update:
     """An added mass as a dot with its size."""
-    point = _local(case, one.offset, one.height)
+    point = _local(case, added.offset, added.height)
     (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
-    text = ax.text(0, 0, f"  {one.mass:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)
+    text = ax.text(0, 0, f"  {added.mass:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]

@@ -46,8 +46,8 @@ class Wall:
         self.side = None if case.stop_top is None else contacts.side_up_to(case.stop_top)
         if self.side is not None:
             self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
-        self.forces = [(one.offset - off, one.height - self.up, 0.0, -one.force) for one in case.each(Load)]
-        self.forces += [(-off, one.height - self.up, one.force, 0.0) for one in case.each(Thrust)]
+        self.forces = [(load.offset - off, load.height - self.up, 0.0, -load.force) for load in case.each(Load)]
+        self.forces += [(-off, thrust.height - self.up, thrust.force, 0.0) for thrust in case.each(Thrust)]
         self.ties = [(tie.height - self.up, tie) for tie in case.each(Tie)]
         self.dampers = case.each(Damper)
         self.rest = self._rest()
@@ -88,12 +88,12 @@ class Wall:
         if not (self.forces or self.ties or self.case.wall.centroid_offset):
             return np.array([0.0, self._lowered(0.0), 0.0])
 
-        def pose(found: Array) -> Array:
-            z, theta = found * (self._lowered(0.0), 1e-3)
+        def pose(unknowns: Array) -> Array:
+            z, theta = unknowns * (self._lowered(0.0), 1e-3)
             return np.array([self.up * math.sin(theta), z, theta])
 
-        def unbalanced(found: Array) -> Array:
-            rates = self.held(0.0, np.append(pose(found), np.zeros(3)), shaken=False)
+        def unbalanced(unknowns: Array) -> Array:
+            rates = self.held(0.0, np.append(pose(unknowns), np.zeros(3)), shaken=False)
             return rates[4:] * (1 / GRAVITY, self.inertia / (self.weight * self.up))
 
         best, _, success, why = fsolve(unbalanced, (1.0, 1e3 * self._leaning()), xtol=1e-13, full_output=True)

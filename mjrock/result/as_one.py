@@ -18,8 +18,8 @@ def restitutions(answer: Response, pile: Pile) -> Array:
     It is the whole energy above the stack at rest, as in `Response.settled_restitution`.
     """
     energy = answer.energy[peaks(answer, pile)]
-    found: Array = np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1])
-    return found
+    ratios: Array = np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1])
+    return ratios
 
 
 def peaks(answer: Response, pile: Pile) -> list[int]:
@@ -27,9 +27,9 @@ def peaks(answer: Response, pile: Pile) -> list[int]:
     theta = answer.theta @ pile.masses / pile.masses.sum()
     beyond = np.sign(theta) * (np.abs(theta) > LEAST * np.abs(theta).max())
     starts = np.flatnonzero(np.diff(beyond, prepend=0)).tolist()
-    found = []
+    tops = []
     for start, end in zip(starts, [*starts[1:], len(theta)], strict=True):
         top = start + int(np.abs(theta[start:end]).argmax())
         if beyond[start] and top < len(theta) - 1:
-            found.append(top)
-    return found
+            tops.append(top)
+    return tops

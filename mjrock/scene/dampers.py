@@ -96,10 +96,10 @@ def damping_rate(dampers: Dampers, masses: Array) -> float:
     """The highest rate at which a damper alone slows the bodies down [1/s], zero without dampers."""
     frames, rates = frames_of(np.zeros_like(masses)), [0.0]
     for i, c in enumerate(dampers.c):
-        way = np.zeros_like(masses)
+        push = np.zeros_like(masses)
         now = stroke(dampers, i, frames, PLANE.axes)
-        push_body(frames, dampers.body[i], now.arm, now.direction, way)
-        rates.append(float(c * (way**2 / masses).sum()))
+        push_body(frames, dampers.body[i], now.arm, now.direction, push)
+        rates.append(float(c * (push**2 / masses).sum()))
     return max(rates)
 
 

@@ -25,17 +25,17 @@ def attachments(
         body, x: of an effect, the body that it acts on, and where it does from the origin of the world, at rest [m].
         centroids: of the bodies at rest [m], shape (bodies, 2).
     """
-    made = damper_fields(effects, body, x, centroids)
-    ties = [one for one in effects if isinstance(one, Tie)]
-    loads = [one for one in effects if isinstance(one, Load)]
-    thrusts = [one for one in effects if isinstance(one, Thrust)]
+    parts = damper_fields(effects, body, x, centroids)
+    ties = [tie for tie in effects if isinstance(tie, Tie)]
+    loads = [load for load in effects if isinstance(load, Load)]
+    thrusts = [thrust for thrust in effects if isinstance(thrust, Thrust)]
 
     def placed(some: Sequence[Effect]) -> tuple[Array, Array]:
-        return np.array([body(one) for one in some]), np.array([(x(one), one.height) for one in some])
+        return np.array([body(effect) for effect in some]), np.array([(x(effect), effect.height) for effect in some])
 
     if ties:
         bodies, points = placed(ties)
-        made |= {
+        parts |= {
             "tie_names": tuple(f"tie_{i}" for i in range(len(ties))),
             "tie_body": bodies,
             "tie_point": points - centroids[bodies],
@@ -48,10 +48,10 @@ def attachments(
         }
     if loads or thrusts:
         bodies, points = placed([*loads, *thrusts])
-        made |= {
+        parts |= {
             "force_names": (*(f"load_{i}" for i in range(len(loads))), *(f"thrust_{i}" for i in range(len(thrusts)))),
             "force_body": bodies,
             "force_point": points - centroids[bodies],
-            "force": np.array([(0.0, -one.force) for one in loads] + [(one.force, 0.0) for one in thrusts]),
+            "force": np.array([(0.0, -load.force) for load in loads] + [(thrust.force, 0.0) for thrust in thrusts]),
         }
-    return made
+    return parts

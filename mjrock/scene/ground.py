@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
+from ..geometry.frames import velocities
 from ..problem.ground.motion import GroundMotion
 from ..quantities import Array
 
@@ -70,13 +71,13 @@ def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
 
 
 @jitable
-def push_ground(ground: Ground, masses: Array, t: float, h: float, applied: Array) -> None:
-    """Add the force of the moving ground on every body to `applied` [N], shape (3 n,)."""
+def push_ground(ground: Ground, masses: Array, axes: tuple[int, ...], t: float, h: float, applied: Array) -> None:
+    """Add the force of the moving ground on every body to `applied` [N], shape (n nv,), as `masses`."""
     if len(ground.x.accel) > 0:
         mean = mean_acceleration(ground.x, t, h)
-        for j in range(0, len(masses), 3):
+        for j in range(0, len(masses), velocities(axes)):
             applied[j] -= masses[j] * mean
     if len(ground.z.accel) > 0:
         mean = mean_acceleration(ground.z, t, h)
-        for j in range(1, len(masses), 3):
+        for j in range(len(axes) - 1, len(masses), velocities(axes)):
             applied[j] -= masses[j] * mean

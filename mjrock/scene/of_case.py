@@ -19,16 +19,23 @@ def scene_of(case: Case | MasonryCase, contacts: Contacts | None = None, method:
     Raises:
         ValueError: if the contacts do not fit the case, or what stands in it falls under its weight.
     """
+    require_case(case, contacts)
+    if isinstance(case, MasonryCase):
+        return masonry_scene(case)
+    assert contacts is not None
+    return wall_scene(case, contacts, method)
+
+
+def require_case(case: Case | MasonryCase, contacts: Contacts | None) -> None:
+    """Raise a TypeError unless this is a wall with its contacts, or masonry without."""
     if isinstance(case, MasonryCase):
         if contacts is not None:
             raise TypeError(f"contacts = {shown(contacts)}: masonry has its joints; leave contacts out")
-        return masonry_scene(case)
+        return
     if isinstance(case, Contacts) and isinstance(contacts, Case):
         raise TypeError("case and contacts are swapped: the case comes first")
     require_kind("case", case, Case, MasonryCase)
     require_kind("contacts", contacts, Contacts)
-    assert contacts is not None
-    return wall_scene(case, contacts, method)
 
 
 def course_of(case: Case | MasonryCase, scene: Scene) -> Course:

@@ -207,14 +207,15 @@ class Potential:
         """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
-        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise.
+        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise. This part
+        is that of the plane, where a body has one rotation.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
         frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
         curvature = np.zeros((len(masses), len(masses)))
         _curvatures(places, ties, frames, none, self.springs * self.pressed(pose), curvature)
-        for i, body in enumerate(forces.body):  # a planar body has one rotation
+        for i, body in enumerate(forces.body):
             at = vector(forces.at, i, places.axes)
             arm = plus(at, swung(frames, body, at))
             curvature[3 * body + 2, 3 * body + 2] += dot(vector(forces.force, i, places.axes), arm)
@@ -266,7 +267,7 @@ def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> Non
 def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: Array, curvature: Array) -> None:
     """Add the geometric stiffness of each closed spring. What is quadratic in the velocities in the second rate of an
     opening is its second derivative along them."""
-    nv, way = len(none) // len(frames), none
+    nv, unit = len(none) // len(frames), none
     for i in range(len(force)):
         if force[i] == 0:
             continue
@@ -276,8 +277,8 @@ def _curvatures(places: Places, ties: Ties, frames: Array, none: Array, force: A
                 row = nv * body + p if p < nv else nv * other + p - nv
                 column = nv * body + r if r < nv else nv * other + r - nv
                 for sign in (1.0, -1.0):
-                    way[row] += 1.0
-                    way[column] += sign
-                    bent = opening(places, ties, i, frames, way, way).swept
+                    unit[row] += 1.0
+                    unit[column] += sign
+                    bent = opening(places, ties, i, frames, unit, unit).swept
                     curvature[row, column] -= 0.25 * sign * force[i] * bent
-                    way[row], way[column] = 0.0, 0.0
+                    unit[row], unit[column] = 0.0, 0.0

@@ -74,7 +74,7 @@ class Scene:
         facts: numbers and texts that the model records.
 
     Raises:
-        ValueError: for an array of another shape, a value that cannot be, or bodies that do not stand.
+        ValueError: for an array of another shape, an invalid value, or bodies that do not stand.
     """
 
     names: tuple[str, ...]
@@ -158,12 +158,12 @@ class Scene:
     @cached_property
     def face_names(self) -> tuple[str, ...]:
         """Name of the face that each point meets: its group, with a number where the points of a group meet several."""
-        found: dict[tuple[object, ...], str] = {}
+        known: dict[tuple[object, ...], str] = {}
         names = []
         for group, body, face, normal in zip(self.group, self.face_body, self.face, self.normal, strict=True):
             mark = (group, int(body), *face.tolist(), *normal.tolist())
-            number = sum(known[0] == group for known in found)
-            names.append(found.setdefault(mark, f"{group}_face_{number}" if number else group))
+            number = sum(met[0] == group for met in known)
+            names.append(known.setdefault(mark, f"{group}_face_{number}" if number else group))
         return tuple(names)
 
     @cached_property
@@ -283,7 +283,7 @@ class Scene:
         """
         set_anew = {"k", "c", "settled", "reach", "overlap", "damped_joints", "title", "facts"}
         digest = hashlib.sha256()
-        for name in (one.name for one in fields(self) if one.name not in set_anew):
+        for name in (entry.name for entry in fields(self) if entry.name not in set_anew):
             parts = getattr(self, name) if name == "outlines" else (getattr(self, name),)
             digest.update(b"".join(p.tobytes() if isinstance(p, np.ndarray) else repr(p).encode() for p in parts))
         return digest.hexdigest()

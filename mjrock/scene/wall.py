@@ -123,7 +123,7 @@ def standing_wall(
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
         title=_title(wall, stop_top),
         facts=facts,
-        **attachments(effects, lambda one: 0, lambda one: _place(one, wall), centroid[None]),
+        **attachments(effects, lambda effect: 0, lambda effect: _place(effect, wall), centroid[None]),
     )
 
 

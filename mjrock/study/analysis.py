@@ -62,8 +62,8 @@ MASONRY_COLUMNS = (
 class Analysis:
     """One case for one solver.
 
-    What the joints of masonry have has to be numbers: a function of the joint has no content by which a campaign could
-    tell one task from another, and such a task becomes a failed row.
+    The properties of the joints of masonry have to be numbers. A function of the joint has no content by which a
+    campaign could tell tasks apart, and its task becomes a failed row.
 
     Args:
         case: the case, of a wall or of masonry.
@@ -73,10 +73,10 @@ class Analysis:
         options: keyword arguments of the solver, such as `accuracy`, `timestep` or `rtol`.
         labels: columns that tell the user which case it is: text, numbers.
 
-    Options and labels are copied: what happens to the mappings given does not reach the analysis.
+    Options and labels are copied.
 
     Raises:
-        ValueError: for a solver or an option that there is not, or if `e` or `contacts` are missing.
+        ValueError: for an unknown solver or option, or if `e` or `contacts` are missing.
         TypeError: for an argument of another type.
     """
 

@@ -69,8 +69,8 @@ class Plan:
     def base_tasks(self, points: int, **options: Any) -> list[Match]:
         """Two-sided matches; `options` are those of `Match`."""
         return [
-            Match(one, Restitution(_housner(one) ** share, -0.5), points, **options)
-            for one in combinations(self.base_count, self.seed, self.k_n, self.amplitude)
+            Match(combination, Restitution(_housner(combination) ** share, -0.5), points, **options)
+            for combination in combinations(self.base_count, self.seed, self.k_n, self.amplitude)
             for share in self.losses
         ]
 
@@ -80,28 +80,28 @@ class Plan:
         The losses of the base are varied where they can be; elsewhere they are those of Eq. 2.
         """
         tasks = []
-        for i, one in enumerate(combinations(self.side_count, self.seed + 1, self.k_n, self.amplitude)):
-            e_base = _housner(one) ** self.side_losses[i % len(self.side_losses)]
-            if not LEAST < _base_damping(one, Restitution(e_base, -0.5), base) < HIGHEST:
-                e_base = _housner(one)
+        for i, combination in enumerate(combinations(self.side_count, self.seed + 1, self.k_n, self.amplitude)):
+            e_base = _housner(combination) ** self.side_losses[i % len(self.side_losses)]
+            if not LEAST < _base_damping(combination, Restitution(e_base, -0.5), base) < HIGHEST:
+                e_base = _housner(combination)
             for side in self.sides:
                 e = Restitution(e_base, -side)
-                tasks.append(Match(one, e, points, presumed_damping(one, e, base), **options))
+                tasks.append(Match(combination, e, points, presumed_damping(combination, e, base), **options))
         return tasks
 
 
-def _housner(one: Combination) -> float:
-    return Restitution.from_geometry(one.wall).base
+def _housner(combination: Combination) -> float:
+    return Restitution.from_geometry(combination.wall).base
 
 
-def _base_damping(one: Combination, e: Restitution, base: Form) -> float:
-    groups = Groups.of(one.wall, e, one.k_base, one.k_side, one.amplitude)
+def _base_damping(combination: Combination, e: Restitution, base: Form) -> float:
+    groups = Groups.of(combination.wall, e, combination.k_base, combination.k_side, combination.amplitude)
     return float(base.xi(groups, groups.base_loss))
 
 
-def presumed_damping(one: Combination, e: Restitution, base: Form) -> float:
+def presumed_damping(combination: Combination, e: Restitution, base: Form) -> float:
     """The damping ratio of the base that a one-sided match presumes [-], to six digits."""
-    return float(f"{min(max(_base_damping(one, e, base), LEAST), HIGHEST):.6g}")
+    return float(f"{min(max(_base_damping(combination, e, base), LEAST), HIGHEST):.6g}")
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def calibrate(
     law = DampingLaw(
         name=name,
         source=f"mjrock.calibration over Table 1 of the paper up to {plan.k_n[1]:.0e} N/m3, {points} contact lines a "
-        f"face, {VERSION}; scripts/calibrate.py makes it",
+        f"face, {VERSION}; scripts/paper/calibrate.py makes it",
         base=base.form,
         side=side.form,
         R_range=R_RANGE,

@@ -69,13 +69,8 @@ def campaign(
     count = (os.cpu_count() or 1) if workers is None else require_whole("workers", workers, 1, MOST_WORKERS)
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise TypeError(f"executor = {shown(executor)} is no executor of concurrent.futures")
-    if time_limit is not None:
-        time_limit = require_real("time_limit", time_limit)
-        if not time_limit > 0:
-            raise ValueError(f"time_limit = {time_limit} s is outside the valid range, which is above 0")
+    limit = None if time_limit is None else _required_limit(time_limit, executor)
     retry = require_flag("retry", retry)
-    if time_limit is not None and executor is not None:
-        raise ValueError(f"time_limit = {time_limit} s needs processes of this machine, and executor gives others")
     folder = None if histories is None else require_path("histories", histories)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
@@ -86,7 +81,7 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry)
         try:
-            _carry_out(run, tasks, executor, count, time_limit)
+            _carry_out(run, tasks, executor, count, limit)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
@@ -98,6 +93,16 @@ def campaign(
     return path
 
 
+def _required_limit(limit: float, executor: Executor | None) -> float:
+    """A time limit [s]."""
+    limit = require_real("time_limit", limit)
+    if not limit > 0:
+        raise ValueError(f"time_limit = {limit} s is outside the valid range, which is above 0")
+    if executor is not None:
+        raise ValueError(f"time_limit = {limit} s needs processes of this machine, and executor gives others")
+    return limit
+
+
 def required_tasks(tasks: object) -> Iterable[Task]:
     """Tasks as something that can be gone through; TypeError unless they are, and for a text."""
     gone_through = isinstance(tasks, Iterable) or hasattr(type(tasks), "__getitem__")
@@ -106,13 +111,7 @@ def required_tasks(tasks: object) -> Iterable[Task]:
     return cast(Iterable[Task], tasks)
 
 
-def _carry_out(
-    run: Runner,
-    tasks: Iterable[Task],
-    executor: Executor | None,
-    count: int,
-    limit: float | None,
-) -> None:
+def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, count: int, limit: float | None) -> None:
     """Run the tasks where they are to run."""
     pending = run.pending(tasks)
     if executor is not None:
@@ -135,10 +134,7 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
 def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[Row]:
     """The rows of the tasks, in the order asked, once a campaign has run those that the store does not hold.
 
-    Args:
-        tasks: the tasks, that can be gone through more than once.
-        store: the SQLite file.
-        options: those of `campaign`.
+    Options are those of `campaign`.
 
     Raises:
         RuntimeError: if a task has failed; its row in the store says how.

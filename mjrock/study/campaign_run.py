@@ -76,10 +76,10 @@ class Runner:
 
     def _partial_histories(self) -> dict[str, list[Path]]:
         """What killed campaigns have left of time histories, by the key of the task."""
-        found: dict[str, list[Path]] = {}
+        partial: dict[str, list[Path]] = {}
         for path in self.folder.glob("*.npz.*.partial*") if self.folder is not None else ():
-            found.setdefault(path.name.partition(".")[0], []).append(path)
-        return found
+            partial.setdefault(path.name.partition(".")[0], []).append(path)
+        return partial
 
     def write(self, jobs: Sequence[Job], rows: Sequence[Row]) -> None:
         """Write the rows of jobs and show how far the campaign is."""

@@ -14,7 +14,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.wall.block import Block
 from ..problem.wall.effects import SideStop
 from ..quantities import require_flag, require_kind, require_whole, require_within
-from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, Match, highest_branch
+from .match import BASE_BOUNDS, SIDE_BOUNDS, Match, highest_branch
 
 RIGID = 16.0
 """Rotation of the last rebound that counts, over that at which an edge lifts, of a base as stiff as theory's [-]."""
@@ -30,7 +30,7 @@ UNLIKE = 5e-3
 
 @dataclass(frozen=True)
 class Standing:
-    """A wall of one's own on its interfaces, where `Combination` has one of Table 1.
+    """A given wall on its interfaces, in place of a `Combination` of Table 1.
 
     Args:
         wall: the wall.
@@ -88,18 +88,17 @@ def matched_contacts(
     friction, side_friction = required_frictions(friction, side_friction)
     if k_side is not None:
         e.require_rebound()
-    one = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
+    standing = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
     options = {"accuracy": accuracy, "friction": friction, "side_friction": side_friction}
-    base = Match(one, e, points, **options)  # type: ignore[arg-type]
-    found = _found("base", base, BASE_BOUNDS, whole=True)
-    xi_side = 0.0
+    base = Match(standing, e, points, **options)  # type: ignore[arg-type]
+    xi_base, xi_side = _matched("base", base, BASE_BOUNDS, whole=True), 0.0
     if k_side is not None:
-        side = Match(one, e, points, found.xi, **options)  # type: ignore[arg-type]
-        xi_side = _found("side", side, SIDE_BOUNDS, whole=False).xi
+        side = Match(standing, e, points, xi_base, **options)  # type: ignore[arg-type]
+        xi_side = _matched("side", side, SIDE_BOUNDS, whole=False)
     return Contacts.from_damping(
         wall,
         k_base=k_base,
-        xi_base=found.xi,
+        xi_base=xi_base,
         k_side=k_side,
         xi_side=xi_side,
         points=points,
@@ -145,19 +144,19 @@ def as_theory(
     xi_base, xi_side = TOUCH_DOWN / wall.slenderness, 0.0
     if side_stop:
         side = Match(Standing(wall, k_n, k_n, amplitude), e, 2, xi_base)  # type: ignore[arg-type]
-        xi_side = _found("side", side, SIDE_BOUNDS, whole=False).xi
+        xi_side = _matched("side", side, SIDE_BOUNDS, whole=False)
     return Contacts.from_damping(
         wall, k_base=k_n, xi_base=xi_base, k_side=k_n if side_stop else None, xi_side=xi_side, law="as theory"
     )
 
 
-def _found(name: str, match: Match, bounds: tuple[float, float], *, whole: bool) -> Found:
-    """The match, with a warning where it is missed."""
-    found = highest_branch(match.restitution, match.target, bounds, whole=whole)
-    if not found.reached:
+def _matched(name: str, match: Match, bounds: tuple[float, float], *, whole: bool) -> float:
+    """The damping ratio that is matched, with a warning where the match is missed."""
+    closest = highest_branch(match.restitution, match.target, bounds, whole=whole)
+    if not closest.reached:
         warnings.warn(
-            f"no damping of the {name} gives |e| = {match.target:.4g}; the closest, xi = {found.xi:.3g}, gives "
-            f"{found.value:.4g}",
+            f"no damping of the {name} gives |e| = {match.target:.4g}; the closest, xi = {closest.xi:.3g}, gives "
+            f"{closest.value:.4g}",
             stacklevel=3,
         )
-    return found
+    return closest.xi

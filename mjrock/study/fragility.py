@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -46,7 +46,7 @@ class Fragility:
         """Share overturned at an intensity [-], of any shape.
 
         Raises:
-            TypeError, ValueError: unless the intensities are real numbers that are not negative. Infinity is one.
+            TypeError, ValueError: unless the intensities are real numbers that are not negative. Infinity is allowed.
         """
         return np.asarray(ndtr(_score(_intensities(intensity), self.median, self.dispersion)))
 
@@ -110,7 +110,7 @@ def fit_fragility(
 
     Args:
         intensity: of each run, positive, shape (n,).
-        overturned: whether each run overturned, True or False, or 1 or 0, shape (n,). A run without a result is none.
+        overturned: whether each run overturned, True or False, or 1 or 0, shape (n,). Leave runs without a result out.
         groups: what each run belongs to, such as the name or the number of its record, shape (n,), at least 5
             different ones, all text or all numbers. None takes the runs as independent.
         resamples: how many times the groups are drawn, 20 to 100000.
@@ -127,21 +127,9 @@ def fit_fragility(
     """
     x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
-    log_x = np.log(x)
-    ((level, slope),) = _probit(log_x, fell, np.ones((1, len(x))))
-    if slope <= 0:
-        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
-    curvature = _curvature(log_x, fell, level, slope)
-    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
-    covariance = np.linalg.inv(towards.T @ curvature @ towards)
-    made = Fragility(
-        median=math.exp(-level / slope),
-        dispersion=float(1 / slope),
-        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
-        count=len(x),
-    )
+    fit = _likeliest(np.log(x), fell)
     if groups is None:
-        return made
+        return fit
     labels = _labels(groups)
     if labels.shape != x.shape:
         raise ValueError(
@@ -150,15 +138,30 @@ def fit_fragility(
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < FEWEST_GROUPS:
         raise ValueError(f"groups names {len(names)} groups; the valid range is {FEWEST_GROUPS} or more")
-    count = require_whole("resamples", resamples, 20, 100_000)
-    draws = np.random.default_rng(require_whole("seed", seed, 0, 2**53)).multinomial(
-        len(names), np.full(len(names), 1 / len(names)), size=count
-    )
+    count, shares = require_whole("resamples", resamples, 20, 100_000), np.full(len(names), 1 / len(names))
+    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
+    draws = rng.multinomial(len(names), shares, size=count)
     at_once = max(1, MOST_VALUES // len(x))
-    fits = [_resampled(log_x, fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
-    found = np.concatenate(fits)
-    found.setflags(write=False)
-    return Fragility(made.median, made.dispersion, made.covariance, made.count, len(names), found)
+    fits = [_resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
+    curves = np.concatenate(fits)
+    curves.setflags(write=False)
+    return replace(fit, groups=len(names), resamples=curves)
+
+
+def _likeliest(log_x: Array, fell: Flags) -> Fragility:
+    """The curve of greatest likelihood, the runs taken as independent."""
+    ((level, slope),) = _probit(log_x, fell, np.ones((1, len(log_x))))
+    if slope <= 0:
+        raise ValueError("the share overturned does not grow with intensity; no fragility curve falls")
+    curvature = _curvature(log_x, fell, level, slope)
+    towards = np.array([[-slope, -level], [0.0, -slope]])  # of (level, slope) over (ln median, ln dispersion)
+    covariance = np.linalg.inv(towards.T @ curvature @ towards)
+    return Fragility(
+        median=math.exp(-level / slope),
+        dispersion=float(1 / slope),
+        covariance=((covariance[0, 0], covariance[0, 1]), (covariance[1, 0], covariance[1, 1])),
+        count=len(log_x),
+    )
 
 
 def _flags(overturned: ArrayLike) -> Flags:
@@ -168,11 +171,11 @@ def _flags(overturned: ArrayLike) -> Flags:
         TypeError, ValueError: unless each value is True or False, or 1 or 0.
     """
     takes = "whether each run overturned: True or False, or 1 or 0"
-    found = require_plain("overturned", overturned, takes, "biuf")
-    unclear = np.flatnonzero((found != 0) & (found != 1))
+    values = require_plain("overturned", overturned, takes, "biuf")
+    unclear = np.flatnonzero((values != 0) & (values != 1))
     if unclear.size:
-        raise ValueError(f"overturned holds {found.flat[unclear[0]]:g} at {unclear[0]}; it takes {takes}")
-    return np.asarray(found, dtype=bool)
+        raise ValueError(f"overturned holds {values.flat[unclear[0]]:g} at {unclear[0]}; it takes {takes}")
+    return np.asarray(values, dtype=bool)
 
 
 def _labels(groups: ArrayLike) -> NDArray[Any]:
@@ -182,12 +185,12 @@ def _labels(groups: ArrayLike) -> NDArray[Any]:
         TypeError, ValueError: unless they are all text or all numbers, without NaN.
     """
     takes = "the name or the number of the group of each run"
-    found = require_plain("groups", groups, takes, "biufU")
-    if found.dtype.kind == "U" and not all(isinstance(one, str) for one in np.asarray(groups, dtype=object).flat):
+    labels = require_plain("groups", groups, takes, "biufU")
+    if labels.dtype.kind == "U" and not all(isinstance(label, str) for label in np.asarray(groups, dtype=object).flat):
         raise TypeError(f"groups = {shown(groups)} holds text and numbers; it takes {takes}, all of one kind")
-    if found.dtype.kind == "f" and np.isnan(found).any():
+    if labels.dtype.kind == "f" and np.isnan(labels).any():
         raise ValueError(f"groups holds nan; it takes {takes}")
-    return found
+    return labels
 
 
 def _intensities(intensity: ArrayLike) -> Array:
@@ -220,18 +223,17 @@ def _require_fit(x: Array, fell: Flags) -> None:
 def _resampled(log_x: Array, fell: Flags, weights: Array) -> Array:
     """Median and dispersion of each resample, shape (m, 2); its weights are how often it holds each run, shape (m, n).
 
-    A resample that a single intensity parts is a step of no dispersion in the middle of the gap. One in which all or
-    none overturned has its median at zero or at infinity. One that overturns the less the stronger the motion is has an
-    infinite dispersion.
+    A resample that a single intensity parts is a step of no dispersion in the middle of the gap. If all or none
+    overturned, the median is zero or infinite. If stronger motions overturn fewer, the dispersion is infinite.
     """
     drawn = weights > 0
     lowest = np.where(drawn & fell, log_x, np.inf).min(axis=1)
     highest = np.where(drawn & ~fell, log_x, -np.inf).max(axis=1)
-    found = np.zeros((len(weights), 2))
+    fits = np.zeros((len(weights), 2))
     with np.errstate(invalid="ignore"):
-        found[:, 0] = np.exp(0.5 * (lowest + highest))
-    found[~np.isfinite(lowest), 0] = np.inf
-    found[~np.isfinite(highest), 0] = 0.0
+        fits[:, 0] = np.exp(0.5 * (lowest + highest))
+    fits[~np.isfinite(lowest), 0] = np.inf
+    fits[~np.isfinite(highest), 0] = 0.0
     curves = lowest < highest
     if curves.any():
         level, slope = _probit(log_x, fell, weights[curves]).T
@@ -239,8 +241,8 @@ def _resampled(log_x: Array, fell: Flags, weights: Array) -> Array:
         slope = np.where(rises, slope, 1.0)
         few = (weights[curves] @ fell) < 0.5 * weights[curves].sum(axis=1)
         medians = np.where(rises, np.exp(-level / slope), np.where(few, np.inf, 0.0))
-        found[curves] = np.stack([medians, np.where(rises, 1 / slope, np.inf)], axis=1)
-    return found
+        fits[curves] = np.stack([medians, np.where(rises, 1 / slope, np.inf)], axis=1)
+    return fits
 
 
 def _probit(log_x: Array, fell: Flags, weights: Array) -> Array:
@@ -248,19 +250,19 @@ def _probit(log_x: Array, fell: Flags, weights: Array) -> Array:
     middle, width = log_x.mean(), log_x.std()
     u = (log_x - middle) / width
     sign = np.where(fell, 1.0, -1.0)
-    found = np.zeros((len(weights), 2))
-    found[:, 0] = ndtri((weights @ fell) / weights.sum(axis=1))
+    fits = np.zeros((len(weights), 2))
+    fits[:, 0] = ndtri((weights @ fell) / weights.sum(axis=1))
     for _ in range(ITERATIONS):
-        ratio, slant = _derivatives(sign * (found[:, :1] + found[:, 1:] * u))
+        ratio, slant = _derivatives(sign * (fits[:, :1] + fits[:, 1:] * u))
         g, h = weights * sign * ratio, weights * slant
         gradient = np.stack([g.sum(axis=1), g @ u], axis=1)
         hessian = np.stack([h.sum(axis=1), h @ u, h @ u, h @ (u * u)], axis=1).reshape(-1, 2, 2)
         step = np.linalg.solve(hessian, gradient[..., None])[..., 0]
         size = np.abs(step).max(axis=1, keepdims=True)
-        found += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
-        if size.max() < 1e-10 * (1 + np.abs(found).max()):
+        fits += step / np.maximum(1.0, size)  # far from the summit the full step may overshoot
+        if size.max() < 1e-10 * (1 + np.abs(fits).max()):
             break
-    return np.stack([found[:, 0] - found[:, 1] * middle / width, found[:, 1] / width], axis=1)
+    return np.stack([fits[:, 0] - fits[:, 1] * middle / width, fits[:, 1] / width], axis=1)
 
 
 def _derivatives(z: Array) -> tuple[Array, Array]:
@@ -291,6 +293,8 @@ def _reflected(value: ArrayLike, resampled: Array, confidence: float) -> tuple[A
     ends = 50 * (1 - confidence), 50 * (1 + confidence)
     low, high = np.percentile(resampled, ends, axis=-1, method="nearest")
     with np.errstate(invalid="ignore"):
-        found = 2 * np.asarray(value) - high, 2 * np.asarray(value) - low
-    first, last = (np.where(np.isnan(one), value, one) for one in found)  # both infinite: as certain as the estimate
+        interval = 2 * np.asarray(value) - high, 2 * np.asarray(value) - low
+    first, last = (
+        np.where(np.isnan(bound), value, bound) for bound in interval
+    )  # both infinite: as certain as the estimate
     return np.asarray(first), np.asarray(last)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, require_kind, require_row, require_within, shown
+from ..quantities import Array, require_increasing, require_kind, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
 from .campaign_task import Row
@@ -49,12 +49,11 @@ class IncrementalAnalysis:
 
         Each is the peak of the nearest record, as there is no mean of a finite peak and overturning.
 
-        Args:
-            shares: 0 to 100 [%].
+        Shares are 0 to 100 [%].
         """
         levels = [require_within(f"shares[{i}]", share, 0.0, 100.0, "%") for i, share in enumerate(shares)]
-        found: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")
-        return found
+        peaks: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")
+        return peaks
 
     def __repr__(self) -> str:
         fell = np.isfinite(self.capacity)
@@ -87,7 +86,7 @@ def ida(
     builds = dict(build) if isinstance(build, Mapping) else {"record": build}
     if not builds:
         raise ValueError("build holds no records; at least one is needed")
-    levels = require_scales(scales)
+    levels = require_increasing("scales", scales, "scale", math.inf, "0 and above")
     tasks: list[Analysis] = []
     for name, make in builds.items():
         require_kind("the name of a record in build", name, str)
@@ -96,7 +95,7 @@ def ida(
             tasks.append(replace(analysis, labels={"record": name, "scale": scale} | dict(analysis.labels)))
     rows = completed(tasks, store, **options)
     table = tuple(tuple(rows[i : i + len(levels)]) for i in range(0, len(rows), len(levels)))
-    peaks = np.array([[row[tasks[0].PEAK] for row in own] for own in table], dtype=float)
+    peaks = np.array([[row[tasks[0].PEAK] for row in runs] for runs in table], dtype=float)
     return IncrementalAnalysis(tuple(builds), levels, peaks, table)
 
 
@@ -158,16 +157,3 @@ def built(build: Build, scale: float, name: str) -> Analysis:
     if not isinstance(analysis, Analysis):
         raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
     return analysis
-
-
-def require_scales(scales: ArrayLike) -> Array:
-    """Scales as an array.
-
-    Raises:
-        TypeError: if they are no real numbers.
-        ValueError: unless there is at least one, none is negative, and they increase.
-    """
-    made = require_row("scales", scales, "scale")
-    if not (made[0] >= 0 and (np.diff(made) > 0).all()):
-        raise ValueError(f"scales = {shown(scales)} has to increase within the valid range 0 and above")
-    return made

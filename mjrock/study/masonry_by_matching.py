@@ -82,7 +82,7 @@ def matched_masonry(
     xi = np.full(len(masonry.joints), 0.5 * frequency * strong(pile))
 
     def damped(whole: Masonry) -> Masonry:
-        values = tuple((joint.name, float(own)) for joint, own in zip(masonry.joints, xi, strict=True))
+        values = tuple((joint.name, float(value)) for joint, value in zip(masonry.joints, xi, strict=True))
         return dataclasses.replace(whole, law=None, frequency=frequency, xi=ByName(values))
 
     def base(value: float) -> float:
@@ -94,10 +94,10 @@ def matched_masonry(
         return rebound(damped(masonry), amplitude, accuracy)
 
     if abs(excess(base(TOUCH_DOWN / pile.wall.slenderness), e.base)) > CLOSE:
-        xi[pile.base] = _said("base", highest_branch(base, e.base, BASE_BOUNDS), e.base).xi
+        xi[pile.base] = _matched("base", highest_branch(base, e.base, BASE_BOUNDS), e.base).xi
     if pile.sides:
         lumped = abs(e.lumped)
-        xi[list(pile.sides)] = _said("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped).xi
+        xi[list(pile.sides)] = _matched("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped).xi
     return damped(masonry)
 
 
@@ -108,12 +108,12 @@ def strong(pile: Pile) -> float:
     """
     stack = pile.free_standing
     lines = stack.lines
-    own = np.flatnonzero(lines.joint == Pile.of(stack).base)
-    edges = own[np.argsort(lines.at[own, 0])][[0, -1]]
+    base = np.flatnonzero(lines.joint == Pile.of(stack).base)
+    edges = base[np.argsort(lines.at[base, 0])][[0, -1]]
     frequencies = []
     for edge in edges:
         closed = np.ones(len(lines.k), dtype=bool)
-        closed[own] = own == edge
+        closed[base] = base == edge
         left = Lines(*(values[closed] for values in lines))  # type: ignore[arg-type]
         frequencies.append(lowest_frequency(stack.blocks, left, stack.joint_friction))
     return 2 * STRONG / min(frequencies)
@@ -125,23 +125,23 @@ def rebound(stack: Masonry, amplitude: float, accuracy: float) -> float:
     velocity, swing = pile.rising(amplitude)
     for swings in (1.75, 3.5):  # a stack on soft joints rocks slower than a rigid one
         case = MasonryCase(stack, swings * swing, velocity=velocity)
-        found = restitutions(simulate(case, accuracy=accuracy, output_step=STEP * swing), pile)
-        if len(found):
-            return float(found[0])
+        ratios = restitutions(simulate(case, accuracy=accuracy, output_step=STEP * swing), pile)
+        if len(ratios):
+            return float(ratios[0])
     return 0.0
 
 
-def excess(found: float, target: float) -> float:
+def excess(obtained: float, target: float) -> float:
     """How much more energy one |e| loses than another, over what that loses [-]."""
-    return (target**2 - found**2) / max(1 - target**2, 1e-9)
+    return (target**2 - obtained**2) / max(1 - target**2, 1e-9)
 
 
-def _said(name: str, found: Found, target: float) -> Found:
+def _matched(name: str, closest: Found, target: float) -> Found:
     """The match, with a warning where it is missed."""
-    if abs(excess(found.value, target)) > MISSED:
+    if abs(excess(closest.value, target)) > MISSED:
         warnings.warn(
-            f"no damping of the {name} gives |e| = {target:.4g}; the closest, xi = {found.xi:.3g}, gives "
-            f"{found.value:.4g} and loses {1 + excess(found.value, target):.3g} of the energy that is to be lost",
+            f"no damping of the {name} gives |e| = {target:.4g}; the closest, xi = {closest.xi:.3g}, gives "
+            f"{closest.value:.4g} and loses {1 + excess(closest.value, target):.3g} of the energy that is to be lost",
             stacklevel=3,
         )
-    return found
+    return closest

@@ -75,10 +75,7 @@ REFERENCE = Combination()
 
 
 def combinations(
-    count: int,
-    seed: int,
-    k_n: tuple[float, float] = K_N_RANGE,
-    amplitude: tuple[float, float] = AMPLITUDE_RANGE,
+    count: int, seed: int, k_n: tuple[float, float] = K_N_RANGE, amplitude: tuple[float, float] = AMPLITUDE_RANGE
 ) -> list[Combination]:
     """Combinations that fill Table 1 evenly (a Latin hypercube), stiffnesses on a logarithmic scale.
 
@@ -94,11 +91,11 @@ def combinations(
     rng = np.random.default_rng(seed)
     strata = rng.permuted(np.tile(np.arange(count), (len(ranges), 1)), axis=1).T
     shares = (strata + rng.random(strata.shape)) / count
-    made = []
+    sample = []
     for R, slenderness, k_base, k_side, phi in (ranges[:, 0] + shares * np.ptp(ranges, axis=1)).tolist():
         k_side = min(max(k_side, k_base - math.log(MOST_UNLIKE)), k_base + math.log(MOST_UNLIKE))
-        made.append(Combination(R, slenderness, math.exp(k_base), math.exp(k_side), phi))
-    return made
+        sample.append(Combination(R, slenderness, math.exp(k_base), math.exp(k_side), phi))
+    return sample
 
 
 @dataclass(frozen=True)
@@ -141,12 +138,12 @@ class Match:
     @property
     def labels(self) -> Mapping[str, object]:
         """What is matched on what."""
-        one = self.combination
+        combination = self.combination
         return {
             "match": "base" if self.xi_base is None else "side",
             "points": self.points,
             "measure": self.measure,
-            **{name.name: getattr(one, name.name) for name in fields(one)},
+            **{name.name: getattr(combination, name.name) for name in fields(combination)},
             "e_base": self.e.base,
             "e_side": self.e.side,
             "xi_base": self.xi_base,
@@ -157,8 +154,8 @@ class Match:
     @property
     def groups(self) -> Groups:
         """The dimensionless groups that the damping ratio is regressed on."""
-        one = self.combination
-        return Groups.of(one.wall, self.e, one.k_base, one.k_side, one.amplitude)
+        combination = self.combination
+        return Groups.of(combination.wall, self.e, combination.k_base, combination.k_side, combination.amplitude)
 
     @property
     def loss(self) -> float:
@@ -167,12 +164,12 @@ class Match:
 
     def respond(self, xi: float, quarters: float = 3.0) -> Response:
         """The simulation with damping ratio `xi` over `quarters` of the period of the release."""
-        one, wall = self.combination, self.combination.wall
+        combination, wall = self.combination, self.combination.wall
         contacts = Contacts.from_damping(
             wall,
-            k_base=one.k_base,
+            k_base=combination.k_base,
             xi_base=xi if self.xi_base is None else self.xi_base,
-            k_side=None if self.xi_base is None else one.k_side,
+            k_side=None if self.xi_base is None else combination.k_side,
             xi_side=xi,
             points=self.points,
             friction=self.friction,
@@ -202,8 +199,8 @@ class Match:
         """Search, and return the columns."""
         bounds = BASE_BOUNDS if self.xi_base is None else SIDE_BOUNDS
         if self.measure == "rms":
-            found = least_difference(self.difference, bounds)
-            return found.row | {"found": self.restitution(found.xi), "rms": found.value}
+            least = least_difference(self.difference, bounds)
+            return least.row | {"found": self.restitution(least.xi), "rms": least.value}
         return highest_branch(self.restitution, self.target, bounds, whole=self.xi_base is None).row
 
 
@@ -292,7 +289,7 @@ def least_difference(measure: Callable[[float], float], bounds: tuple[float, flo
     best = grid[i]
     inside = 0 < i < len(grid) - 1
     if inside:
-        found = minimize_scalar(at, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
+        minimum = minimize_scalar(at, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
         best = min(known, key=lambda log_xi: known[log_xi])
-        inside = bool(found.success)
+        inside = bool(minimum.success)
     return Found(inside, math.exp(best), known[best], min(values), max(values), len(known))

@@ -12,7 +12,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import pulled, yielded
-from ..quantities import ON_ITS_FACE, Array, require_kind, require_row, require_whole, shown
+from ..quantities import ON_ITS_FACE, Array, require_increasing, require_kind, require_whole
 from ..scene.wall import wall_scene
 from .tilted import tilted
 
@@ -83,7 +83,9 @@ def pushover(
     require_kind("case", case, Case)
     require_kind("contacts", contacts, Contacts, type(None))
     points = require_whole("points", points, 20, 100_000)
-    asked = np.zeros(0) if rotations is None else require_rotations(rotations)
+    asked = np.zeros(0)
+    if rotations is not None:
+        asked = require_increasing("rotations", rotations, "rotation [rad]", ON_ITS_FACE, "0 to pi/2 rad")
     if contacts is None:
         path = np.unique(np.concatenate([_path(case, 0.0, 0.0, points), asked]))
         multiplier, moment = _rigid(case, path)
@@ -109,19 +111,6 @@ def pushover(
     if rotations is None and end < math.inf:
         path, multiplier, moment = np.append(path, end), np.append(multiplier, 0.0), np.append(moment, 0.0)
     return PushoverCurve(case, contacts, path, multiplier, moment, start, end, peak)
-
-
-def require_rotations(rotations: ArrayLike) -> Array:
-    """Rotations as an array.
-
-    Raises:
-        TypeError: if they are no real numbers.
-        ValueError: unless there is at least one, and they increase within 0 to pi/2.
-    """
-    made = require_row("rotations", rotations, "rotation [rad]")
-    if not (made[0] >= 0 and made[-1] <= ON_ITS_FACE and (np.diff(made) > 0).all()):
-        raise ValueError(f"rotations = {shown(rotations)} has to increase within the valid range 0 to pi/2 rad")
-    return made
 
 
 def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:

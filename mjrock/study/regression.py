@@ -72,8 +72,8 @@ def well_matched(row: Mapping[str, Any]) -> bool:
 
 def _folds(combinations: Sequence[Combination], folds: int) -> NDArray[np.int64]:
     """The fold that each pair belongs to; those of one combination belong to the same, shape (n,)."""
-    place = {one: i for i, one in enumerate(dict.fromkeys(combinations))}
-    return np.array([place[one] % folds for one in combinations])
+    place = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
+    return np.array([place[combination] % folds for combination in combinations])
 
 
 def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int = 10) -> Regression:
@@ -106,8 +106,8 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
         bounds = (1e-12, math.inf)  # the paper's form knows of none
 
     def predict(values: Array) -> Array:
-        made: Form = form(*values, r_squared=math.nan)
-        held: Array = np.clip(made.xi(groups, loss), *bounds)
+        fitted: Form = form(*values, r_squared=math.nan)
+        held: Array = np.clip(fitted.xi(groups, loss), *bounds)
         return held
 
     def fit(kept: NDArray[np.bool_], begin: Array) -> Any:

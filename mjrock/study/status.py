@@ -64,12 +64,12 @@ def status(path: str | Path) -> str:
     return "\n".join(lines)
 
 
-def main(argv: Sequence[str]) -> None:
-    """Print the status of the store that is named."""
+def answer(argv: Sequence[str]) -> str:
+    """The status of the store that is named.
+
+    Raises:
+        ValueError, OSError: as `Store`.
+    """
     parser = argparse.ArgumentParser("python -m mjrock status", description=__doc__)
     parser.add_argument("store", help="the SQLite file of a campaign")
-    try:
-        text = status(parser.parse_args(argv).store)
-    except (OSError, ValueError) as error:
-        parser.error(str(error))
-    print(text)
+    return status(parser.parse_args(argv).store)

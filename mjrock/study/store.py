@@ -180,8 +180,8 @@ class Store:
         """Make columns for these names where there are none yet.
 
         Raises:
-            ValueError: for a name that every row has already, one that is no column's name, or one that differs from
-                another in upper and lower case only. No column is made then.
+            ValueError: for a reserved name, a name that no column can have, or one that differs from another in upper
+                and lower case only. No column is made then.
         """
         names = list(names)
         known = {name.lower(): name for name in self._known}
@@ -258,7 +258,7 @@ class Store:
         """The rows in the order in which they were asked, all or those whose columns have the values given.
 
         Raises:
-            ValueError: for a column that there is not, a value that no column can hold, or a damaged file.
+            ValueError: for an unknown column, a value that no column can hold, or a damaged file.
         """
         unknown = where.keys() - set(self.columns)
         if unknown:
@@ -283,7 +283,7 @@ class Store:
 
 def readable(path: Path) -> list[dict[str, Any]]:
     """The rows of a damaged store that are as they were written: those before the first and after the last damage."""
-    found: dict[str, dict[str, Any]] = {}
+    kept: dict[str, dict[str, Any]] = {}
     for order in ("ASC", "DESC"):
         with contextlib.suppress(*UNREADABLE), contextlib.closing(sqlite3.connect(path)) as connection:
             connection.text_factory = lambda text: text.decode("utf-8", "replace")
@@ -292,5 +292,5 @@ def readable(path: Path) -> list[dict[str, Any]]:
             for values in cursor:
                 row = dict(zip(names, values, strict=True))
                 if row.pop(CHECKSUM, None) == checksum(row) and set(FIXED) <= row.keys():
-                    found[row["key"]] = row
-    return sorted(found.values(), key=lambda row: (row["position"] or 0, row["key"]))
+                    kept[row["key"]] = row
+    return sorted(kept.values(), key=lambda row: (row["position"] or 0, row["key"]))

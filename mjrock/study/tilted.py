@@ -43,9 +43,7 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
     The vertical equilibrium gives the compression of the base. The condition that the held point of the outer edge does
     not slip gives the displacement along the base, by the trapezoidal rule from rest.
 
-    Args:
-        scene: the scene of a wall, one body with a group of contacts `base` from the inner to the outer edge.
-        rotations: in increasing order [rad], shape (n,).
+    The scene has one body, with a group of contacts `base` from the inner to the outer edge. Rotations increase [rad].
 
     Returns:
         The poses up to the first at which ties lift the wall off its base; most often all of them.

@@ -67,17 +67,14 @@ def solve_analytical(
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     _require_solvable(case, e)
     started = time.perf_counter()
-    found = _rocking(case, e, rtol, atol, rest)
-    if found.fell or not case.returns_from(np.array([found.theta]))[0]:
-        outcome = Outcome.OVERTURNED
-    else:
-        outcome = Outcome.AT_REST if found.at_rest else Outcome.TIME_ENDED
-    t_end = found.t if outcome is Outcome.OVERTURNED else case.duration
+    motion = _rocking(case, e, rtol, atol, rest)
+    outcome = _outcome(case, motion)
+    t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
-    theta, omega = found.sample(samples)
+    theta, omega = motion.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
     pose, velocity = case.wall.motion(theta, omega)
-    stretched, plastic = _with_ties(case, found, samples, theta)
+    stretched, plastic = _with_ties(case, motion, samples, theta)
     if outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, plastic)
     return Response(
@@ -87,18 +84,25 @@ def solve_analytical(
         pose=pose,
         velocity=velocity,
         energy=case.energy(theta, omega) + stretched,
-        rocking=Rocking(tuple(map(Impact._make, found.impacts.tolist())), np.append(released, found.peaks)),
+        rocking=Rocking(tuple(map(Impact._make, motion.impacts.tolist())), np.append(released, motion.peaks)),
         outcome=outcome,
         plastic=plastic,
         message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
         stats={
             "wall_time": time.perf_counter() - started,
-            "evaluations": found.evaluations,
-            "arcs": found.arcs,
+            "evaluations": motion.evaluations,
+            "arcs": motion.arcs,
             "rtol": rtol,
             "atol": atol,
         },
     )
+
+
+def _outcome(case: Case, motion: Motion) -> Outcome:
+    """How a motion ended."""
+    if motion.fell or not case.returns_from(np.array([motion.theta]))[0]:
+        return Outcome.OVERTURNED
+    return Outcome.AT_REST if motion.at_rest else Outcome.TIME_ENDED
 
 
 def _require_solvable(case: Case, e: Restitution) -> None:
@@ -134,14 +138,14 @@ def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) 
     return rock_freely(case, restitution, least, rtol, atol)
 
 
-def _with_ties(case: Case, found: Motion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
+def _with_ties(case: Case, motion: Motion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
     """Energy of the ties at the samples [J], and what they have yielded."""
-    if not case.pulls or found.plastic is None:
+    if not case.pulls or motion.plastic is None:
         return 0.0, {}
-    times, yielded = found.plastic
+    times, yielded = motion.plastic
     plastic, ends = np.empty((len(t), len(case.pulls))), {}
-    for i, (pull, own) in enumerate(zip(case.pulls, yielded.T, strict=True)):
-        drawn, broken = np.where(np.isinf(own), pull.ultimate, own), np.flatnonzero(np.isinf(own))
+    for i, (pull, elongation) in enumerate(zip(case.pulls, yielded.T, strict=True)):
+        drawn, broken = np.where(np.isinf(elongation), pull.ultimate, elongation), np.flatnonzero(np.isinf(elongation))
         plastic[:, i], gone = np.interp(t, times, drawn), float(drawn[-1])
         ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength if gone else 0.0)
         if broken.size:

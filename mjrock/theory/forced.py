@@ -30,7 +30,7 @@ CHUNK = 4096
 
 
 class Rules(NamedTuple):
-    """What a run keeps to.
+    """Rules of a run.
 
     Args:
         one_sided: whether a side stop keeps the rotation from becoming negative.
@@ -60,7 +60,7 @@ class Clock(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room for what is found.
+    """Arrays that a run of the loop fills.
 
     Args:
         knots: time [s], rotation [rad] and velocity [rad/s] before and after each step and each impact, shape (n, 3).
@@ -81,7 +81,7 @@ class Room(NamedTuple):
         return cls(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64))
 
     def filled(self) -> tuple[Array, Array, Array]:
-        """Copies of what has been found."""
+        """Copies of the parts that are filled."""
         knots, impacts, peaks = self.counts
         return self.knots[:knots].copy(), self.impacts[:impacts].copy(), self.peaks[:peaks].copy()
 
@@ -229,12 +229,12 @@ def rock_forced(case: Case, e: float, least: float, rtol: float) -> Motion:
     clock = Clock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
         take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
-    room, found = Room.empty(), []
+    room, parts = Room.empty(), []
     while not clock.ended:
         room.counts[:] = 0
         clock = Clock(*forced_loop(law, rules, clock, room))
-        found.append(room.filled())
-    knots, impacts, peaks = found[0] if len(found) == 1 else map(np.concatenate, zip(*found, strict=True))
+        parts.append(room.filled())
+    knots, impacts, peaks = parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
     t, theta, omega = np.ascontiguousarray(knots.T)
 
     def sample(times: Array) -> tuple[Array, Array]:

@@ -74,7 +74,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
             (bodies, 3), as in `MasonryCase`. The rotation is positive where the top of a block turns to the right.
 
     Raises:
-        TypeError: if the masonry is none, or the velocity is no array of numbers.
+        TypeError: unless the masonry is a `Masonry` and the velocity an array of numbers.
         ValueError: if the velocity has another shape, a value that is not finite, or is zero everywhere.
         RuntimeError: if no impulses are found.
     """
@@ -85,17 +85,16 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     blocks, joints = masonry.blocks, masonry.joints
     ends = lines_of(blocks, joints, np.ones(len(joints)), 2)
     root = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, blocks[i].inertia)])
-    across = np.column_stack([ends.normal[:, 1], -ends.normal[:, 0]])
     opens = rates(blocks, ends, ends.normal) / root
-    slips = rates(blocks, ends, across)[::2] / root  # both ends of a joint slip alike
+    slips = rates(blocks, ends, ends.along)[::2] / root  # both ends of a joint slip alike
     after, pressed, rubbed = _projected(root * before, opens, slips, masonry.joint_friction > 0)
     momentum = float(np.linalg.norm(root * before))
     after[np.abs(after) <= NOTHING * momentum] = 0.0  # what stops dead does so to the last digit
     widens = (opens @ after).reshape(-1, 2).max(axis=1) > NOTHING * momentum / root.max()
     left = (after / root).reshape(-1, 3)
     impulses = np.column_stack([pressed, rubbed])
-    for made in (left, impulses):
-        made.setflags(write=False)
+    for array in (left, impulses):
+        array.setflags(write=False)
     return RigidImpact(
         velocity=left,
         kept=float(after @ after) / momentum**2,

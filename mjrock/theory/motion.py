@@ -1,4 +1,4 @@
-"""What rocking theory finds: the impacts, the peaks, how the motion ends, and its samples."""
+"""The answer of rocking theory: impacts, peaks, how the motion ends, and its samples."""
 
 from __future__ import annotations
 

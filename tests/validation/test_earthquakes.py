@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import agreement
-import suite
+from scripts.shared import suite
+from scripts.studies import agreement
 
 RECORDS = Path(__file__).parents[1] / "records"
 

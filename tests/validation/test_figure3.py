@@ -8,7 +8,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.method import METHOD
-from paper import FIGURE_3, FIGURE_3_XI, K_N
+from scripts.shared.paper import FIGURE_3, FIGURE_3_XI, K_N
 
 
 def test_equations_5_and_6_below_figure_3(wall, e):

@@ -8,7 +8,7 @@ from explicit_blocks import explicit
 
 import mjrock as mr
 from mjrock.scene.of_case import course_of
-from paper import FIGURE_3, K_N
+from scripts.shared.paper import FIGURE_3, K_N
 
 
 def energies_left(case, theta):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from paper import K_N
+from scripts.shared.paper import K_N
 
 
 def run(wall, k_n, xi, step, duration, side_stop):

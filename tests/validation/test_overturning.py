@@ -6,7 +6,16 @@ import pytest
 
 import mjrock as mr
 from mjrock import GroundMotion
-from thresholds import HALF_SINE, RECTANGULAR, SLENDER, half_sine, in_mujoco, in_theory, rectangular, threshold
+from scripts.studies.thresholds import (
+    HALF_SINE,
+    RECTANGULAR,
+    SLENDER,
+    half_sine,
+    in_mujoco,
+    in_theory,
+    rectangular,
+    threshold,
+)
 
 
 @pytest.mark.parametrize(("duration", "expected"), RECTANGULAR.items())

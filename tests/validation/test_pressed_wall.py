@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 import pytest
 
-import convergence
 import mjrock as mr
+from scripts.measure import convergence
 
 stiffnesses = pytest.mark.parametrize("k_n", [5e7, 5e8, 3e9])
 

@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.engine import loop, sticking
-from paper import FIGURE_3
+from scripts.shared.paper import FIGURE_3
 
 FIRST = 5
 

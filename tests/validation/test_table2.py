@@ -5,7 +5,7 @@ import math
 import pytest
 
 import mjrock as mr
-from paper import K_N, TABLE_2
+from scripts.shared.paper import K_N, TABLE_2
 
 specimens = pytest.mark.parametrize("specimen", TABLE_2, ids=lambda s: s.slug)
 

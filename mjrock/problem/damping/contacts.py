@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,29 +22,58 @@ Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 
 def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
-    """What a law of one's own gives, two damping ratios, or a TypeError that names the law."""
+    """The two damping ratios of a law of the user, or a TypeError that names the law."""
     asked = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        found = law(wall, e, k_base)
+        given = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{asked}: {error}") from None
-    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str) or np.shape(found)[:1] != (2,):
-        raise TypeError(f"{asked}: it gives {shown(found)}")
-    xi_base, xi_side = found
+    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str) or np.shape(given)[:1] != (2,):
+        raise TypeError(f"{asked}: it gives {shown(given)}")
+    xi_base, xi_side = given
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
+def required_law(law: Law | str | None, points: int) -> Law:
+    """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
+    if law is None:
+        return CALIBRATED if points == 2 else CALIBRATED_BED
+    if isinstance(law, str):
+        return law_named(law)
+    if not callable(law):
+        raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
+    return law
+
+
+def _doubts(
+    law: DampingLaw, points: int, k_side: float | None, friction: float | None, side_friction: float | None
+) -> Iterator[str]:
+    """What speaks against a law for contacts that it was not fitted for, in words."""
+    if law.points not in (None, points):
+        yield f"{law.name} was fitted for {law.points} contact lines a face, not {points}"
+    if law.points is None and k_side is not None:
+        yield (
+            f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on the "
+            "contacts of this one (docs/damping.md); CALIBRATED is made for them"
+        )
+    if side_friction or (friction is not None and friction < HOLDS):
+        yield (
+            f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
+            f"side_friction = {side_friction}; matched_contacts finds the damping for them"
+        )
+
+
 def required_layout(points: int, k_base: float, k_side: float | None) -> tuple[int, float, float | None]:
-    """Contact lines and stiffnesses [N/m3] as numbers that they can be."""
+    """Contact lines and stiffnesses [N/m3], each within its range."""
     k_base = require_stiffness("base stiffness k_n", k_base)
     k_side = None if k_side is None else require_stiffness("side stiffness k_n", k_side)
     return require_points(points), k_base, k_side
 
 
 def required_frictions(friction: float | None, side_friction: float | None) -> tuple[float | None, float | None]:
-    """Coefficients of friction of base and side as numbers that they can be."""
+    """Coefficients of friction of base and side, each within its range."""
     given = {"friction": friction, "side_friction": side_friction}
-    base, side = (None if one is None else require_within(name, one, 0.0, 10.0) for name, one in given.items())
+    base, side = (None if value is None else require_within(name, value, 0.0, 10.0) for name, value in given.items())
     return base, side
 
 
@@ -70,9 +99,9 @@ class Contacts:
     def __repr__(self) -> str:
         faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])
         parts = []
-        for name, one in faces:
-            held = "" if one.friction is None else f", friction {one.friction:.3g}"
-            parts.append(f"{name} k_n = {one.k_n:.4g} N/m3, xi = {one.xi:.4g}{held}")
+        for name, interface in faces:
+            held = "" if interface.friction is None else f", friction {interface.friction:.3g}"
+            parts.append(f"{name} k_n = {interface.k_n:.4g} N/m3, xi = {interface.xi:.4g}{held}")
         return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"
 
     @classmethod
@@ -151,34 +180,15 @@ class Contacts:
         require_kind("e", e, Restitution)
         points, k_base, k_side = required_layout(points, k_base, k_side)
         friction, side_friction = required_frictions(friction, side_friction)
-        if law is None:
-            law = CALIBRATED if points == 2 else CALIBRATED_BED
-        elif isinstance(law, str):
-            law = law_named(law)
-        elif not callable(law):
-            raise TypeError(f"law = {shown(law)} is neither a law nor the name of one")
+        law = required_law(law, points)
         if k_side is not None:
             e.require_rebound()
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
-            if law.points not in (None, points):
-                warnings.warn(
-                    f"{law.name} was fitted for {law.points} contact lines a face, not {points}", stacklevel=2
-                )
-            if law.points is None and k_side is not None:
-                warnings.warn(
-                    f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on "
-                    "the contacts of this one (docs/damping.md); CALIBRATED is made for them",
-                    stacklevel=2,
-                )
+            for doubt in _doubts(law, points, k_side, friction, side_friction):
+                warnings.warn(doubt, stacklevel=2)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
-        if isinstance(law, DampingLaw) and (side_friction or (friction is not None and friction < HOLDS)):
-            warnings.warn(
-                f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
-                f"side_friction = {side_friction}; matched_contacts finds the damping for them",
-                stacklevel=2,
-            )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall,
@@ -216,10 +226,10 @@ class Contacts:
         if side_stop:
             faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
         for name, interface, asked in faces:
-            made = interface.face, interface.length
-            if not np.allclose(made, asked, rtol=1e-9, atol=0):
+            size = interface.face, interface.length
+            if not np.allclose(size, asked, rtol=1e-9, atol=0):
                 raise ValueError(
-                    f"the {name} contacts were made for a face of {made[0]:g} x {made[1]:g} m, "
+                    f"the {name} contacts were made for a face of {size[0]:g} x {size[1]:g} m, "
                     f"but that of the wall of this case is {asked[0]:g} x {asked[1]:g} m"
                 )
 

@@ -65,7 +65,7 @@ class Groups:
     @classmethod
     def stack(cls, groups: list[Groups]) -> Groups:
         """Many as one, whose fields are arrays of shape (n,)."""
-        return cls(*np.array([[getattr(one, name.name) for one in groups] for name in fields(cls)], dtype=float))
+        return cls(*np.array([[getattr(group, name.name) for group in groups] for name in fields(cls)], dtype=float))
 
 
 class Form(Protocol):
@@ -89,7 +89,13 @@ class PowerLaw:
     r_squared: float
 
     def __post_init__(self) -> None:
-        keep(self, **{one.name: require_real(one.name, getattr(self, one.name)) for one in fields(self)})
+        keep(
+            self,
+            **{
+                coefficient.name: require_real(coefficient.name, getattr(self, coefficient.name))
+                for coefficient in fields(self)
+            },
+        )
 
     def __call__(self, slenderness: float, k_n: float, e: float) -> float:
         """The damping ratio [-]; `e` is the restitution of this law's own impact."""

@@ -40,8 +40,8 @@ def reference_frequency(wall: Block, k_n: float, points: int = 2) -> float:
     from the magnitude of the loss. On the paper's Figure 3 wall (xi_b = 5.3 %, targets e_2s = 0.970 and |e_1s| =
     0.442), `solve_compliant` returns with this omega 0.970 and 0.558 for two corner lines (30.1 rad/s), and 0.977 and
     0.485 for a bed of 32 (17.4 rad/s). With the vertical bounce sqrt(k_n A / m) (244 rad/s) hardly anything is lost
-    against the side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed. `scripts/layouts.py` prints these
-    figures. A frequency of the side itself would damp some 26 times too little.
+    against the side: 0.983 and 0.920 on corner lines, 0.998 and 0.939 on the bed. `scripts/paper/layouts.py` prints
+    these figures. A frequency of the side itself would damp some 26 times too little.
     """
     require_kind("wall", wall, Block)
     k_n = require_stiffness("interface stiffness k_n", k_n)

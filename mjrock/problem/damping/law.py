@@ -34,7 +34,7 @@ class DampingLaw:
     """A formula for the base and one for the side, their source, and the ranges they were fitted over.
 
     Calling a law gives `(xi_base, xi_side)` as fractions, and warns (UserWarning) outside the fitted ranges, or where
-    no damping of the base loses as much or as little as is asked for; it then gives the damping that comes closest.
+    no damping of the base loses as much or as little as is asked for. It then gives the closest damping.
 
     Args:
         name: what a generated model records.
@@ -193,7 +193,11 @@ class DampingLaw:
         Raises:
             OSError: if the file cannot be written.
         """
-        head = {one.name: getattr(self, one.name) for one in fields(self) if one.name not in ("base", "side", "errors")}
+        head = {
+            entry.name: getattr(self, entry.name)
+            for entry in fields(self)
+            if entry.name not in ("base", "side", "errors")
+        }
         lines = [f"{key} = {_toml(value)}" for key, value in head.items() if value is not None]
         for part, form in (("base", self.base), ("side", self.side)):
             lines += ["", f"[{part}]", f'form = "{type(form).__name__}"']
@@ -211,19 +215,19 @@ class DampingLaw:
 
         Raises:
             OSError: if the file cannot be read.
-            ValueError: if it is no law: not TOML, a formula that there is not, or a coefficient missing or too many.
+            ValueError: if it is not TOML, names an unknown formula, or has a coefficient too many or too few.
         """
         path = require_path("path", path)
         try:
             text = tomllib.loads(path.read_text(encoding="utf-8"))
-            made: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
+            values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
             for part in ("base", "side"):
                 given = dict(text[part])
                 name = given.pop("form")
                 if name not in FORMS:
                     raise ValueError(f"form = {name!r} is none of {', '.join(FORMS)}")
-                made[part] = FORMS[name](**given)
-            return cls(**made)
+                values[part] = FORMS[name](**given)
+            return cls(**values)
         except KeyError as error:
             raise ValueError(f"{path} is not a damping law: {error} is missing") from None
         except (TypeError, ValueError) as error:
@@ -258,10 +262,10 @@ LAWS = Path(__file__).with_name("laws")
 """Folder of the laws that come with the package."""
 
 CALIBRATED = DampingLaw.load(LAWS / "calibrated.toml")
-"""The law for two corner lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+"""The law for two corner lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
 CALIBRATED_BED = DampingLaw.load(LAWS / "calibrated_bed.toml")
-"""The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/calibrate.py`, see docs/damping.md."""
+"""The law for a bed of 16 lines a face, calibrated in MuJoCo by `scripts/paper/calibrate.py`, see docs/damping.md."""
 
 NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 """The laws that come with the package, by name."""

@@ -13,15 +13,13 @@ its first zero of acceleration at the phase 2 phi = 2 acos(xi) of the damped per
 exp(-2 phi xi / sqrt(1 - xi^2)) there. The textbook's exp(-pi xi / sqrt(1 - xi^2)) waits for x = 0 instead. It lets the
 dashpot pull, and is zero from xi = 1 on.
 
-Forces other than the contact's are left out. Gravity g lowers e by 0.1 to 0.3 times g / (omega v), with v the speed of
-approach, as long as that is small. A slower body stays on the contact.
+Forces other than the contact's are left out. `falling` has the same with gravity.
 """
 
 from __future__ import annotations
 
 import math
-
-from scipy.optimize import brentq
+from collections.abc import Callable
 
 from ...quantities import require_real, require_within
 
@@ -63,19 +61,48 @@ def rebound_damping(restitution: float) -> float:
     lost = -math.log(e)
     if lost == 0:
         return 0.0
-    if lost < 2:  # xi = sin(angle); the angle keeps every digit of a small xi
-
-        def excess(angle: float) -> float:
-            return 2 * (math.pi / 2 - angle) * math.tan(angle) - lost
-
-        if excess(_CRITICAL) <= 0:
-            return 1.0
-        return math.sin(brentq(excess, 0.0, _CRITICAL, xtol=1e-300, rtol=1e-15))
     if lost == 2:
         return 1.0
-    # xi = cosh(angle), with 2 angle coth(angle) = lost, so that the angle is below half of what is lost
-    return math.cosh(brentq(lambda angle: 2 * angle / math.tanh(angle) - lost, 1e-12, lost / 2, xtol=1e-14, rtol=1e-14))
+    if lost > 2:  # xi = cosh(angle), with 2 angle coth(angle) = lost, so that the angle is below half of what is lost
+        return math.cosh(_root(_overdamped, lost, lost / 2))
+    if _underdamped(_CRITICAL)[0] <= lost:
+        return 1.0
+    return math.sin(_root(_underdamped, lost, _CRITICAL))
 
 
 _CRITICAL = math.pi / 2 - 1e-7
 """The angle from which xi = sin(angle) is 1 to rounding."""
+
+
+def _underdamped(angle: float) -> tuple[float, float]:
+    """-log(e) of xi = sin(angle), which keeps every digit of a small xi, and its slope."""
+    rest, tan = math.pi / 2 - angle, math.tan(angle)
+    return 2 * rest * tan, 2 * rest * (1 + tan * tan) - 2 * tan
+
+
+def _overdamped(angle: float) -> tuple[float, float]:
+    """-log(e) of xi = cosh(angle), and its slope."""
+    if angle < 1e-8:
+        return 2.0, 0.0
+    tanh, sinh = math.tanh(angle), math.sinh(angle)
+    return 2 * angle / tanh, 2 / tanh - 2 * angle / (sinh * sinh)
+
+
+def _root(function: Callable[[float], tuple[float, float]], value: float, high: float) -> float:
+    """Where a function that rises from below `value` at 0 to above it at `high` has this value, to rounding.
+
+    Newton's steps, halved where they leave the bracket.
+    """
+    low, x = 0.0, min(value / math.pi, high)
+    for _ in range(200):
+        found, slope = function(x)
+        if found == value:
+            return x
+        low, high = (x, high) if found < value else (low, x)
+        new = x - (found - value) / slope if slope > 0 else -1.0
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - x) <= 1e-16 * abs(x):
+            return new
+        x = new
+    return x

@@ -87,7 +87,7 @@ def measured_stiffness(wall: Block, frequency: float, points: int = 2) -> float:
     Raises:
         ValueError: for a value outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
 
-    Source: Small oscillations of a rigid body on springs; checked against the engine in tests/test_stiffness.py.
+    Source: Small oscillations of a rigid body on springs; the engine agrees, see tests/problem/test_stiffness.py.
     """
     require_kind("wall", wall, Block)
     omega = 2 * math.pi * require_within("frequency", frequency, 1e-3, 1e4, "Hz")

@@ -36,7 +36,7 @@ class GroundMotion:
         name: what it is called in tables and pictures.
 
     Raises:
-        TypeError, ValueError: for a shape, a step, a value or a name that cannot be.
+        TypeError, ValueError: for accelerations, a step or a name that are not valid.
 
     Warns:
         UserWarning: for a peak beyond 3 g, where the unit is probably another one. A motion from a file also warns for
@@ -147,8 +147,8 @@ class GroundMotion:
                 f"scaled takes either a factor or a peak [m/s2]; factor = {spelt(factor)}, peak = {spelt(peak)}"
             )
         if peak is None:
-            made = require_within("factor", factor, -1e6, 1e6)
-            return GroundMotion(made * self.accel, self.dt, f"{self.name} x {made:g}")
+            multiple = require_within("factor", factor, -1e6, 1e6)
+            return GroundMotion(multiple * self.accel, self.dt, f"{self.name} x {multiple:g}")
         peak = require_within("peak", peak, 0.0, 1e3, "m/s2")
         if self.peak == 0:
             raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")

@@ -1,8 +1,8 @@
 """Text of recorded accelerations: PEER AT2, columns of time and acceleration, the plain text of a SAC set.
 
 Each parser takes the lines of a file and returns its accelerations [m/s2], shape (n,), and its time step [s]. A number
-has ASCII digits and may have a Fortran exponent, 1.5D-02. Nothing on a line of numbers is passed over: what is no
-finite number is an error with the line and the value.
+has ASCII digits and may have a Fortran exponent, 1.5D-02. Every word on a line of
+numbers has to be a finite number; the error names the line and the word.
 """
 
 from __future__ import annotations
@@ -111,8 +111,8 @@ def parse_at2(lines: Sequence[str]) -> Record:
         ValueError: for another header, another number of samples than it states, or something that is no number.
     """
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
-        found = f"line 3 is {_short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
-        raise ValueError(f"{found}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
+        instead = f"line 3 is {_short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
+        raise ValueError(f"{instead}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
     head = AT2_HEAD.fullmatch(lines[3]) or AT2_OLD_HEAD.fullmatch(lines[3])
     if head is None:
         raise ValueError(f"line 4 states no NPTS and DT as in NPTS= 4000, DT= .0100 SEC alone: {_short(lines[3])}")
@@ -127,9 +127,9 @@ def parse_sac(lines: Sequence[str]) -> Record:
     """
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
-        found = f"line 2 is {_short(lines[1])}" if len(lines) > 1 else "1 line"
+        instead = f"line 2 is {_short(lines[1])}" if len(lines) > 1 else "1 line"
         raise ValueError(
-            f"{found}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
+            f"{instead}: not the plain text of a SAC record, whose line 2 begins with the number of samples and dt"
         )
     _numbers(head[3] or "", 2)  # what the other columns say is not used
     return UNITS["cm/s2"] * _samples(lines, 2, int(head[1])), _step(head[2], 2)
@@ -239,17 +239,14 @@ def _short(text: str) -> str:
 def doubts(name: str, peak: float, final: float, fastest: float) -> list[str]:
     """What is odd about a record from a file, in words.
 
-    Args:
-        name: of the record.
-        peak: peak acceleration [m/s2].
-        final, fastest: residual and peak velocity [m/s].
+    `peak` is its peak acceleration [m/s2], `final` and `fastest` its residual and its peak velocity [m/s].
     """
-    found = []
+    sentences = []
     if peak < FAINT:
-        found.append(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?")
+        sentences.append(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?")
     if abs(final) > DRIFT * fastest:
-        found.append(
+        sentences.append(
             f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
             "it needs a baseline correction"
         )
-    return found
+    return sentences

@@ -40,20 +40,22 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
     require_flag("ground", ground)
     if not isinstance(blocks, Sequence) or isinstance(blocks, str) or not blocks:
         raise TypeError(f"blocks = {shown(blocks)} is not a list of blocks")
-    made, z = [], 0.0
+    polygons, z = [], 0.0
     for i, block in enumerate(blocks):
         require_kind(f"blocks[{i}]", block, Block)
         if block.inset:
             raise ValueError(f"blocks[{i}]: inset = {block.inset:g} m; a block of a stack has its edges at its faces")
         fixed = i == 0 and not ground
-        made.append(rectangle(-block.b, block.b, z, z + 2 * block.h, block.density, block.length, fixed, f"block_{i}"))
-        if not math.isclose(made[-1].mass, block.mass, rel_tol=1e-9):
+        polygons.append(
+            rectangle(-block.b, block.b, z, z + 2 * block.h, block.density, block.length, fixed, f"block_{i}")
+        )
+        if not math.isclose(polygons[-1].mass, block.mass, rel_tol=1e-9):
             raise ValueError(f"blocks[{i}] is not a plain rectangle; a block of a stack is")
         z += 2 * block.h
     if ground:
         b, length = max(block.b for block in blocks), max(block.length for block in blocks)
-        made.insert(0, ground_under(-b, b, length))
-    return made
+        polygons.insert(0, ground_under(-b, b, length))
+    return polygons
 
 
 def side_of(blocks: Sequence[Polygon], side_stop: bool | SideStop) -> Polygon | None:
@@ -88,21 +90,21 @@ def voussoirs_of(
     count = require_whole("voussoirs", voussoirs, 1, 1000)
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
     angles = 0.5 * math.pi + span_angle * (0.5 - np.arange(count + 1) / count)
-    way = np.column_stack([np.cos(angles), np.sin(angles)])
-    made = [
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    polygons = [
         Polygon(
-            [outer * way[i], outer * way[i + 1], inner * way[i + 1], inner * way[i]],
+            [outer * directions[i], outer * directions[i + 1], inner * directions[i + 1], inner * directions[i]],
             density=density,
             length=length,
             name=f"voussoir_{i}",
         )
         for i in range(count)
     ]
-    for name, at, side in (("left_abutment", way[0], -1.0), ("right_abutment", way[-1], 1.0)):
+    for name, at, side in (("left_abutment", directions[0], -1.0), ("right_abutment", directions[-1], 1.0)):
         down = thickness * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
         corners = [inner * at, outer * at, outer * at + down, inner * at + down]
-        made.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
-    return [made[-2], *made[:-2], made[-1]]
+        polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
+    return [polygons[-2], *polygons[:-2], polygons[-1]]
 
 
 def bonded(length: float, height: float, unit: tuple[float, float], thickness: float, density: float) -> list[Polygon]:
@@ -126,12 +128,12 @@ def bonded(length: float, height: float, unit: tuple[float, float], thickness: f
         raise ValueError(
             f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
         )
-    made = [ground_under(0.0, length, thickness)]
+    polygons = [ground_under(0.0, length, thickness)]
     for course in range(courses):
         shift = 0.5 * long if course % 2 else long
         inner = shift + long * np.arange(math.ceil(length / long))
         ends = [0.0, *(x for x in inner.tolist() if x < length - SMALLEST_PIECE * long), length]
         for i, (left, right) in enumerate(pairwise(ends)):
             name = f"unit_{course}_{i}"
-            made.append(rectangle(left, right, course * high, (course + 1) * high, density, thickness, False, name))
-    return made
+            polygons.append(rectangle(left, right, course * high, (course + 1) * high, density, thickness, False, name))
+    return polygons

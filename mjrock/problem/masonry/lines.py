@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import null_space
 
+from ...geometry.frames import PLANE, push_body
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
@@ -37,6 +38,11 @@ class Lines(NamedTuple):
     normal: Array
     k: Array
 
+    @property
+    def along(self) -> Array:
+        """Unit vectors along the faces, a quarter turn from the normals, shape (m, 2)."""
+        return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
+
 
 def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int) -> Lines:
     """The lines of all joints, evenly spaced from end to end of each, the outer two with half the tributary width.
@@ -44,11 +50,7 @@ def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, poi
     The point is on the block above. At an end where the block above overhangs, the corner is that of the block below,
     and the point is on the block below, unless that one is fixed.
 
-    Args:
-        blocks: the blocks.
-        joints: their joints.
-        k_n: stiffness of each joint [N/m3].
-        points: lines a joint.
+    Each joint has its own k_n [N/m3], and all have the same number of points.
     """
     rows: list[tuple[int, int, int]] = []
     at, normal, k = [], [], []
@@ -68,23 +70,22 @@ def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, poi
 def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> Array:
     """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
 
-    Args:
-        blocks: the blocks.
-        lines: the lines.
-        directions: unit vectors, shape (m, 2). Along the normals the rates are those of the gaps.
+    They are the generalised forces of unit forces that press the two blocks of a line apart.
+
+    Directions are unit vectors, shape (m, 2). Along the normals the rates are those of the gaps.
 
     Returns:
         Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies).
     """
     free = [i for i, block in enumerate(blocks) if not block.fixed]
-    column = {block: 3 * number for number, block in enumerate(free)}
-    made = np.zeros((len(lines.k), 3 * len(free)))
+    number, frames = {block: body for body, block in enumerate(free)}, np.zeros((len(free), 4))
+    rates = np.zeros((len(lines.k), PLANE.nv * len(free)))
     for sign, carrier in ((1.0, lines.body), (-1.0, lines.face)):
         for i, block in enumerate(carrier.tolist()):
-            if block in column:
-                (nx, nz), (x, z) = directions[i], lines.at[i] - blocks[block].centroid
-                made[i, column[block] : column[block] + 3] += sign * np.array([nx, nz, nx * z - nz * x])
-    return made
+            if block in number:
+                arm = tuple((lines.at[i] - blocks[block].centroid).tolist())
+                push_body(frames, number[block], arm, tuple((sign * directions[i]).tolist()), rates[i])
+    return rates
 
 
 def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -> float:
@@ -92,16 +93,11 @@ def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
     weight's own part of the stiffness is left out, as in `reference_frequency`, which is the case of one block.
-
-    Args:
-        blocks: the blocks.
-        lines: their contact lines.
-        friction: coefficient of friction of each joint [-].
     """
     free = [block for block in blocks if not block.fixed]
     masses = np.array([(block.mass, block.mass, block.inertia) for block in free]).ravel()
     open_up = rates(blocks, lines, lines.normal) / np.sqrt(masses)
-    sideways = rates(blocks, lines, np.column_stack([lines.normal[:, 1], -lines.normal[:, 0]])) / np.sqrt(masses)
+    sideways = rates(blocks, lines, lines.along) / np.sqrt(masses)
     slips = [sideways[lines.joint == joint].mean(axis=0) for joint in np.flatnonzero(friction > 0)]
     left = null_space(np.reshape(slips, (-1, len(masses))), rcond=1e-9)  # the motions without slip
     squares = np.linalg.eigvalsh((left.T @ (open_up.T * lines.k)) @ (open_up @ left)) if left.shape[1] else np.zeros(0)

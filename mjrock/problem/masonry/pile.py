@@ -9,6 +9,7 @@ from typing import Self
 
 import numpy as np
 
+from ...geometry.vectors import spun
 from ...quantities import GRAVITY, Array
 from ..wall.block import Block
 from .masonry import Masonry
@@ -37,7 +38,7 @@ class Pile:
         """The stack that a masonry is.
 
         Raises:
-            ValueError: if it is none or several, has side stops on both sides, or is too squat to rock.
+            ValueError: if it is not one stack, has side stops on both sides, or is too squat to rock.
         """
         blocks, joints = masonry.blocks, masonry.joints
         sides = tuple(i for i, joint in enumerate(joints) if is_side(blocks, joint))
@@ -95,8 +96,8 @@ class Pile:
     @cached_property
     def inertia(self) -> float:
         """Moment of inertia of the whole about its centroid [kg m2]."""
-        own = sum(self.masonry.blocks[i].inertia for i in self.masonry.free)
-        return own + float(self.masses @ ((self._arms - self.centroid) ** 2).sum(axis=1))
+        central = sum(self.masonry.blocks[i].inertia for i in self.masonry.free)
+        return central + float(self.masses @ ((self._arms - self.centroid) ** 2).sum(axis=1))
 
     def lever(self, side: float) -> float:
         """Distance of the centroid from the edge of the base at a side, 1 right or -1 left, along the base [m]."""
@@ -113,7 +114,7 @@ class Pile:
             x, z and rotation of each block that is not fixed [m/s, m/s, rad/s], shape (bodies, 3).
         """
         arms = self._arms - np.array([0.5 * side * self.masonry.joints[self.base].width, 0.0])
-        return np.column_stack([rate * arms[:, 1], -rate * arms[:, 0], np.full(len(arms), rate)])
+        return np.column_stack([*spun((rate,), tuple(arms.T)), np.full(len(arms), rate)])
 
     def rising(self, amplitude: float) -> tuple[Array, float]:
         """What makes a rigid stack at rest rise outwards to a rotation, a share of alpha.

@@ -67,9 +67,9 @@ class Polygon:
     @cached_property
     def corners(self) -> Array:
         """The vertices counterclockwise [m], shape (n, 2)."""
-        made = np.array(self.vertices)
-        made.setflags(write=False)
-        return made
+        corners = np.array(self.vertices)
+        corners.setflags(write=False)
+        return corners
 
     @cached_property
     def _moments(self) -> tuple[float, float, float, float]:
@@ -108,13 +108,13 @@ class Polygon:
 
     def left_at(self, z: float) -> float:
         """The left end of the block at a height z [m], x [m]; at the end of its range where z lies beyond that."""
-        found = []
+        ends = []
         for (x0, z0), (x1, z1) in zip(self.corners, np.roll(self.corners, -1, axis=0), strict=True):
             low, high = min(z0, z1), max(z0, z1)
             if low - 1e-9 <= z <= high + 1e-9:
                 share = 0.5 if z1 == z0 else min(max((z - z0) / (z1 - z0), 0.0), 1.0)
-                found.append(min(x0, x1) if z1 == z0 else x0 + share * (x1 - x0))
-        return float(min(found, default=self.corners[:, 0].min()))
+                ends.append(min(x0, x1) if z1 == z0 else x0 + share * (x1 - x0))
+        return float(min(ends, default=self.corners[:, 0].min()))
 
     @property
     def size(self) -> float:
@@ -124,33 +124,33 @@ class Polygon:
 
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     """Vertices as pairs of numbers, counterclockwise; a TypeError or ValueError names what is wrong with them."""
-    made = require_reals("vertices", vertices, f"an array of real numbers of the shape (3 to {MOST_VERTICES}, 2)")
-    if made.ndim != 2 or made.shape[1] != 2 or not 3 <= len(made) <= MOST_VERTICES:
-        raise ValueError(f"vertices has the shape {made.shape}; (3 to {MOST_VERTICES}, 2) is needed")
-    if not (np.abs(made) <= FARTHEST).all():  # a NaN is not
+    corners = require_reals("vertices", vertices, f"an array of real numbers of the shape (3 to {MOST_VERTICES}, 2)")
+    if corners.ndim != 2 or corners.shape[1] != 2 or not 3 <= len(corners) <= MOST_VERTICES:
+        raise ValueError(f"vertices has the shape {corners.shape}; (3 to {MOST_VERTICES}, 2) is needed")
+    if not (np.abs(corners) <= FARTHEST).all():  # a NaN is not
         raise ValueError(f"vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m")
-    edges = np.roll(made, -1, axis=0) - made
+    edges = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*edges.T)
-    extent = float(np.ptp(made, axis=0).max())
+    extent = float(np.ptp(corners, axis=0).max())
     if not lengths.min() > max(1e-9 * extent, 1e-7):
         i = int(lengths.argmin())
-        raise ValueError(f"vertices {i} and {(i + 1) % len(made)} coincide at {made[i].tolist()} m")
-    _require_no_crossing(made)
+        raise ValueError(f"vertices {i} and {(i + 1) % len(corners)} coincide at {corners[i].tolist()} m")
+    _require_no_crossing(corners)
     unit = edges / lengths[:, None]
     before = np.roll(unit, 1, axis=0)
     turns = before[:, 0] * unit[:, 1] - before[:, 1] * unit[:, 0]
-    area = _area(made)
+    area = _area(corners)
     if not abs(area) > max(1e-6 * extent**2, 1e-8):
         raise ValueError(f"vertices enclose an area of {abs(area):.3g} m2: they lie on a line")
     inwards = np.flatnonzero(np.sign(area) * turns < -BEND)
     if inwards.size:
         i = int(inwards[0])
-        raise ValueError(f"vertices: the corner {i} at {made[i].tolist()} m points inwards; a block is convex")
+        raise ValueError(f"vertices: the corner {i} at {corners[i].tolist()} m points inwards; a block is convex")
     winding = float(np.arctan2(turns, (before * unit).sum(axis=1)).sum()) / (2 * math.pi)
     if abs(abs(winding) - 1) > 0.1:
         raise ValueError("vertices: the edges cross; give the vertices in order around the block")
-    made = made[np.abs(turns) > BEND]  # what lies on a straight edge is no corner
-    ordered = made if area > 0 else made[::-1]
+    corners = corners[np.abs(turns) > BEND]  # what lies on a straight edge is no corner
+    ordered = corners if area > 0 else corners[::-1]
     return tuple((float(x), float(z)) for x, z in ordered)
 
 

@@ -76,7 +76,7 @@ def retardations(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array,
         except ValueError as error:
             raise ValueError(f"law = has no wall for the joint {joints[i].name}: {error}; give xi") from None
     under = {joints[i].above: i for i in beds}
-    made = np.empty(len(joints))
+    retardation = np.empty(len(joints))
     for i, joint in enumerate(joints):
         base, k_side, top = i, None, None
         if i not in walls:
@@ -91,8 +91,8 @@ def retardations(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array,
             contacts = Contacts.from_law(wall, e, k_base=float(k_n[base]), k_side=k_side, law=law, points=points)
         for warning in caught:
             warnings.warn(f"the joint {joint.name}: {warning.message}", warning.category, stacklevel=4)
-        made[i] = contacts.base.retardation if contacts.side is None else contacts.side.retardation
-    return made
+        retardation[i] = contacts.base.retardation if contacts.side is None else contacts.side.retardation
+    return retardation
 
 
 def _top(blocks: Sequence[Polygon], joints: Sequence[Joint], side: int) -> float:

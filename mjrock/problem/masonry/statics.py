@@ -40,10 +40,10 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
         applied: further forces on each free block and their moment about its centroid, positive where it turns the top
             to the right [N, N, N m], shape (free, 3).
     """
-    found = _balanced(masonry, applied, masonry.joint_friction)
-    if _stands(found):
+    answer = _balanced(masonry, applied, masonry.joint_friction)
+    if _stands(answer):
         return ()
-    moving = np.abs(found.eqlin.marginals).reshape(-1, 3).max(axis=1)
+    moving = np.abs(answer.eqlin.marginals).reshape(-1, 3).max(axis=1)
     return tuple(masonry.names[i] for i, v in zip(masonry.free, moving, strict=True) if v > MOVES * moving.max())
 
 
@@ -54,18 +54,20 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
         The least coefficient that every joint would need to have at least [-], rounded up, and the names of joints that
         have less and lean on it.
     """
-    own = masonry.joint_friction
+    friction = masonry.joint_friction
     low, high = 0.0, MOST_FRICTION
-    if not _stands(_balanced(masonry, applied, np.maximum(own, high))):
+    if not _stands(_balanced(masonry, applied, np.maximum(friction, high))):
         return None
     while high - low > 0.5 * ROUNDED:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _stands(_balanced(masonry, applied, np.maximum(own, middle))) else (middle, high)
+        low, high = (
+            (low, middle) if _stands(_balanced(masonry, applied, np.maximum(friction, middle))) else (middle, high)
+        )
     enough = math.ceil(high / ROUNDED) * ROUNDED
-    found = _balanced(masonry, applied, own, np.maximum(own, enough))
+    answer = _balanced(masonry, applied, friction, np.maximum(friction, enough))
     m = len(masonry.lines.k)
-    beyond = np.reshape(found.x[2 * m : 4 * m], (2, m)).sum(axis=0)
-    short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (own < enough)[masonry.lines.joint]])
+    beyond = np.reshape(answer.x[2 * m : 4 * m], (2, m)).sum(axis=0)
+    short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
 
 
@@ -73,7 +75,7 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names of blocks that can slide without pressing or opening a joint, and of the joints without friction they
     slide on. No stiffness holds them."""
     blocks, lines, friction = masonry.blocks, masonry.lines, masonry.joint_friction
-    opening, sliding = rates(blocks, lines, lines.normal), rates(blocks, lines, _across(lines.normal))
+    opening, sliding = rates(blocks, lines, lines.normal), rates(blocks, lines, lines.along)
     slips = np.array([sliding[lines.joint == j].mean(axis=0) for j in range(len(friction))])
     free = null_space(np.vstack([opening, slips[friction > 0]]), rcond=1e-9)
     moving = np.abs(free).max(axis=1, initial=0.0).reshape(-1, 3).max(axis=1)
@@ -84,11 +86,6 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     )
 
 
-def _across(normal: Array) -> Array:
-    """The normals turned by a right angle, along the faces, shape (m, 2)."""
-    return np.column_stack([normal[:, 1], -normal[:, 0]])
-
-
 def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None) -> Any:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
@@ -96,7 +93,7 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     cone, forces along its edges come second and are used as little as possible.
     """
     lines, free = masonry.lines, [masonry.blocks[i] for i in masonry.free]
-    pressing, rubbing = rates(masonry.blocks, lines, lines.normal), rates(masonry.blocks, lines, _across(lines.normal))
+    pressing, rubbing = rates(masonry.blocks, lines, lines.normal), rates(masonry.blocks, lines, lines.along)
     weight = (np.array([(0.0, -GRAVITY * block.mass, 0.0) for block in free]) + applied).ravel()
     total = float(np.abs(weight).sum())
     sizes = np.array([(1.0, 1.0, block.size) for block in free]).ravel()
@@ -113,6 +110,6 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes, method="highs")
 
 
-def _stands(found: Any) -> bool:
+def _stands(answer: Any) -> bool:
     """Whether nothing of the weight is missing, or the programme found no answer."""
-    return bool(found.status != 0 or found.fun <= UNBALANCED)
+    return bool(answer.status != 0 or answer.fun <= UNBALANCED)

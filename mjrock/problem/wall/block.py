@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_within, shown
+from ...quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_row, require_within, shown
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
 from .section import Moments, Opening, Profile, moments, require_openings, require_profile
@@ -72,8 +73,8 @@ class Block:
             parts = getattr(self, name)
             if not isinstance(parts, Sequence) or isinstance(parts, str):
                 raise TypeError(f"{name} = {shown(parts)} is no sequence of {kind.__name__}")
-            for i, one in enumerate(parts):
-                require_kind(f"{name}[{i}]", one, kind)
+            for i, part in enumerate(parts):
+                require_kind(f"{name}[{i}]", part, kind)
             keep(self, **{name: tuple(parts)})
         require_openings(self.openings, self.length, 2 * self.h)
         if self.profile is not None:
@@ -128,17 +129,17 @@ class Block:
     @property
     def base_length(self) -> float:
         """Length of the base along the wall, without its doors [m]."""
-        return self.length - sum(one.width for one in self.openings if one.sill == 0)
+        return self.length - sum(opening.width for opening in self.openings if opening.sill == 0)
 
     @cached_property
     def _parts(self) -> Moments:
         """Mass and its moments of all that is not a plain rectangle [kg, kg m, kg m2]."""
         profile = self.profile or ((0.0, 2 * self.b), (2 * self.h, 2 * self.b))
         total = [self.density * value for value in moments(profile, self.length, self.openings)]
-        for one in self.masses:
-            x, z = one.offset, one.height
+        for added in self.masses:
+            x, z = added.offset, added.height
             for i, value in enumerate((1.0, x, z, x * x, z * z)):
-                total[i] += one.mass * value
+                total[i] += added.mass * value
         return Moments(*total)
 
     @property
@@ -228,11 +229,12 @@ class Block:
         """The rotation in [0, alpha] whose `potential_energy` is `energy` [J]; the inverse of that function.
 
         Raises:
+            TypeError: unless the energy is a real number.
             ValueError: if the wall has more energy than it takes to overturn it.
         """
-        return self.restoring.outer.rotation_at(energy)
+        return self.restoring.outer.rotation_at(require_real("energy", energy))
 
-    def pose(self, theta: Array) -> Array:
+    def pose(self, theta: ArrayLike) -> Array:
         """Displacement (x, z) of the centroid [m] and rotation [rad] of the rigid wall turned about its toe.
 
         Args:
@@ -240,8 +242,13 @@ class Block:
 
         Returns:
             x away from the side stop, z upwards, and theta, shape (n, 3).
+
+        Raises:
+            TypeError, ValueError: unless the rotations are a row of finite numbers.
         """
-        return pose_of(theta, self.centroid_offset, self.centroid_height, self.half_base)
+        return pose_of(
+            require_row("theta", theta, "rotation [rad]"), self.centroid_offset, self.centroid_height, self.half_base
+        )
 
     def turning(self, theta: Real, direction: Real) -> Array:
         """Rate of `pose` per unit of angular velocity, the wall turning about the toe in `direction`, +1 or -1;

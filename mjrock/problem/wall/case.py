@@ -40,7 +40,7 @@ class Case:
 
     Raises:
         ValueError: for a rotation beyond 90 degrees or into the side stop, a duration that is not positive, a motion
-            that is none, an effect that is not on the wall, or effects that overturn the wall as it stands.
+            of another type, an effect that is not on the wall, or effects that overturn the wall as it stands.
     """
 
     block: Block
@@ -87,15 +87,17 @@ class Case:
         if not self.effects:
             return
         top, b = 2 * self.block.h * (1 + 1e-12), self.block.b * (1 + 1e-12)
-        for i, one in enumerate(self.effects):
-            if isinstance(one, SideStop):
-                raise TypeError(f"effects[{i}] = {shown(one)}: give it as side_stop")
-            require_kind(f"effects[{i}]", one, *KINDS)
-            if one.block:
-                raise ValueError(f"effects[{i}], block = {one.block}, is outside the valid range: a wall has block 0")
-            require_within(f"effects[{i}], height of the {type(one).__name__}", one.height, 0.0, top, "m")
-            if isinstance(one, Load):
-                require_within(f"effects[{i}], offset of the Load", one.offset, -b, b, "m")
+        for i, effect in enumerate(self.effects):
+            if isinstance(effect, SideStop):
+                raise TypeError(f"effects[{i}] = {shown(effect)}: give it as side_stop")
+            require_kind(f"effects[{i}]", effect, *KINDS)
+            if effect.block:
+                raise ValueError(
+                    f"effects[{i}], block = {effect.block}, is outside the valid range: a wall has block 0"
+                )
+            require_within(f"effects[{i}], height of the {type(effect).__name__}", effect.height, 0.0, top, "m")
+            if isinstance(effect, Load):
+                require_within(f"effects[{i}], offset of the Load", effect.offset, -b, b, "m")
         for side, name in ((1.0, "outwards"), (-1.0, "inwards")):
             held = side > 0 and self.overturning_rotation > 0  # by ties
             if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not held:
@@ -116,12 +118,12 @@ class Case:
         for name, motion in (("motion", self.motion), ("vertical", self.vertical)):
             if motion is not None:
                 parts.append(f"{name} {motion.name!r}")
-        parts += [type(one).__name__ for one in self.effects]
+        parts += [type(effect).__name__ for effect in self.effects]
         return f"<Case of {self.block!r}: {', '.join(parts)}>"
 
     def each(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The effects of one kind, in their order."""
-        return tuple(one for one in self.effects if isinstance(one, kind))
+        return tuple(effect for effect in self.effects if isinstance(effect, kind))
 
     @cached_property
     def wall(self) -> Block:
@@ -145,8 +147,8 @@ class Case:
     def restoring(self) -> Restoring:
         """The restoring moments of weight, loads and thrusts about the two toes; ties come on top."""
         half_base = self.block.half_base
-        forces = [of_force(one.offset, one.height, 0.0, one.force, half_base) for one in self.each(Load)]
-        forces += [of_force(0.0, one.height, one.force, 0.0, half_base) for one in self.each(Thrust)]
+        forces = [of_force(load.offset, load.height, 0.0, load.force, half_base) for load in self.each(Load)]
+        forces += [of_force(0.0, thrust.height, thrust.force, 0.0, half_base) for thrust in self.each(Thrust)]
         return self.wall.restoring.plus(forces) if forces else self.wall.restoring
 
     @cached_property
@@ -157,7 +159,7 @@ class Case:
     @property
     def pressing(self) -> float:
         """Weight and loads that press on the base [N]."""
-        return self.wall.weight + sum(one.force for one in self.each(Load))
+        return self.wall.weight + sum(load.force for load in self.each(Load))
 
     @property
     def shaken(self) -> bool:
@@ -202,8 +204,8 @@ class Case:
     def returns_from(self, theta: Array) -> Flags:
         """Whether the wall may still come back from rotations of either sign [rad], shape (n,)."""
         inwards = ON_ITS_FACE if self.side_stop else self.restoring.inner.alpha
-        found: Flags = (theta <= self.overturning_rotation) & (theta >= -inwards)
-        return found
+        returns: Flags = (theta <= self.overturning_rotation) & (theta >= -inwards)
+        return returns
 
     def energy(self, theta: Array, omega: Array) -> Array:
         """Kinetic and potential energy of the rigid wall, above the wall at rest [J], without ties; shape (n,)."""

@@ -75,7 +75,8 @@ class Restoring(NamedTuple):
     def plus(self, moments: list[Restoring]) -> Restoring:
         """The sum of this one and others."""
         sides = [
-            Moment(sum(one.P for one in side), sum(one.Q for one in side)) for side in zip(self, *moments, strict=True)
+            Moment(sum(moment.P for moment in side), sum(moment.Q for moment in side))
+            for side in zip(self, *moments, strict=True)
         ]
         return Restoring(*sides)
 
@@ -83,10 +84,7 @@ class Restoring(NamedTuple):
 def of_force(x: float, z: float, outwards: float, downwards: float, half_base: float) -> Restoring:
     """The restoring moments of a force that acts at an offset x from the middle of the base and a height z.
 
-    Args:
-        x, z: where it acts [m].
-        outwards, downwards: its components [N].
-        half_base: distance of either toe from the middle of the base [m].
+    Its components are [N], x and z [m]. Either toe is `half_base` from the middle of the base [m].
     """
     sides = []
     for side in (1.0, -1.0):
@@ -97,6 +95,8 @@ def of_force(x: float, z: float, outwards: float, downwards: float, half_base: f
 
 def pose_of(theta: Array, x: float, z: float, half_base: float) -> Array:
     """Displacement (x, z) [m] of a point of a rigid wall that turns about its toes, and its rotation; shape (n, 3).
+
+    It stands beside `mjrock.geometry` because it takes many rotations at once, and rocking theory uses it.
 
     Args:
         theta: rotations [rad], shape (n,).

@@ -74,35 +74,35 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     """
     if not isinstance(profile, Sequence) or isinstance(profile, str):
         raise TypeError(f"profile = {shown(profile)} is no sequence of pairs of height and thickness [m]")
-    made: list[tuple[float, float]] = []
+    pairs: list[tuple[float, float]] = []
     for i, pair in enumerate(profile):
         if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
             raise TypeError(f"profile[{i}] = {shown(pair)} is no pair of height and thickness [m]")
-        z = require_within(f"profile[{i}], height", pair[0], made[-1][0] if made else 0.0, height * (1 + 1e-12), "m")
-        made.append((min(z, height), require_within(f"profile[{i}], thickness", pair[1], 1e-3, 20.0, "m")))
-    whole = len(made) > 1 and made[0][0] == 0 and abs(made[-1][0] - height) <= 1e-9 * height
-    if not whole or abs(made[0][1] / thickness - 1) > 1e-9:
+        z = require_within(f"profile[{i}], height", pair[0], pairs[-1][0] if pairs else 0.0, height * (1 + 1e-12), "m")
+        pairs.append((min(z, height), require_within(f"profile[{i}], thickness", pair[1], 1e-3, 20.0, "m")))
+    whole = len(pairs) > 1 and pairs[0][0] == 0 and abs(pairs[-1][0] - height) <= 1e-9 * height
+    if not whole or abs(pairs[0][1] / thickness - 1) > 1e-9:
         raise ValueError(
             f"profile = {shown(profile)} is outside the valid range: it starts at height 0 with the thickness "
             f"{thickness:g} m and ends at the height {height:g} m"
         )
-    return tuple(made)
+    return tuple(pairs)
 
 
 def require_openings(openings: Sequence[Opening], length: float, height: float) -> None:
     """Raise ValueError unless the openings lie within the wall and leave some of it at every height."""
-    for i, one in enumerate(openings):
-        if one.head > height * (1 + 1e-12):
+    for i, opening in enumerate(openings):
+        if opening.head > height * (1 + 1e-12):
             raise ValueError(
-                f"openings[{i}] reaches from {one.sill:g} to {one.head:g} m; the valid range is 0 to {height:g} m, the "
-                "height of the wall"
+                f"openings[{i}] reaches from {opening.sill:g} to {opening.head:g} m; "
+                f"the valid range is 0 to {height:g} m, the height of the wall"
             )
-    for one in openings:
-        z = one.sill + 1e-9 * height  # just above the sill
+    for opening in openings:
+        z = opening.sill + 1e-9 * height  # just above the sill
         across = sum(other.width for other in openings if other.sill <= z < other.head)
         if not across < length * (1 - 1e-9):
             raise ValueError(
-                f"the openings at a height of {one.sill:.4g} m are {across:g} m wide together; the valid range is "
+                f"the openings at a height of {opening.sill:.4g} m are {across:g} m wide together; the valid range is "
                 f"less than {length:g} m, the length of the wall"
             )
 
@@ -119,11 +119,11 @@ def moments(profile: Profile, length: float, openings: Sequence[Opening]) -> Mom
     inner = -0.5 * profile[0][1]
     total = [0.0] * 5
     for (low, t_low), (high, t_high) in pairwise(profile):
-        cuts = {low, high} | {z for one in openings for z in (one.sill, one.head) if low < z < high}
+        cuts = {low, high} | {z for opening in openings for z in (opening.sill, opening.head) if low < z < high}
         heights = sorted(cuts)
         for z0, z1 in pairwise(heights):
             middle = 0.5 * (z0 + z1)
-            left = length - sum(one.width for one in openings if one.sill < middle < one.head)
+            left = length - sum(opening.width for opening in openings if opening.sill < middle < opening.head)
             t0, t1 = (t_low + (t_high - t_low) * (z - low) / (high - low) for z in (z0, z1))
             for i, value in enumerate(_slab(inner, z0, z1, t0, t1)):
                 total[i] += left * value

@@ -53,10 +53,9 @@ class Pull(NamedTuple):
 def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
     """Elongation of a tie beyond its slack [m], and its lever [m]: the rate of its length with the rotation theta.
 
-    Args:
-        tie: the tie.
-        theta: rotation [rad]; a number, or an array outside compiled functions.
-        side: the toe that the wall turns about, +1 for the outer one.
+    It stands beside `mjrock.geometry` because rocking theory, which uses it, shares no kinematics with the engine.
+
+    theta [rad] may be an array outside compiled functions. `side` is the toe, +1 for the outer one.
     """
     d, z = side * tie.half_base - tie.offset, tie.height
     sine, cosine = np.sin(theta), np.cos(theta)
@@ -105,5 +104,5 @@ def lost(pull: Pull) -> float:
 
 
 def _elongation(pull: Pull, theta: Array) -> Array:
-    found: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
-    return found
+    elongation: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
+    return elongation

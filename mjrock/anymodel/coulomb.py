@@ -1,0 +1,170 @@
+"""Coulomb's law for contacts that slide, in anyone's steps: `CoulombFriction`.
+
+MuJoCo's cone presses a contact that slides apart, by the friction that its row would need to stop it; see
+`engine/sliding.py`. Here a contact that slides through the next step has no friction row. Mu times the force of its law
+acts on its two bodies as an applied force, against the slip in the middle of the step, and the engine finds the
+force of the law with the friction in place. A contact whose slip friction stops within the step keeps its row.
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from ..quantities import Array, Integers, require_kind
+
+LOOKS = 10
+"""Most looks at a step in which the friction is brought up to date."""
+KNOWN = 1e-6
+"""Change of the friction in a look from which on it is known, as a share of it [-]."""
+SATURATED = 0.99
+"""Friction over mu times the normal force from which on a contact is taken to slide [-]."""
+VELOCITY = int(mujoco.mjtStage.mjSTAGE_VEL)
+
+
+class CoulombFriction:
+    """Friction of sliding contacts as an applied force, called before each `mj_step`.
+
+    ::
+
+        friction = mr.CoulombFriction(model)
+        while data.time < 2.0:
+            friction(data)
+            mujoco.mj_step(model, data)
+
+    It is for explicit pairs with friction, as `contact_for` makes them, with the elliptic cone. A pair of which one
+    point sticks while others slide keeps its rows. It changes `pair_dim` of the model from step to step, and
+    `release` gives it back. Forces of the user in `qfrc_applied` remain, and may be set anew before each call.
+
+    Args:
+        model: the model that is stepped, which is changed.
+
+    Raises:
+        TypeError: unless it is a compiled model.
+        ValueError: if it has no explicit pair with friction, the pyramidal cone, or the integrator RK4.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        require_kind("model", model, mujoco.MjModel)
+        if not np.any(model.pair_dim > 1):
+            raise ValueError("model has no explicit <pair> with friction; contact_for gives it one")
+        if model.opt.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
+            raise ValueError("model has the pyramidal cone; set cone to elliptic, as PairContact.apply does")
+        if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+            raise ValueError("model has the integrator RK4, in whose stages the friction of a step is not known")
+        self.model = model
+        self.dimensions = np.array(model.pair_dim)
+        self._pairs = {
+            frozenset((int(a), int(b))): i
+            for i, (a, b) in enumerate(zip(model.pair_geom1, model.pair_geom2, strict=True))
+        }
+        self._given = np.zeros(model.nv)
+        self._left = np.zeros(model.nv)
+        self._stopped: set[int] = set()
+        self.sliding: tuple[int, ...] = ()
+
+    def __call__(self, data: mujoco.MjData) -> tuple[int, ...]:
+        """Write the friction of what slides into `qfrc_applied`.
+
+        Args:
+            data: the state before a step; its accelerations and contacts are those of the step afterwards.
+
+        Returns:
+            The numbers of the explicit pairs that slide in the step, also as `.sliding`.
+        """
+        self.release(data)
+        mujoco.mj_forward(self.model, data)
+        pairs = self._find(data)
+        while pairs and not self._settle(data, pairs):
+            pairs = self._keep(data, pairs)
+        self.sliding = tuple(sorted(pairs))
+        return self.sliding
+
+    def release(self, data: mujoco.MjData | None = None) -> None:
+        """Give every contact its friction row back, and clear the friction of the last step from `qfrc_applied`."""
+        self.model.pair_dim[:] = self.dimensions
+        self.sliding = ()
+        if data is not None:
+            if np.array_equal(data.qfrc_applied, self._left):
+                data.qfrc_applied[:] = self._given
+            self._given[:] = data.qfrc_applied
+            self._left[:] = data.qfrc_applied
+
+    def _pressing(self, data: mujoco.MjData) -> tuple[Integers, Integers, Integers]:
+        """The contacts that press: their numbers, those of their pairs, and those of their normal rows."""
+        number, pairs, rows = [], [], []
+        addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
+        forces = data.efc_force
+        for i, (address, (first, second)) in enumerate(zip(addresses, geoms, strict=True)):
+            pair = self._pairs.get(frozenset((first, second)), -1)
+            if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and forces[address] > 0:
+                number.append(i)
+                pairs.append(pair)
+                rows.append(address)
+        return np.array(number, dtype=np.int64), np.array(pairs, dtype=np.int64), np.array(rows, dtype=np.int64)
+
+    def _find(self, data: mujoco.MjData) -> set[int]:
+        """The pairs of which every contact that presses slides through the step."""
+        _, pairs, rows = self._pressing(data)
+        if not len(rows):
+            return set()
+        later, tangents = np.zeros(data.nefc), rows[:, None] + np.array((1, 2))
+        mujoco.mj_mulJacVec(self.model, data, later, data.qacc)
+        slip, forces = data.efc_vel[tangents], data.efc_force
+        shares = forces[tangents] / np.maximum(self.model.pair_friction[pairs, :2], mujoco.mjMINMU)
+        saturated = (shares**2).sum(axis=1) >= (SATURATED * forces[rows]) ** 2
+        onward = (slip * (slip + self.model.opt.timestep * later[tangents])).sum(axis=1) > 0
+        sticks = {int(pair) for pair in pairs[~(saturated & onward)]}
+        return {int(pair) for pair in pairs} - sticks
+
+    def _settle(self, data: mujoco.MjData, pairs: set[int]) -> bool:
+        """Find the friction of the pairs that slide; whether all of them slide through the step."""
+        model, h = self.model, float(self.model.opt.timestep)
+        model.pair_dim[:] = self.dimensions
+        model.pair_dim[list(pairs)] = 1
+        data.qfrc_applied[:] = self._given
+        mujoco.mj_forward(model, data)
+        number, owners, rows = self._pressing(data)
+        chosen = np.isin(owners, list(pairs))
+        number, owners, rows = number[chosen], owners[chosen], rows[chosen]
+        tangents = self._tangents(data, number, owners)
+        mu, slip = model.pair_friction[owners, :2], tangents @ data.qvel
+        before = np.zeros(model.nv)
+        stops = np.zeros(len(rows), dtype=bool)
+        for _ in range(LOOKS):
+            change = h * (tangents @ data.qacc)
+            stops = (slip * (slip + change)).sum(axis=1) <= 0
+            middle = slip + 0.5 * change
+            pull = mu * mu * middle  # the ellipse of friction, of which mu is the axis in each direction
+            size = np.sqrt((pull * middle).sum(axis=1))
+            pull *= (data.efc_force[rows] / np.maximum(size, 1e-300))[:, None]
+            force = -np.einsum("ij,ijk->k", pull, tangents)
+            data.qfrc_applied[:] = self._given + force
+            if stops.any() or np.abs(force - before).max(initial=0) <= KNOWN * np.abs(force).max(initial=0):
+                break
+            before = force
+            mujoco.mj_forwardSkip(model, data, VELOCITY, 1)
+        else:
+            stops[:] = True  # beyond some coefficient friction raises the force by more than that gives
+        self._left[:] = data.qfrc_applied
+        self._stopped = {int(pair) for pair in owners[stops]}
+        return not self._stopped
+
+    def _tangents(self, data: mujoco.MjData, number: Integers, owners: Integers) -> Array:
+        """Jacobians of the slip of contacts along their two tangents, shape (n, 2, nv)."""
+        model = self.model
+        places, frames = data.contact.pos[number], data.contact.frame[number].reshape(-1, 3, 3)
+        apart, side = np.zeros((len(number), 3, model.nv)), np.zeros((3, model.nv))
+        for geoms, sign in ((model.pair_geom1, -1.0), (model.pair_geom2, 1.0)):
+            for i, body in enumerate(model.geom_bodyid[geoms[owners]].tolist()):
+                if body:
+                    mujoco.mj_jac(model, data, side, None, places[i], body)
+                    apart[i] += sign * side
+        return np.array(frames[:, 1:] @ apart)
+
+    def _keep(self, data: mujoco.MjData, pairs: set[int]) -> set[int]:
+        """The pairs that still slide. All have their rows back, and no friction is applied yet."""
+        self.model.pair_dim[:] = self.dimensions
+        data.qfrc_applied[:] = self._given
+        self._left[:] = self._given
+        return pairs - self._stopped

@@ -1,0 +1,221 @@
+"""What a contact feels of a model: the mass that it stops, what moves with it, and the weight that presses on it.
+
+A unit impulse at the contact changes the velocity of its point by W, 3 x 3: the normal n first, then two tangents t.
+A point that does not slip feels 1/m = W_nn - W_nt W_tt^-1 W_tn, a point without friction 1/m = W_nn. Where friction mu
+cannot hold the point, it slips, with mu times the impulse of the normal against it.
+
+An equality constraint moves with the contact too. Its row yields by its regularisation R at once, and returns with its
+own frequency. One that is faster than the contact is rigid. A slower one adds the inertia of its row.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ..quantities import Array, Flags, Integers
+from .geoms import GeomPair
+
+RIGID = 5.0
+"""Frequency of an equality constraint over that of the contact from which it is as good as rigid [-]."""
+HOLDS = 1.0
+"""The same from which it is taken as rigid. A slower one is taken to add the inertia of its row only."""
+TIED = 0.05
+"""A point of which friction leaves less than this share of its freedom along the normal slides as it lands [-]."""
+MATTERS = 0.02
+"""A constraint that changes the mass by less than this share is left out of what is said [-]."""
+LIMITS = (int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT), int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON))
+EQUALITY = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+
+
+@dataclass(frozen=True)
+class Felt:
+    """What a contact feels.
+
+    Args:
+        mass: effective mass of the whole contact [kg]; infinity if the geoms cannot approach each other.
+        slides: whether the model lets the point approach only while it slides.
+        motion: velocity of the joints for a unit speed of parting [1/m or 1], shape (nv,).
+        gravity: acceleration with which gravity brings the geoms together where nothing else holds them [m/s2].
+        yielding: numbers of the equality constraints that yield in a contact.
+        limits: rows of the limits of joints and tendons that hold the contact in this pose.
+    """
+
+    mass: float
+    slides: bool
+    motion: Array
+    gravity: float
+    yielding: tuple[int, ...]
+    limits: tuple[int, ...]
+
+
+def felt(
+    pair: GeomPair,
+    data: mujoco.MjData,
+    points: tuple[Array, Array],
+    *,
+    friction: float = 0.0,
+    frequency: float | None = None,
+    k: float | None = None,
+) -> Felt:
+    """What a contact feels in a pose.
+
+    Args:
+        pair: the geoms.
+        data: the pose, see `state_of`.
+        points: the contact point on each of the geoms, in the world's frame [m].
+        friction: coefficient of friction [-], with which the point sticks as long as it can.
+        frequency: circular frequency of the contact [rad/s]; or
+        k: its stiffness [N/m], which gives it. Without either every equality constraint is rigid.
+    """
+    model = pair.model
+    jacobian = np.zeros((3, model.nv))
+    for body, point, sign in zip(pair.bodies, points, (1.0, -1.0), strict=True):
+        rows = np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, rows, None, point, body)
+        jacobian += sign * rows
+    away = pair.apart(data)[0]
+    rows = _frame(away) @ jacobian
+    if not np.any(np.abs(rows[0]) > 1e-9):
+        return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
+    held = Held.of(model, data)
+    soft = held.answer(rows, held.softness, held.equality)
+    mass = _mass(soft, rows, friction)[0]
+    if frequency is None:
+        frequency = math.sqrt(k / mass) if k is not None and mass < math.inf else 0.0
+    softness = np.where((held.rate < HOLDS * frequency) | held.limit, held.softness, 0.0)
+    answer = held.answer(rows, softness, held.equality)
+    mass, impulse = _mass(answer, rows, friction)
+    slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * TIED > _stuck(answer, rows))
+    if slides:
+        mass, impulse = 1 / _free(answer, rows), np.array((1.0, 0.0, 0.0))
+    motion = answer @ impulse
+    motion = motion / float(rows[0] @ motion)
+    alone = held.answer(rows, softness, np.zeros_like(held.equality))
+    yields = (held.rate < RIGID * frequency) & held.equality
+    matters = not math.isclose(_free(alone, rows), _free(answer, rows), rel_tol=MATTERS)
+    pressed = held.limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
+    limited = held.answer(rows, softness, held.equality | pressed)
+    stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
+    return Felt(
+        mass=mass,
+        slides=slides,
+        motion=motion,
+        gravity=float(-held.weight @ answer[:, 0]),
+        yielding=tuple(sorted({int(number) for number in held.number[yields]})) if matters else (),
+        limits=tuple(int(row) for row in held.row[pressed]) if stops else (),
+    )
+
+
+@dataclass(frozen=True)
+class Held:
+    """The constraints of a pose but for contacts, and what the joints feel of gravity.
+
+    Args:
+        model, data: the model and its pose.
+        rows: their Jacobian, shape (n, nv).
+        softness: R of each, its regularisation [1/kg and alike].
+        rate: circular frequency with which each returns [rad/s].
+        row, number: which row of the engine each is, and of which equality, joint or tendon.
+        equality, limit: what each is.
+        weight: force of gravity on the joints, shape (nv,).
+    """
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    rows: Array
+    softness: Array
+    rate: Array
+    row: Integers
+    number: Integers
+    equality: Flags
+    limit: Flags
+    weight: Array
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Held:
+        """The constraints of a pose."""
+        kinds = np.array(data.efc_type[: data.nefc], dtype=int)
+        row = np.flatnonzero((kinds == EQUALITY) | np.isin(kinds, LIMITS))
+        rows = np.zeros((len(row), model.nv))
+        for i, number in enumerate(row):
+            unit = np.zeros(data.nefc)
+            unit[number] = 1.0
+            mujoco.mj_mulJacTVec(model, data, rows[i], unit)
+        constants = np.array(data.efc_KBIP).reshape(-1, 4)[row]
+        bias = np.zeros(model.nv)
+        mujoco.mj_rne(model, data, 0, bias)
+        return cls(
+            model,
+            data,
+            rows,
+            np.array(data.efc_R)[row],
+            np.sqrt(constants[:, 0] * constants[:, 2]),
+            np.asarray(row, dtype=np.int64),
+            np.array(data.efc_id, dtype=np.int64)[row],
+            kinds[row] == EQUALITY,
+            np.array(np.isin(kinds[row], LIMITS)),
+            np.array(data.qfrc_gravcomp) - bias,
+        )
+
+    def answer(self, rows: Array, softness: Array, counted: Flags) -> Array:
+        """Change of the joints' velocity for a unit impulse on each row, with the constraints that count, (nv, n)."""
+        held = self.rows[counted]
+        stacked = np.ascontiguousarray(np.vstack([rows, held]))
+        moved = np.zeros_like(stacked)
+        mujoco.mj_solveM(self.model, self.data, moved, stacked)
+        free, own = moved[: len(rows)].T, moved[len(rows) :].T
+        if not len(held):
+            return np.array(free)
+        inner = held @ own + np.diag(softness[counted])
+        scale = np.abs(inner).max(initial=1e-300)
+        solved = np.linalg.lstsq(inner / scale, held @ free / scale, rcond=1e-10)[0]
+        return np.array(free - own @ solved)
+
+
+def _frame(normal: Array) -> Array:
+    """The normal and two tangents, as rows."""
+    helper = np.eye(3)[np.abs(normal).argmin()]
+    first = np.cross(normal, helper)
+    first /= np.linalg.norm(first)
+    return np.array([normal, first, np.cross(normal, first)])
+
+
+def _free(answer: Array, rows: Array) -> float:
+    """W_nn [1/kg]."""
+    return float(rows[0] @ answer[:, 0])
+
+
+def _stuck(answer: Array, rows: Array) -> float:
+    """W_nn - W_nt W_tt^-1 W_tn [1/kg]."""
+    return float(rows[0] @ answer @ _sticking(rows @ answer))
+
+
+def _sticking(weight: Array) -> Array:
+    """The impulse, with a normal part of 1, after which the point has not slipped."""
+    tangents = np.linalg.lstsq(weight[1:, 1:], -weight[1:, 0], rcond=1e-8)[0]
+    return np.array((1.0, *tangents))
+
+
+def _mass(answer: Array, rows: Array, friction: float) -> tuple[float, Array]:
+    """The mass of a point that sticks as long as friction holds it [kg], and the impulse that stops it."""
+    weight, impulse = rows @ answer, np.array((1.0, 0.0, 0.0))
+    if friction > 0:
+        impulse = _sticking(weight)
+        if np.linalg.norm(impulse[1:]) > friction:
+            impulse = _slipping(weight, friction)
+    freedom = float(weight[0] @ impulse)
+    return (1 / freedom if freedom > 1e-12 * weight[0, 0] else math.inf), impulse
+
+
+def _slipping(weight: Array, friction: float) -> Array:
+    """The impulse, with a normal part of 1, whose friction is opposite to the slip that it leaves."""
+    direction = weight[1:, 0] / max(float(np.linalg.norm(weight[1:, 0])), 1e-300)
+    for _ in range(100):
+        slip = weight[1:, 0] - friction * weight[1:, 1:] @ direction
+        new = 0.5 * (direction + slip / max(float(np.linalg.norm(slip)), 1e-300))
+        direction = new / max(float(np.linalg.norm(new)), 1e-300)
+    return np.array((1.0, *(-friction * direction)))

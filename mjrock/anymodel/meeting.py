@@ -1,0 +1,116 @@
+"""The contact of two geoms in a pose: in how many points they meet, and what each of them feels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import mujoco
+import numpy as np
+
+from ..quantities import Array, require_array, shown
+from .felt import Felt, felt
+from .geoms import FARTHEST, GeomPair
+from .landing import Ground, landing
+from .state import keyframe_names, state_of
+
+FOREIGN = 1.2
+"""Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
+MOST_KEYFRAMES = 20
+"""Most keyframes in which a contact is looked at."""
+
+
+class Pose:
+    """A model in a pose.
+
+    Args:
+        model: the model, which is only read.
+        keyframe: name or number of a keyframe.
+        qpos: positions of the joints, shape (nq,). Without either it is `qpos0`.
+    """
+
+    def __init__(self, model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> None:
+        self.model, self.data = model, state_of(model, keyframe, qpos)
+        self.given = keyframe is not None or qpos is not None
+        self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
+
+    @cached_property
+    def ground(self) -> Ground:
+        """A copy of the model in which geoms are tried against each other."""
+        return Ground(self.model, self.data)
+
+    @cached_property
+    def others(self) -> tuple[Pose, ...]:
+        """The poses of the model's keyframes, if this one is none of them and was not asked for."""
+        return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """The contact of two geoms in a pose.
+
+    Args:
+        points: contact points that share the mass.
+        felt: what the contact feels.
+    """
+
+    points: int
+    felt: Felt
+
+    @property
+    def share(self) -> float:
+        """Mass that each contact point stops [kg]."""
+        return self.felt.mass / self.points
+
+
+def meeting(
+    pair: GeomPair,
+    pose: Pose,
+    *,
+    contacts: int | None = None,
+    at: object = None,
+    friction: float = 0.0,
+    frequency: float | None = None,
+    k: float | None = None,
+) -> Meeting:
+    """How two geoms meet in a pose.
+
+    Args:
+        pair, pose: the geoms and the pose.
+        contacts: contact points that share the mass. None takes those of a trial landing.
+        at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
+            the centres of mass if the landing has other points than `contacts` says.
+        friction, frequency, k: see `felt`.
+
+    Raises:
+        TypeError, ValueError: unless `at` is a point.
+    """
+    if at is not None:
+        point = require_array("at", at, (3,))
+        if np.abs(point).max() > FARTHEST:
+            raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
+    landed = landing(pair, pose.data, pose.ground if pair.makes_several_points else None)
+    places: tuple[Array, Array] = landed.middles
+    if at is not None:
+        places = (point, point)
+    elif contacts is not None and contacts != landed.count:
+        first, second = (pair.centre(pose.data, body) for body in pair.bodies)
+        places = (first, second)
+    count = landed.count if contacts is None else contacts
+    whole = None if k is None else k * count
+    return Meeting(count, felt(pair, pose.data, places, friction=friction, frequency=frequency, k=whole))
+
+
+def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> str | None:
+    """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
+    names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
+    for name, other in zip(names, pose.others, strict=False):
+        share = meeting(pair, other, contacts=contacts, friction=friction).share
+        if 0 < share < np.inf:
+            worst = max(worst, (max(share / here.share, here.share / share), name, share))
+    if not worst[1]:
+        return None
+    return (
+        f"a contact point stops {worst[2]:.3g} kg at keyframe '{worst[1]}' and {here.share:.3g} kg at {pose.label}, "
+        f"for which the contact is made; give keyframe='{worst[1]}' if that is where the model stands"
+    )

@@ -1,0 +1,128 @@
+"""Inspected contacts as a table that one reads: filtered, the worst first, with notes that are alike said once."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from ..quantities import require_within
+from .inspect import InspectedContact
+
+NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
+HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
+GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
+"""Parts of notes by which a contact is worse than others, or of no account."""
+VARIES = re.compile(
+    r"((joint|tendon|actuator|equality constraint) \S+?(, | (?=adds|is|yields)| (?=and \d+ more)))+(and \d+ more )?"
+    r"|keyframe=?\s?'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?"
+)
+"""What differs in notes that are alike."""
+
+
+@dataclass(frozen=True)
+class Filter:
+    """Which contacts are shown, by names with the wildcards `*`, `?` and `[...]`.
+
+    Args:
+        geoms, bodies: names of geoms and of bodies, of which a contact has at least one; none are all.
+        pair: names of its two geoms or bodies, in any order.
+    """
+
+    geoms: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = ()
+    pair: tuple[str, str] | None = None
+
+    def takes(self, contact: InspectedContact) -> bool:
+        """Whether a contact is shown."""
+        geoms = (contact.geom1, contact.geom2)
+        sides = [{geom, body} for geom, body in zip(geoms, contact.bodies, strict=True)]
+        if self.geoms and not any(_like(geom, pattern) for geom in geoms for pattern in self.geoms):
+            return False
+        if self.bodies and not any(_like(body, pattern) for body in contact.bodies for pattern in self.bodies):
+            return False
+        if self.pair is None:
+            return True
+        return any(
+            all(any(_like(name, pattern) for name in side) for side, pattern in zip(order, self.pair, strict=True))
+            for order in (sides, sides[::-1])
+        )
+
+
+def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:
+    """Contacts that can gain energy, then those with a long step, then those with notes; immovable ones last."""
+
+    def rank(contact: InspectedContact) -> tuple[float, ...]:
+        said = " ".join(contact.notes)
+        immobile = any(part in said for part in IMMOBILE)
+        frequency = contact.frequency if contact.mass < math.inf else 0.0
+        return immobile, GAINS not in said, LONG not in said, not contact.notes, -frequency
+
+    return sorted(found, key=rank)
+
+
+def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int | None = None) -> str:
+    """The table, and below it the notes that its last column numbers.
+
+    Args:
+        found: contacts from `inspect_contacts`.
+        speed: speed of approach at which the column `e at v` counts gravity [m/s].
+        most: rows that are shown; None shows all.
+    """
+    speed = require_within("speed", speed, 1e-9, 1e9, "m/s")
+    if not found:
+        return "This model has no contact that can act."
+    shown = found if most is None else found[:most]
+    alike: dict[str, list[str]] = {}
+    for contact in found:
+        for note in contact.notes:
+            alike.setdefault(VARIES.sub("#", note), []).append(note)
+    numbers = {key: number for number, key in enumerate(alike, 1)}
+    rows = []
+    for contact in shown:
+        marks = sorted({numbers[VARIES.sub("#", note)] for note in contact.notes})
+        rows.append([*values(contact, speed), ",".join(str(mark) for mark in marks)])
+    lines = [_aligned([list(HEADER), *rows])]
+    if len(shown) < len(found):
+        lines.append(
+            f"and {len(found) - len(shown)} more; --all shows them, --geom, --body and --pair choose among them"
+        )
+    lines.append(f"v is {speed:g} m/s. k loaded carries the static load: the weight of what moves, or --load.")
+    for key, number in numbers.items():
+        others = len(alike[key]) - 1
+        more = f" [and {others} like it]" if others else ""
+        lines.append(f"{number}: {alike[key][0]}{more}")
+    return "\n".join(lines)
+
+
+def values(contact: InspectedContact, speed: float) -> list[str]:
+    """The numbers of a contact as text, in the order of HEADER."""
+    mass = "inf" if contact.mass == math.inf else f"{contact.mass:.4g}"
+    none = math.isnan(contact.xi)
+    return [
+        contact.geom1,
+        contact.geom2,
+        "pair" if contact.explicit else "geoms",
+        f"{contact.k:.4g}",
+        f"{contact.k_loaded:.4g}",
+        f"{contact.c:.4g}",
+        mass,
+        f"{contact.inertia:.4g}",
+        f"{contact.impedance:.4g}",
+        str(contact.points),
+        "-" if none else f"{contact.xi:.3f}",
+        "-" if none else f"{contact.restitution:.3f}",
+        "-" if none else f"{contact.restitution_at(speed):.3f}",
+    ]
+
+
+def _like(name: str, pattern: str) -> bool:
+    return name == pattern or fnmatchcase(name, pattern)
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> str:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])

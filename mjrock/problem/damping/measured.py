@@ -1,0 +1,179 @@
+"""A contact from what is measured: heights of bounces, times of contact, or the elasticity of a round body.
+
+A body that is dropped from h and bounces to h' has e = sqrt(h' / h), gravity counted, because it passes the surface
+with sqrt(2 g h) and sqrt(2 g h'). Its contact lasts for a time T, which gives omega = D(xi, g / (omega v)) / T with the
+duration D of `falling_rebound`, and k = m omega^2.
+
+Hertz: a sphere of radius R on a flat body has F = K x^1.5, K = 4/3 E' sqrt(R), 1/E' = (1 - nu^2) / E of both bodies
+together. A linear contact has its indentation under one force, or lasts as long at one speed of approach.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...quantities import GRAVITY, Array, require_row, require_within, shown
+from .falling import MOST_PULL, falling_damping, falling_rebound
+from .rebound import rebound_damping
+
+HERTZ_DURATION = 2.9432
+"""Time of a blow between elastic spheres, times the speed of approach over the largest indentation [-]."""
+LEAST = 1e-3
+"""The smallest restitution for which a damping ratio is given [-]."""
+
+
+@dataclass(frozen=True)
+class MeasuredContact:
+    """A contact of a body that was dropped.
+
+    Args:
+        restitution, restitution_interval: coefficient of restitution [-], mean and interval of the mean.
+        xi: damping ratio with which a contact rebounds so [-], with gravity where the stiffness is known.
+        k, k_interval: stiffness [N/m], from the mean time of contact and its interval; None without times.
+        bounces, times: how many of each were measured.
+    """
+
+    restitution: float
+    restitution_interval: tuple[float, float]
+    xi: float
+    k: float | None
+    k_interval: tuple[float, float] | None
+    bounces: int
+    times: int
+
+
+def measured_contact(
+    heights: ArrayLike | Sequence[ArrayLike],
+    *,
+    mass: float | None = None,
+    contact_times: ArrayLike | None = None,
+    confidence: float = 0.95,
+    gravity: float = GRAVITY,
+) -> MeasuredContact:
+    """Restitution and stiffness of a body that was dropped on a surface.
+
+    Args:
+        heights: heights of the lowest point above the surface [m], that of the release first and then of each bounce;
+            several drops are a list of such rows.
+        mass: mass of the body [kg], positive; needed for the stiffness.
+        contact_times: times of contact of first bounces [s].
+        confidence: of the intervals, above 0 and below 1 [-]. They are Student's, of the mean of independent bounces;
+            a single one leaves it open, and the interval is that of all possible values.
+        gravity: acceleration of gravity [m/s2], positive.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range, fewer than two heights in a drop, a bounce that is higher
+            than what it came from, or times without a mass.
+    """
+    level = require_within("confidence", confidence, 1e-6, 1 - 1e-6)
+    g = require_within("gravity", gravity, 1e-6, 1e6, "m/s2")
+    ratios, release = _ratios(heights)
+    e, low, high = _interval(ratios, level, 0.0, 1.0)
+    if contact_times is None:
+        return MeasuredContact(e, (low, high), rebound_damping(max(e, LEAST)), None, None, len(ratios), 0)
+    if mass is None:
+        raise ValueError("contact_times are given without mass; the stiffness needs it")
+    m = require_within("mass", mass, 1e-12, 1e12, "kg")
+    times = require_row("contact_times", contact_times, "time of contact")
+    if times.min() < 1e-9 or times.max() > 1e3:
+        raise ValueError(f"contact_times hold {times.min():g} to {times.max():g} s; the valid range is 1e-09 to 1000 s")
+    mean, short, long = _interval(times, level, 0.0, math.inf)
+    speed = math.sqrt(2 * g * release)
+    k, softest, stiffest = (m * _frequency(time, e, g, speed) ** 2 for time in (mean, long, short))
+    omega = math.sqrt(k / m)
+    xi = falling_damping(max(e, LEAST), min(g / (omega * speed), MOST_PULL))
+    return MeasuredContact(e, (low, high), xi, k, (softest, stiffest), len(ratios), len(times))
+
+
+def hertz_stiffness(
+    radius: float,
+    E: float,
+    nu: float,
+    *,
+    other: tuple[float, float] | None = None,
+    force: float | None = None,
+    mass: float | None = None,
+    speed: float | None = None,
+) -> float:
+    """Stiffness of a linear contact in place of Hertz's [N/m].
+
+    Args:
+        radius: radius of the sphere [m]; 1 / (1/R1 + 1/R2) of two.
+        E, nu: Young's modulus [Pa] and Poisson's ratio [-] of the sphere.
+        other: the same of the other body. None is a rigid one.
+        force: force at which both contacts have the same indentation [N], such as a weight; or
+        mass, speed: effective mass [kg] and speed of approach [m/s] at which both last equally long.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range, or unless force, or mass and speed, are given.
+    """
+    R = require_within("radius", radius, 1e-9, 1e6, "m")
+    compliance = _compliance(E, nu)
+    if other is not None:
+        if not isinstance(other, tuple | list) or len(other) != 2:
+            raise TypeError(f"other = {shown(other)} has to be Young's modulus and Poisson's ratio of the other body")
+        compliance += _compliance(*other)
+    K = float(4 / 3 * math.sqrt(R) / compliance)
+    if (force is None) == (mass is None and speed is None) or (mass is None) != (speed is None):
+        raise ValueError(
+            f"force = {shown(force)}, mass = {shown(mass)}, speed = {shown(speed)}: give the force, or mass and speed"
+        )
+    if force is not None:
+        load = require_within("force", force, 1e-12, 1e15, "N")
+        return float(load / (load / K) ** (2 / 3))
+    m, v = require_within("mass", mass, 1e-12, 1e12, "kg"), require_within("speed", speed, 1e-9, 1e6, "m/s")
+    deepest = (5 * m * v * v / (4 * K)) ** 0.4
+    return float(m * (math.pi * v / (HERTZ_DURATION * deepest)) ** 2)
+
+
+def _compliance(E: object, nu: object) -> float:
+    ratio = require_within("nu", nu, -1.0, 0.5)
+    return (1 - ratio**2) / require_within("E", E, 1.0, 1e15, "Pa")
+
+
+def _ratios(heights: object) -> tuple[Array, float]:
+    """e of every bounce [-], and the mean height of the releases [m]."""
+    nested = isinstance(heights, list | tuple) and any(np.ndim(row) > 0 for row in heights)
+    nested = nested or (isinstance(heights, np.ndarray) and heights.ndim > 1)
+    several: Any = heights if nested else [heights]
+    drops = [require_row("heights", row, "height") for row in several]
+    for drop in drops:
+        if len(drop) < 2:
+            raise ValueError(f"heights of a drop are {drop.tolist()}; a release and at least one bounce are needed")
+        if drop.min() <= 0 or drop.max() > 1e6 or (np.diff(drop) > 0).any():
+            raise ValueError(
+                f"heights = {drop.tolist()} m have to be positive, and no bounce higher than the one before"
+            )
+    ratios = np.concatenate([np.sqrt(drop[1:] / drop[:-1]) for drop in drops])
+    return ratios, float(np.mean([drop[0] for drop in drops]))
+
+
+def _interval(values: Array, level: float, least: float, most: float) -> tuple[float, float, float]:
+    """Mean, and Student's interval of the mean within what is possible."""
+    mean = float(values.mean())
+    if len(values) < 2:
+        return mean, least, most
+    from scipy.special import stdtrit
+
+    half = float(stdtrit(len(values) - 1, 0.5 + level / 2) * values.std(ddof=1) / math.sqrt(len(values)))
+    return mean, max(least, mean - half), min(most, mean + half)
+
+
+def _frequency(time: float, e: float, gravity: float, speed: float) -> float:
+    """Circular frequency of a contact that lasts so long [rad/s]; 0 for an endless one, infinity for none."""
+    if not 0 < time < math.inf:
+        return math.inf if time <= 0 else 0.0
+    omega = math.pi / time
+    for _ in range(100):
+        pull = min(gravity / (omega * speed), MOST_PULL)
+        new = falling_rebound(falling_damping(max(e, LEAST), pull), pull).duration / time
+        if not new < math.inf or abs(new - omega) <= 1e-10 * omega:
+            break
+        omega = new
+    return omega

@@ -1,0 +1,160 @@
+"""Stacks, grippers and feet: how deep they press, how they creep and bounce, with contacts in N/m and with MuJoCo's.
+
+    python scripts/models/stacks_grippers_feet.py --robot go2/scene.xml --feet FL,FR,RL,RR --floor floor --keyframe home
+
+Prints the indentation of a stack of five boxes over weight / k, the creep of an object that two pads hold, and what a
+pushed box lifts by, each with contacts of `contact_for` and with MuJoCo's default. With --robot it prints the mass that
+each foot feels at qpos0 and in a keyframe. Writes stacks_grippers_feet.txt.
+"""
+
+from __future__ import annotations
+
+import itertools
+import sys
+import time
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+import mjrock as mr
+from scripts.shared import cli
+
+G = 9.81
+STACK = 5
+BOX = (
+    '<body pos="0 0 {z}"><freejoint/><geom name="box{i}" type="box" size=".1 .07 .05" mass="1.3" friction=".6"/></body>'
+)
+GRIPPER = """<body pos="-.06 0 .3"><joint name="left" type="slide" axis="1 0 0"/>
+<geom name="left" type="box" size=".01 .03 .03" mass=".2" friction=".7"/></body>
+<body pos=".06 0 .3"><joint name="right" type="slide" axis="-1 0 0"/>
+<geom name="right" type="box" size=".01 .03 .03" mass=".2" friction=".7"/></body>
+<body name="held" pos="0 0 .3"><freejoint/><geom name="held" type="box" size=".05 .02 .04" mass=".3" friction=".7"/>
+</body>"""
+
+
+def model_text(bodies: str, h: float, options: str = "") -> str:
+    """A floor and bodies, as MJCF."""
+    return (
+        f'<mujoco><option timestep="{h}" {options}/><worldbody><geom name="floor" type="plane" size="5 5 1"/>{bodies}'
+        "</worldbody></mujoco>"
+    )
+
+
+def stack(seconds: float) -> list[list[str]]:
+    """Indentation of each joint of a stack of boxes [mm]: measured with both contacts, and weight / k."""
+    bodies = "".join(BOX.format(z=0.05 + 0.1 * i, i=i) for i in range(STACK))
+    k, rows = 1e5, []
+    measured = []
+    for own in (True, False):
+        spec = mujoco.MjSpec.from_string(model_text(bodies, 5e-4))
+        if own:
+            names = ["floor", *(f"box{i}" for i in range(STACK))]
+            asked = {"k": k / 4, "xi": 0.5, "friction": 0.6}
+            mr.contacts_for(spec, {(above, below): asked for below, above in itertools.pairwise(names)}).apply(spec)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        mujoco.mj_step(model, data, int(seconds / 5e-4))
+        heights = np.array([0.05, *data.qpos.reshape(STACK, 7)[:, 2]])
+        measured.append(1e3 * (np.array([0.1] * STACK) - np.diff([-0.05, *heights[1:]])))
+    for i in range(STACK):
+        above = (STACK - i) * 1.3 * G
+        rows.append([str(i + 1), f"{1e3 * above / k:.4f}", f"{measured[0][i]:.4f}", f"{measured[1][i]:.4f}"])
+    return rows
+
+
+def creep(seconds: float) -> list[list[str]]:
+    """How fast a held object of 0.3 kg sinks between two pads that press with 10 N [um/s]."""
+    rows = []
+    for name, own, options in (
+        ("MuJoCo, default", False, ""),
+        ("MuJoCo, elliptic, impratio 10", False, 'cone="elliptic" impratio="10"'),
+        ("contacts_for", True, ""),
+    ):
+        spec = mujoco.MjSpec.from_string(model_text(GRIPPER, 1e-3, options))
+        if own:
+            asked = {"restitution": 0.1, "friction": 0.7}  # the stiffest that the step resolves
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # gravity: a grip does not bounce
+                mr.contacts_for(spec, {("left", "held"): asked, ("right", "held"): asked}).apply(spec)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        model.body_gravcomp[:] = 0
+        data.qfrc_applied[:2] = 10.0
+        mujoco.mj_step(model, data, 500)
+        before, started, count = float(data.qpos[4]), time.perf_counter(), int(seconds / 1e-3)
+        iterations = 0
+        for _ in range(count):
+            mujoco.mj_step(model, data)
+            iterations += int(data.solver_niter[0])
+        spent = (time.perf_counter() - started) / count
+        sunk = (before - float(data.qpos[4])) / seconds
+        rows.append([name, f"{1e6 * sunk:.2f}", f"{iterations / count:.1f}", f"{1e6 * spent:.0f}"])
+    return rows
+
+
+def push(seconds: float) -> list[list[str]]:
+    """What a box of 2 kg that slides at 3 m/s lifts by [mm] and what a step costs [us], at steps of 1 ms."""
+    rows = []
+    for name, coulomb in (("rows of the cone", False), ("CoulombFriction", True)):
+        body = '<body pos="0 0 .1"><freejoint/><geom name="box" type="box" size=".2 .2 .1" mass="2"/></body>'
+        spec = mujoco.MjSpec.from_string(model_text(body, 1e-3))
+        mr.contact_for(spec, "box", "floor", k=2.5e4, xi=0.3, friction=0.4).apply(spec)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        data.qpos[2] -= 2 * G / 1e5
+        data.qvel[0] = 3.0
+        friction, top, started = mr.CoulombFriction(model), 0.0, time.perf_counter()
+        for _ in range(int(seconds / 1e-3)):
+            if coulomb:
+                friction(data)
+            mujoco.mj_step(model, data)
+            top = max(top, float(data.qpos[2]) - 0.1 + 2 * G / 1e5)
+        spent = (time.perf_counter() - started) / int(seconds / 1e-3)
+        slid = 3 - float(data.qvel[0])
+        rows.append([name, f"{1e3 * top:.4f}", f"{slid:.4f}", f"{0.4 * G * seconds:.4f}", f"{1e6 * spent:.0f}"])
+    return rows
+
+
+def feet(path: Path, names: Sequence[str], floor: str, keyframe: str) -> list[list[str]]:
+    """Mass that the feet of a robot feel [kg], at qpos0 and in a keyframe, with and without friction."""
+    model = mujoco.MjModel.from_xml_path(str(path))
+    rows = []
+    for name in names:
+        masses = []
+        for pose in (None, keyframe):
+            for friction in (0.0, 0.8):
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    made = mr.contact_for(model, name, floor, restitution=0.3, friction=friction, keyframe=pose)
+                masses.append(f"{made.mass:.3f}")
+        rows.append([name, *masses])
+    return rows
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Measure, and print the tables."""
+    options = cli.parser(__doc__, "stacks_grippers_feet")
+    options.add_argument("--robot", type=Path, help="MJCF of a robot that has feet")
+    options.add_argument("--feet", default="FL,FR,RL,RR", help="names of its feet")
+    options.add_argument("--floor", default="floor", help="name of what it stands on")
+    options.add_argument("--keyframe", default="home", help="keyframe in which it stands")
+    args = options.parse_args(argv)
+    out = cli.folder(args.out)
+    seconds = 0.3 if args.quick else 10.0
+    tables = [
+        (["joint", "weight / k [mm]", "contacts_for [mm]", "MuJoCo's default [mm]"], stack(max(seconds, 1.0))),
+        (["gripper", "creep [um/s]", "iterations", "us a step"], creep(seconds)),
+        (["pushed box", "lift [mm]", "lost [m/s]", "mu g t", "us a step"], push(0.3)),
+    ]
+    if args.robot is not None:
+        header = ["foot", "qpos0, mu 0 [kg]", "qpos0, mu .8", f"{args.keyframe}, mu 0", f"{args.keyframe}, mu .8"]
+        tables.append((header, feet(args.robot, args.feet.split(","), args.floor, args.keyframe)))
+    text = "\n\n".join(cli.table(header, rows) for header, rows in tables)
+    cli.report(out / "stacks_grippers_feet", text)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

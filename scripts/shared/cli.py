@@ -1,0 +1,72 @@
+"""What the scripts share: arguments, output folder, tables, files that are whole or absent, times, readable errors."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from mjrock.files import write_text as write_text
+from mjrock.result.table import csv_text as csv_text
+
+
+class Defaults(argparse.ArgumentDefaultsHelpFormatter):
+    """Help that names the default of an option where it has one."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        if action.default is None or action.default is False:
+            return action.help
+        return super()._get_help_string(action)
+
+
+def parser(description: str | None, out: str) -> argparse.ArgumentParser:
+    """A parser with the options that every script has."""
+    made = argparse.ArgumentParser(description=(description or "").splitlines()[0], formatter_class=Defaults)
+    made.add_argument("--out", type=Path, default=Path("out") / out, help="folder for the files that are written")
+    made.add_argument("--quick", action="store_true", help="a shorter study, to see that it works")
+    return made
+
+
+def folder(path: Path) -> Path:
+    """Make the output folder, and find out before any work whether it can be written to."""
+    path.mkdir(parents=True, exist_ok=True)
+    write_text(path / ".writable", "").unlink()
+    return path
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Rows as aligned text for a terminal."""
+    cells = [[str(cell) for cell in row] for row in (header, *rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in cells]
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
+
+
+def report(stem: Path, text: str, header: Sequence[str] = (), rows: Iterable[Sequence[object]] = ()) -> None:
+    """Print a text and write it as `stem`.txt, and a table, where there is one, as `stem`.csv."""
+    if header:
+        write_text(stem.with_suffix(".csv"), csv_text(header, rows))
+    write_text(stem.with_suffix(".txt"), text + "\n")
+    print(text)
+
+
+def seconds(call: Callable[[], object]) -> float:
+    """Wall time of a call [s]."""
+    started = time.perf_counter()
+    call()
+    return time.perf_counter() - started
+
+
+def run(main: Callable[[Sequence[str] | None], None]) -> int:
+    """Call a script's main; an error that the user can mend is printed, not traced. Returns the exit code."""
+    try:
+        main(None)
+    except (ValueError, TypeError, OSError, RuntimeError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt as error:
+        print(f"interrupted: {error}", file=sys.stderr)
+        return 130
+    return 0

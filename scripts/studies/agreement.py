@@ -1,0 +1,99 @@
+"""Rocking theory against MuJoCo under earthquakes: how the same runs end and how far they go, by base stiffness.
+
+Walls of Table 1's range, one- and two-sided, under every record in both polarities and several intensities. Each run in
+theory is paired with the same run in MuJoCo, on bases of three stiffnesses. Peak rotations are compared by Wilcoxon's
+signed rank test on their ratio, outcomes by the exact sign test on the pairs of which one alone overturns. Runs under
+one record are not independent of each other, so the share that overturns alike is also given record by record.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.stats import binomtest, wilcoxon
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.study.campaign import completed
+from scripts.shared import cli, suite
+
+WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]
+"""Slenderness h/b [-] and half diagonal R [m]."""
+LEVELS = [1.2, 1.8, 2.5, 3.5, 5.0]
+"""Peak ground acceleration in multiples of what lifts the wall, g tan(alpha) [-]."""
+STIFFNESSES = (5e8, 3e9, 3e10)
+"""Interface stiffness of base and side [N/m3]: the paper's example, the upper end of Table 1, ten times that."""
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run every combination, compare, draw and print."""
+    args = suite.parser(__doc__, "agreement").parse_args(argv)
+    out = cli.folder(args.out)
+
+    def build(side_stop: int, wall: int, motion: mr.GroundMotion, polarity: int, level: float, k_n: float) -> Any:
+        block = mr.Block.from_slenderness(*WALLS[wall])
+        scaled = suite.to_peak(motion, level * math.tan(block.alpha)).polarities[polarity]
+        solver = "MuJoCo" if k_n else "analytical"
+        return suite.analysis(block, scaled, solver, k_n=k_n or suite.STIFF, side_stop=bool(side_stop))
+
+    grid = mr.Grid(
+        build,
+        side_stop=(1, 0),
+        wall=range(1 if args.quick else len(WALLS)),
+        motion=suite.motions(args.records, 3 if args.quick else 8),
+        polarity=(0, 1),
+        level=LEVELS[1:4] if args.quick else LEVELS,
+        k_n=(0.0, *STIFFNESSES),  # zero stands for the rigid base of theory
+    )
+    found = completed(grid, out / "agreement.sqlite", workers=args.workers)
+    figure = Figure(figsize=(10.2, 7.4), layout="constrained")
+    table = []
+    for axes, (side_stop, title) in zip(figure.subplots(2, 3), ((1, "one-sided"), (0, "two-sided")), strict=True):
+        for ax, k_n in zip(axes, STIFFNESSES, strict=True):
+            own = [row for row in found if row["side_stop"] == side_stop and row["k_n"] in (0.0, k_n)]
+            if not side_stop:  # both polarities are the same to a wall without a side stop
+                own = [row for row in own if row["polarity"] == 0]
+            ends, peaks = suite.in_pairs(own)
+            plotting.pairs(ax, peaks, ("rocking theory", "MuJoCo"), (suite.STILL / 3, 1.5))
+            ax.set_title(f"{title}, $k_n$ = {k_n:.0e} N/m³".replace("e+", "e"), fontsize=10)
+            table.append([title, f"{k_n:.0e}", *compared(ends, peaks, [row["motion"] for row in own[::2]])])
+    plotting.save(figure, out / "agreement.png")
+    columns = ("side_stop", "wall", "motion", "polarity", "level", "k_n", "solver", "outcome", "peak_over_alpha")
+    header = [
+        "wall", "k_n [N/m3]", "cases", "theory rests/rocks/overturns", "MuJoCo", "overturning alike",
+        "record by record", "rests, rocks alike too", "falls in theory alone",
+        "in MuJoCo alone", "sign test p", "peak ratio 5/50/95 %", "Wilcoxon p",
+    ]  # fmt: skip
+    cli.report(out / "agreement", cli.table(header, table), columns, [[row[c] for c in columns] for row in found])
+
+
+def compared(ends: Any, peaks: Any, records: Sequence[str]) -> list[object]:
+    """The line of the table for pairs of runs, theory first, each under the record named."""
+    rocks = (ends == "rocks").all(axis=1)
+    ratio = peaks[rocks, 1] / peaks[rocks, 0]
+    fell = ends == "overturns"
+    alone = [int((fell[:, 0] & ~fell[:, 1]).sum()), int((fell[:, 1] & ~fell[:, 0]).sum())]
+    counts = ["/".join(str((column == v).sum()) for v in ("rests", "rocks", "overturns")) for column in ends.T]
+    percentiles = np.percentile(ratio, [5, 50, 95]) if ratio.size else []
+    alike = fell[:, 0] == fell[:, 1]
+    of_record = [alike[np.array(records) == record].mean() for record in dict.fromkeys(records)]
+    return [
+        len(ends),
+        *counts,
+        f"{alike.mean():.3f}",
+        f"{min(of_record):.3f} to {max(of_record):.3f}",
+        f"{(ends[:, 0] == ends[:, 1]).mean():.3f}",
+        *alone,
+        f"{binomtest(alone[0], sum(alone)).pvalue:.2g}" if sum(alone) else "-",
+        " / ".join(f"{r:.3f}" for r in percentiles),
+        f"{wilcoxon(np.log(ratio)).pvalue:.1e}" if ratio.size else "-",
+    ]
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

@@ -1,0 +1,79 @@
+"""Overturning spectrum of a sine pulse: which amplitudes and frequencies overturn a wall, and after how many impacts.
+
+Two-sided, and one-sided in either polarity, by rocking theory and by MuJoCo, for the wall of the paper's Figure 3.
+Amplitudes are in multiples of what lifts the wall, frequencies in multiples of its frequency parameter p. An island of
+standing walls above the lowest amplitude that overturns is the two modes at work: with and without an impact.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.study.campaign import completed
+from scripts.shared import cli, suite
+from scripts.shared.paper import FIGURE_3
+
+SIDES = {"two-sided": (False, -1), "one-sided, outward first": (True, -1), "one-sided, inward first": (True, 1)}
+SIZES = {"analytical": 60, "MuJoCo": 26}
+
+
+def build(solver: str, sides: str, frequency: float, amplitude: float) -> mr.Analysis:
+    """The wall under a pulse of `amplitude` g tan(alpha) and `frequency` p."""
+    side_stop, sign = SIDES[sides]
+    lifting = mr.GRAVITY * math.tan(FIGURE_3.alpha)
+    motion = mr.GroundMotion.sine(sign * amplitude * lifting, 2 * math.pi / (frequency * FIGURE_3.p), samples=200)
+    return suite.analysis(FIGURE_3, motion, solver, k_n=suite.STIFF, side_stop=side_stop, settling=10 / FIGURE_3.p)
+
+
+def mode(row: dict[str, Any]) -> int:
+    """Which of `plotting.MODES`."""
+    if row["outcome"] != mr.Outcome.OVERTURNED.value:
+        return 0
+    return 1 if row["impacts"] else 2
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run the maps, draw them, and print how much of each is what."""
+    args = suite.parser(__doc__, "overturning_spectrum", records=False).parse_args(argv)
+    out = cli.folder(args.out)
+    figure = Figure(figsize=(9.0, 6.2), layout="constrained")
+    axes = figure.subplots(2, 3, sharex=True, sharey=True)
+    table, rows = [], []
+    for (solver, size), line in zip(SIZES.items(), axes, strict=True):
+        n = 4 if args.quick else size
+        frequency, amplitude = np.linspace(0.5, 8.0, n), np.linspace(0.5, 14.0, n)
+        grid = mr.Grid(build, solver=[solver], sides=SIDES, frequency=frequency.tolist(), amplitude=amplitude.tolist())
+        found = np.array(
+            [mode(row) for row in completed(grid, out / "overturning_spectrum.sqlite", workers=args.workers)]
+        )
+        for ax, sides, modes in zip(line, SIDES, found.reshape(3, n, n), strict=True):
+            plotting.overturning_map(ax, frequency, amplitude, modes.T)
+            ax.set_title(f"{plotting.STYLES[solver]['label']}, {sides}", fontsize=9)
+            ax.label_outer()
+            falls = modes > 0
+            lowest = np.array([amplitude[column.argmax()] if column.any() else math.inf for column in falls])
+            island = (~falls & (amplitude[None] > lowest[:, None])).mean()
+            shares = [(modes == i).mean() for i in range(3)]
+            table.append([plotting.STYLES[solver]["label"], sides, n * n, *(f"{s:.3f}" for s in (*shares, island))])
+            rows += [
+                (solver, sides, f"{f:.4f}", f"{a:.4f}", list(plotting.MODES)[m])
+                for f, column in zip(frequency, modes, strict=True)
+                for a, m in zip(amplitude, column, strict=True)
+            ]
+    plotting.mode_legend(figure)
+    plotting.save(figure, out / "overturning_spectrum.png")
+    header = ["solver", "sides", "omega_p/p [-]", "a_p/(g tan alpha) [-]", "mode"]
+    text = cli.table(["solver", "wall", "cases", *plotting.MODES, "safe islands"], table)
+    cli.report(out / "overturning_spectrum", text, header, rows)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

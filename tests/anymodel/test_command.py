@@ -1,0 +1,77 @@
+"""`python -m mjrock inspect`: a page that one reads of a model with many contacts."""
+
+import csv
+
+import pytest
+from pairs import FLOOR, scene
+
+from mjrock.__main__ import main
+
+FEET = "".join(
+    f'<body name="leg{i}" pos="{i} 0 1"><freejoint/><geom size=".1" mass="{i + 1}"/></body>' for i in range(9)
+)
+STUCK = '<body name="arm" pos="0 3 1"><joint type="slide" axis="1 0 0"/><geom size=".1" mass="1"/></body>'
+
+
+@pytest.fixture
+def model(tmp_path):
+    path = tmp_path / "robot.xml"
+    path.write_text(scene(FLOOR, FEET, STUCK, timestep=0.01, gravity=9.81))
+    return path
+
+
+def lines_of(capsys, *arguments):
+    assert main([str(argument) for argument in arguments]) == 0
+    return capsys.readouterr().out.splitlines()
+
+
+def test_it_is_a_page(model, capsys):
+    """55 contacts: 40 rows, the notes that are alike once, geoms by the names of their bodies."""
+    lines = lines_of(capsys, "inspect", model)
+    assert len(lines) < 60
+    assert "floor  leg0[1]" in lines[2] or "leg" in lines[2]
+    assert lines[42].startswith("and 15 more; --all shows them")
+    notes = [line for line in lines if line[:1].isdigit()]
+    assert len(notes) < 8
+    assert any("like it]" in note for note in notes)
+    assert any("mass is infinite: the geoms cannot approach" in note for note in notes)
+    assert len(lines_of(capsys, "inspect", model, "--all")) > 55
+
+
+def test_it_chooses(model, capsys):
+    assert len(_rows(lines_of(capsys, "inspect", model, "--geom", "floor"))) == 10
+    assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1"))) == 10
+    assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1", "--geom", "floor"))) == 1
+    assert len(_rows(lines_of(capsys, "inspect", model, "--pair", "leg[12]", "floor"))) == 2
+    (none,) = lines_of(capsys, "inspect", model, "--geom", "hand")
+    assert none == "None of the 55 contacts of this model is of these geoms, bodies or pairs."
+    (none,) = lines_of(capsys, "inspect", model, "--pairs")
+    assert none == "This model has no contact that can act."
+
+
+def _rows(lines):
+    return lines[2 : next(i for i, line in enumerate(lines) if line.startswith("v is"))]
+
+
+def test_the_worst_are_first_and_the_immovable_last(model, capsys):
+    rows = _rows(lines_of(capsys, "inspect", model, "--geom", "floor", "--all"))
+    assert rows[-1].split()[6] == "inf"
+    assert rows[-1].split()[10:13] == ["-", "-", "-"]
+
+
+def test_it_writes_every_row(model, tmp_path, capsys):
+    path = tmp_path / "rows.csv"
+    lines_of(capsys, "inspect", model, "--csv", path, "--speed", "3", "--load", "5")
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 55
+    assert {"geom1", "k [N/m]", "k loaded", "e at v", "notes"} <= set(rows[0])
+
+
+def test_what_cannot_be_is_said(model, tmp_path, capsys):
+    assert main(["inspect", str(tmp_path / "none.xml")]) == 2
+    assert "is no file" in capsys.readouterr().err
+    assert main(["inspect", str(model), "--keyframe", "home"]) == 2
+    assert "keyframe = 'home' of type str is no keyframe of this model; it has: none" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["inspect"])

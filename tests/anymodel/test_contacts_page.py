@@ -1,0 +1,147 @@
+"""The page on contacts for any model says what is so: its example runs, and its figures are those of the formulas."""
+
+import math
+import re
+from pathlib import Path
+
+import mujoco
+import pytest
+from pairs import FLOOR, ON_A_PLANE, rebound, scene
+
+import mjrock as mr
+from mjrock.problem.damping.falling import falling_rebound
+from mjrock.problem.damping.rebound import rebound_damping, rebound_restitution
+
+PAGE = (Path(__file__).parents[2] / "docs" / "contacts_in_your_model.md").read_text(encoding="utf-8")
+
+
+def test_the_example_runs_and_does_what_it_says():
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert len([line for line in code.splitlines() if line]) <= 10
+    names: dict[str, object] = {}
+    exec(code, names)
+    model = names["model"]
+    data = mujoco.MjData(model)
+    speeds = [0.0]
+    while len(speeds) < 3 or speeds[-2] < 0 or speeds[-1] > speeds[-2]:
+        mujoco.mj_step(model, data)
+        speeds.append(float(data.qvel[2]))
+    assert max(speeds) / -min(speeds) == pytest.approx(0.5, rel=0.01)
+    mujoco.mj_step(model, data, 15000)
+    assert 0.1 - data.qpos[2] == pytest.approx(2 * 9.81 / 1e5, rel=1e-3)
+
+
+def test_its_figures():
+    assert "0.372\ninstead of 0.451 at xi = 0.3" in PAGE
+    assert rebound_restitution(0.3) == pytest.approx(0.451, abs=5e-4)
+    assert math.exp(-math.pi * 0.3 / math.sqrt(0.91)) == pytest.approx(0.372, abs=5e-4)
+    assert rebound_damping(1e-3) == pytest.approx(16, abs=0.5)
+    assert "0.58 e xi omega h" in PAGE
+    assert 2 / math.sqrt(12) == pytest.approx(0.58, abs=5e-3)
+
+
+def test_its_table_of_gravity():
+    rows = [row.strip("|").split("|") for row in PAGE.splitlines() if row.startswith("| 0.")]
+    assert len(rows) == 5
+    for asked, *left in rows:
+        for pull, e in zip((0.009, 0.054, 0.085), left, strict=True):
+            assert falling_rebound(rebound_damping(float(asked)), pull).restitution == pytest.approx(float(e), abs=2e-3)
+
+
+def test_its_two_lines_measure_e():
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    lines = [line.strip() for line in PAGE.splitlines() if line.startswith(("    model.opt.grav", "    while data"))]
+    names: dict[str, object] = {}
+    exec("\n".join([code.replace("0 0 .5", "0 0 .1005"), *lines]), names)
+    assert names["data"].qvel[2] == pytest.approx(0.5, rel=0.01)
+
+
+def test_the_pyramidal_cone_gains_what_it_says():
+    assert "k = 1e5 N/m and\nh = 0.1 ms on 2 kg the same contact rebounds with up to 1.04." in PAGE
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    contact = mr.contact_for(spec, "ball", "floor", k=1e5, restitution=0.5, friction=0.3, timestep=1e-4)
+    contact.apply(spec)
+    model = spec.compile()
+    model.opt.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
+    assert rebound(contact, model, phase=0.05)[0] == pytest.approx(1.04, abs=0.005)
+    assert any("can gain energy" in caveat for caveat in contact.caveats(model))
+    assert any("the rebound can be another, and it can gain energy" in note for note in inspected(model).notes)
+    model.opt.impratio = 1
+    (caveat,) = (caveat for caveat in contact.caveats(model) if "pyramidal" in caveat)
+    assert "20.4 times as large" in caveat
+    assert "gain" not in caveat
+
+
+def test_the_inertia_of_the_row_is_counted():
+    """Undamped in short steps the row has more inertia than asked for. The pyramid multiplies it too: no gain."""
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    contact = mr.contact_for(spec, "ball", "floor", k=1e5, restitution=1.0, friction=0.5, timestep=1e-5)
+    contact.apply(spec)
+    model = spec.compile()
+    model.opt.cone, model.opt.impratio = mujoco.mjtCone.mjCONE_PYRAMIDAL, 1e7
+    assert inspected(model).frequency * 1e-5 == pytest.approx(0.224, abs=0.001)
+    assert rebound(contact, model, phase=0.05)[0] < 1.005
+    assert not any("gain" in caveat for caveat in contact.caveats(model))
+    assert not any("is long" in note for note in inspected(model).notes)
+
+
+def test_a_contact_for_a_step_that_resolves_nothing_is_not_said_to_gain():
+    spec = mujoco.MjSpec.from_string(ON_A_PLANE)
+    with pytest.warns(UserWarning, match="does not resolve"):
+        contact = mr.contact_for(spec, "ball", "floor", k=1e6, restitution=1.0, timestep=5e-3)
+    contact.apply(spec)
+    (note,) = inspected(spec.compile()).notes
+    assert "omega h = 0.96: e leaves out the step, and the rebound can be another; " in note
+
+
+def test_the_cost_of_impratio():
+    """Iterations of the solver in a step, of three boxes of which the top one slides, and of a single one."""
+    assert "1.1 iterations in a step instead of\n1.0; 1e8 takes 1.4 and 1e10 takes 5.5." in PAGE
+    iterations = [_iterations(3, impratio) for impratio in (1, None, 1e8)]
+    assert iterations == pytest.approx([1.0, 1.1, 1.4], abs=0.06)
+    assert _iterations(3, 1e10) > 3
+    assert _iterations(1, None) < _iterations(1, 1)
+
+
+def _iterations(boxes, impratio):
+    bodies = "".join(
+        f"""<body pos="0 0 {0.1 + 0.2 * i}"><freejoint/>
+        <geom name="box{i}" type="box" size=".2 .3 .1" mass="2"/></body>"""
+        for i in range(boxes)
+    )
+    spec = mujoco.MjSpec.from_string(scene(FLOOR, bodies, gravity=9.81, timestep=1e-4))
+    below = "floor"
+    for i in range(boxes):
+        mr.contact_for(spec, f"box{i}", below, k=2.5e5, restitution=0.5, contacts=4, friction=0.5).apply(spec)
+        below = f"box{i}"
+    model = spec.compile()
+    assert model.opt.impratio == pytest.approx(7.3e5, rel=0.02)
+    model.opt.impratio = impratio or model.opt.impratio
+    data = mujoco.MjData(model)
+    data.qvel[6 * (boxes - 1)] = 0.5
+    count = 0
+    for _ in range(3000):
+        mujoco.mj_step(model, data)
+        count += int(data.solver_niter[0])
+    return count / 3000
+
+
+def inspected(model):
+    (found,) = mr.inspect_contacts(model)
+    return found
+
+
+def test_its_table_is_what_the_script_prints():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><geom name="floor" type="plane" size="5 5 .1"/><body pos="0 0 .1"><freejoint/>
+        <geom name="ball" size=".1" mass="2"/></body></worldbody></mujoco>"""
+    )
+    (found,) = mr.inspect_contacts(model)
+    row = (found.k, found.k_loaded, found.c, found.mass, found.inertia, found.impedance, found.points, found.xi)
+    figures = (*row, found.restitution, found.restitution_at(1.0))
+    printed = [float(word) for word in PAGE.splitlines()[-1].split()[3:-1]]
+    assert printed == pytest.approx(figures, rel=4e-3)
+
+
+def test_it_is_short():
+    assert len(PAGE.splitlines()) < 160

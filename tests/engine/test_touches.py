@@ -1,0 +1,148 @@
+"""Single steps that fit the motion: a block slides on ice towards its side stop."""
+
+import numpy as np
+import pytest
+from scenes import course, fields
+
+import mjrock as mr
+from mjrock.engine.loop import fitted_loop
+from mjrock.engine.mjcf import pair_rows
+from mjrock.engine.model import engine_of
+from mjrock.engine.pace import Pace, short_step
+from mjrock.engine.progress import Clock, Progress
+from mjrock.engine.record import Record
+from mjrock.engine.setting import Setting
+from mjrock.engine.sliding import Sliding
+from mjrock.engine.stepping import fitted_steps
+from mjrock.engine.sticking import Joints
+from mjrock.engine.touches import Openings, Springs, Touches, hardest, predict
+from mjrock.geometry.kinematics import gaps
+from mjrock.method import METHOD
+from mjrock.scene.wall import wall_scene
+
+BLOCK = mr.Block.from_size(2.0, 2.0)
+ACCURACY, SPEED = 1e-3, 0.5
+
+
+@pytest.fixture(scope="module")
+def ice():
+    """The block on a base without friction, a metre before a side stop that has none either."""
+    contacts = mr.Contacts.from_damping(
+        BLOCK, k_base=5e8, xi_base=0.05, k_side=3e8, xi_side=0.02, friction=0.0, side_friction=0.0
+    )
+    return wall_scene(mr.Case(BLOCK, 0.0, 1.0), contacts)
+
+
+def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False):
+    """The clock after a step of the block, `away` from the stop and moving towards it, and the step itself.
+
+    The pace allows the step h, as long as the last. The acceleration in the last step was zero.
+    """
+    start = scene.at_rest + np.array([away, 0.0, 0.0])
+    slides = course(scene, [[-SPEED, 0.0, 0.0]], 1.0, pose=start)
+    pace, setting = Pace.of(scene, slides, ACCURACY), Setting.of(scene, slides)
+    with engine_of(scene) as engine:
+        engine.follow(h, pair_rows(scene, h, 0.25))
+        engine.release(slides)
+        engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
+        sliding = Sliding.of(setting.points, coulomb=True)
+        state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
+        record = Record.of(1, 3, len(scene.k))
+        state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
+        before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
+        values, n = fitted_loop(engine.memory, setting, pace, state, before, record)
+    assert n == 1
+    return Clock(*values), record
+
+
+@pytest.mark.parametrize("share", [0.1, 0.9])
+def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
+    """The block arrives after a share of the step that the pace allows; a step that does not arrive is left alone."""
+    short = short_step(ice, ACCURACY)
+    for h in (short, 4 * short):
+        after, record = one_step(ice, share * h * SPEED, h)
+        assert (after.touches, after.h, after.calm, after.fresh) == (1, short, 0, True)
+        assert record.h[0] == after.last == after.t == pytest.approx(share * h + 0.5 * short, rel=1e-9)
+        after, record = one_step(ice, 1.1 * h * SPEED, h)
+        assert (after.touches, record.h[0], after.fresh) == (0, h, False)
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_a_faint_touch_is_not_met(ice, share):
+    """It is met where noticing it a step h late misplaces too much in one of the contacts.
+
+    Too much is the share `faded` of accuracy x energy. What it misplaces is k (v h)^2 / 4 in the spring and c h v^2 in
+    the dashpot.
+    """
+    h = 2 * short_step(ice, ACCURACY)
+    misplaced = (0.25 * ice.k[-1] * h + ice.c[-1]) * h * SPEED**2
+    after, _ = one_step(ice, 0.5 * h * SPEED, h, share * misplaced / (METHOD.faded * ACCURACY))
+    assert after.touches == (1 if share < 1 else 0)
+
+
+def test_no_touch_is_predicted_from_an_abrupt_step(ice):
+    """A dashpot that has just thrown the velocity about says nothing of where the next step leads."""
+    h = 2 * short_step(ice, ACCURACY)
+    after, record = one_step(ice, 0.5 * h * SPEED, h, abrupt=True)
+    assert (after.touches, record.h[0]) == (0, h)
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
+    """The stop takes a share of `abrupt` of the speed of the last touch in one step. Speeds weigh with the masses."""
+    h = short_step(ice, ACCURACY)
+    _, record = one_step(ice, -1e-4, h)
+    change = ice.masses @ (record.after[0] - record.before[0]) ** 2
+    after, _ = one_step(ice, -1e-4, h, change / (share * METHOD.abrupt) ** 2)
+    assert bool(after.abrupt) is (share > 1)
+
+
+@pytest.mark.parametrize("curve", [-30.0, 0.0, 4.0])
+def test_when_a_gap_closes(curve):
+    """The first root of g + g1 t + g2 t^2/2, and the closing speed there, whichever part of g2 has the curvature."""
+    g, g1, springs = 0.01, -0.3, Springs(np.ones(2), np.zeros(2))
+    t = min(root.real for root in np.roots([0.5 * curve, g1, g]) if root.real > 0)
+    for parts in ((curve, 0.0), (3.0, curve - 3.0)):
+        openings, touches = Openings.of(springs), Touches.of(springs)
+        for i, opening in enumerate([(1.0, -0.3, 0.0, 0.0), (g, g1, *parts)]):
+            openings.value[i], openings.rate[i], openings.linear[i], openings.swept[i] = opening
+        assert predict(springs, openings, 1.01 * t, 1.0, 0.0, touches) == pytest.approx(t)
+        assert (touches.time[1], touches.speed[1]) == pytest.approx((t, -(g1 + curve * t)))
+        assert touches.time[0] == np.inf
+        assert predict(springs, openings, 0.99 * t, 1.0, 0.0, touches) == np.inf
+        openings.value[1] = -1e-9  # it is closed already
+        assert predict(springs, openings, 1.0, 1.0, 0.0, touches) == np.inf
+
+
+def test_the_hardest_of_the_touches_in_a_short_window_is_met():
+    touches = Touches(np.array([0.3, 0.2, 0.25, 0.31, np.inf]), np.array([0.1, 0.5, 0.9, 2.0, 9.0]))
+    assert [hardest(touches, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
+
+
+def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
+    """A block on ice is pulled against a tie, stretches it for good, springs back, and is pulled against it again."""
+    contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05, friction=0.0)
+    standing = wall_scene(mr.Case(BLOCK, 0.0, 1.0, side_stop=False), contacts)
+    parts = fields(standing)
+    tie = {
+        "tie_names": ("tie",),
+        "tie_body": [0],
+        "tie_point": [(0.0, 0.0)],
+        "anchor_body": [-1],
+        "anchor": [(-5.0, BLOCK.h)],
+        "tie_k": [2e6],
+        "tie_length": [5.02],
+        "tie_strength": [2e4],
+    }
+    pull = {"force_names": ("pull",), "force_body": [0], "force_point": [(0.0, 0.0)], "force": [(4e3, 0.0)]}
+    scene = mr.Scene(**parts | tie | pull)
+    pulled = course(scene, [[SPEED, 0.0, 0.0]], 1.0)
+    with engine_of(scene) as engine:
+        engine.place(pulled)
+        steps = fitted_steps(engine, scene, pulled, ACCURACY)
+    elongation = scene.accounts(steps.pose, steps.velocity)[1][-1, 0] / 2e4
+    assert elongation > 0.04
+    beyond = steps.pose[:, 0] - 0.02 - elongation
+    again = np.flatnonzero((beyond[:-1] <= 0) & (beyond[1:] > 0) & (steps.t[1:] > steps.t[beyond.argmax()]))[0] + 1
+    assert steps.h[again] == short_step(scene, ACCURACY)
+    assert beyond[again] / steps.record.before[again, 0] == pytest.approx(0.5 * steps.h[again], rel=0.02)

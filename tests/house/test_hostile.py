@@ -1,0 +1,345 @@
+"""Every public entry with values that cannot be: a result, or an error that names the argument.
+
+A call starts from arguments that work, and one or two of them are replaced. It has to end in a result, or in a
+ValueError or TypeError whose message names an argument of the call, or in a SimulationError of the engine.
+"""
+
+import inspect
+import math
+import re
+import warnings
+
+import mujoco
+import numpy as np
+import pytest
+from arguments import BALL, OF_NUMBERS
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import mjrock as mr
+
+WALL = mr.Block(0.3, 2.1)
+E = mr.Restitution.from_geometry(WALL)
+CONTACTS = mr.Contacts.from_law(WALL, E, 5e8, 5e8)
+SHORT = mr.Case(WALL, 0.05, 0.02)
+MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
+RESPONSE = mr.simulate(SHORT, CONTACTS)
+ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
+PAIRED = mujoco.MjModel.from_xml_string(
+    """<mujoco><option cone="elliptic"/><worldbody><geom name="floor" type="plane" size="1 1 1"/><body pos="0 0 .1">
+    <freejoint/><geom name="ball" size=".1"/></body></worldbody><contact><pair geom1="ball" geom2="floor"/></contact>
+    </mujoco>"""
+)
+PLAN = mr.Plan(base_count=2, side_count=2)
+COLUMN = mr.Masonry.stack([WALL], 5e8)
+
+
+def pushed(scale):
+    """A case that is pushed outwards by so many times g alpha, and overturns at the larger scales."""
+    motion = mr.GroundMotion(np.full(2, -min(scale, 100.0) * 9.81 * WALL.alpha), 0.5)
+    return mr.Analysis(mr.Case(WALL, 0.0, 1.0, motion=motion), "analytical", e=E, options={"rtol": 1e-4})
+
+
+CALLS = OF_NUMBERS | {
+    "Block": (mr.Block,
+        {
+            "b": 0.3, "h": 2.1, "length": 1.0, "density": 2000.0, "inset": 0.0, "openings": (), "profile": None,
+            "masses": (),
+        },
+    ),
+    "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": WALL}),
+    "Case": (
+        mr.Case,
+        {
+            "block": WALL, "theta0": 0.05, "duration": 1.0, "side_stop": True, "omega0": 0.0, "motion": None,
+            "vertical": None, "effects": (mr.Tie(3.0, 1e6),),
+        },
+    ),
+    "Contacts": (mr.Contacts, {"base": CONTACTS.base, "side": CONTACTS.side, "law": "mine"}),
+    "Contacts.from_damping": (
+        mr.Contacts.from_damping,
+        {"wall": WALL, "k_base": 5e8, "xi_base": 0.05, "k_side": 5e8, "xi_side": 0.01, "points": 2, "friction": 0.6},
+    ),
+    "Contacts.from_law": (
+        mr.Contacts.from_law,
+        {"wall": WALL, "e": E, "k_base": 5e8, "k_side": 5e8, "law": None, "points": 2, "amplitude": 0.5},
+    ),
+    "law": (mr.CALIBRATED, {"wall": WALL, "e": E, "k_n": 5e8, "k_side": 5e8, "amplitude": 0.5}),
+    "law.reach": (mr.CALIBRATED.reach, {"wall": WALL, "k_n": 5e8, "amplitude": 0.5}),
+    "law.covers": (mr.CALIBRATED.covers, {"wall": WALL, "e": E, "k_n": 5e8, "k_side": 5e8, "amplitude": 0.5}),
+    "reference_frequency": (mr.reference_frequency, {"wall": WALL, "k_n": 5e8, "points": 2}),
+    "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL}),
+    "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
+    "layered_stiffness": (
+        lambda stiffnesses: mr.layered_stiffness(*stiffnesses) if isinstance(stiffnesses, tuple) else
+        mr.layered_stiffness(stiffnesses), {"stiffnesses": (1e9, 2e9)},
+    ),
+    "contact_stiffness": (
+        mr.contact_stiffness,
+        {"solref": ROWS.solref, "solimp": ROWS.solimp, "inverse_weight": 1e-4},
+    ),
+    "contact_for": (
+        mr.contact_for,
+        {
+            "model": BALL, "geom1": "ball", "geom2": "floor", "k": 1e6, "c": None, "restitution": 0.5, "xi": None,
+            "friction": 0.5, "mass": None, "at": None, "contacts": 1, "timestep": 1e-5, "newmark_beta": 0.25,
+            "keyframe": None, "qpos": [0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0], "speed": 1.0,
+        },
+    ),
+    "contact_for, by c": (
+        mr.contact_for,
+        {"model": BALL, "geom1": "ball", "geom2": 0, "k": 1e6, "c": 30.0, "mass": 1.0, "timestep": 1e-5},
+    ),
+    "contacts_for": (
+        mr.contacts_for,
+        {
+            "model": BALL, "pairs": {("b*", "floor"): {"k": 1e6, "restitution": 0.5}}, "keyframe": None, "qpos": None,
+            "timestep": 1e-5,
+        },
+    ),
+    "measured_contact": (
+        mr.measured_contact,
+        {"heights": [1.0, 0.5], "mass": 1.0, "contact_times": [0.01], "confidence": 0.9, "gravity": 9.81},
+    ),
+    "hertz_stiffness": (
+        mr.hertz_stiffness,
+        {"radius": 0.1, "E": 1e9, "nu": 0.3, "other": (1e9, 0.3), "force": None, "mass": 1.0, "speed": 1.0},
+    ),
+    "CoulombFriction": (mr.CoulombFriction, {"model": PAIRED}),
+    "inspect_contacts": (
+        mr.inspect_contacts,
+        {"model": BALL, "candidates": True, "contacts": 1, "keyframe": None, "qpos": None, "load": 3.0},
+    ),
+    "automatic_timestep": (mr.automatic_timestep, {"wall": WALL, "contacts": CONTACTS, "side_stop": True}),
+    "simulate": (
+        mr.simulate,
+        {
+            "case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "accuracy": 1e-3, "newmark_beta": 0.25,
+            "output_step": 1e-3, "ledger": False, "start": RESPONSE.end,
+        },
+    ),
+    "simulate, fitted": (mr.simulate, {"case": SHORT, "contacts": CONTACTS, "accuracy": 1e-2, "output_step": 1e-3}),
+    "solve_analytical": (mr.solve_analytical, {"case": SHORT, "e": E, "rtol": 1e-8, "output_step": 1e-3, "rest": 1e-9}),
+    "solve_compliant": (mr.solve_compliant, {"case": SHORT, "contacts": CONTACTS, "rtol": 1e-6, "output_step": 1e-3}),
+    "compare": (mr.compare, {"reference": RESPONSE, "candidate": RESPONSE}),
+    "wall_mjcf": (mr.wall_mjcf, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
+    "wall_scene": (mr.wall_scene, {"case": SHORT, "contacts": CONTACTS}),
+    "scene_of": (mr.scene_of, {"case": SHORT, "contacts": CONTACTS}),
+    "scene_of, masonry": (mr.scene_of, {"case": mr.MasonryCase(COLUMN, 0.02), "contacts": None}),
+    "mjcf_of": (mr.mjcf_of, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
+    "overturning_intensity": (
+        mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1},
+    ),
+    "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
+    "matched_contacts": (
+        mr.matched_contacts,
+        {"wall": WALL, "e": E, "k_base": 5e8, "points": 2, "amplitude": 0.5, "friction": None, "accuracy": 1e-2},
+    ),
+    "fit_fragility": (
+        mr.fit_fragility,
+        {
+            "intensity": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], "overturned": [0, 0, 1, 0, 1, 1], "groups": None,
+            "resamples": 20, "seed": 0,
+        },
+    ),
+    "as_theory": (mr.as_theory, {"wall": WALL, "e": E, "side_stop": False, "rebounds": 2, "amplitude": 0.5}),
+    "Polygon": (
+        mr.Polygon,
+        {"vertices": [(0, 0), (1, 0), (0, 1)], "density": 2e3, "length": 1.0, "fixed": False, "name": None},
+    ),
+    "Masonry": (
+        mr.Masonry,
+        {
+            "blocks": COLUMN.blocks, "k_n": 5e8, "friction": 0.7, "xi": 0.05, "frequency": None, "points": 2,
+            "tolerance": 1e-5, "law": None,
+        },
+    ),
+    "Masonry.stack": (mr.Masonry.stack, {"blocks": [WALL], "k_n": 5e8, "ground": True, "law": None, "friction": 0.7}),
+    "Masonry.stack, side": (
+        mr.Masonry.stack,
+        {"blocks": [WALL], "k_n": 5e8, "side_stop": True, "k_side": 1e8, "side_friction": 0.1, "xi": 0.05},
+    ),
+    "rigid_impact": (mr.rigid_impact, {"masonry": COLUMN, "velocity": [[-2.0, 0.3, -1.0]]}),
+    "matched_masonry": (mr.matched_masonry, {"masonry": COLUMN, "e": E, "amplitude": 0.5, "accuracy": 1e-2}),
+    "Masonry.arch": (
+        mr.Masonry.arch,
+        {
+            "radius": 5.0, "thickness": 0.75, "span_angle": 3.0, "voussoirs": 5, "density": 2e3, "length": 1.0,
+            "k_n": 1e9,
+        },
+    ),
+    "Masonry.running_bond": (
+        mr.Masonry.running_bond,
+        {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
+    ),
+    "MasonryCase": (
+        mr.MasonryCase,
+        {
+            "masonry": COLUMN, "duration": 1.0, "motion": None, "vertical": None, "velocity": [[0.0, 0.0, 0.1]],
+            "effects": (),
+        },
+    ),
+    "masonry_scene": (mr.masonry_scene, {"case": mr.MasonryCase(COLUMN, 0.02)}),
+    "masonry_mjcf": (mr.masonry_mjcf, {"case": mr.MasonryCase(COLUMN, 0.02), "timestep": 1e-3, "newmark_beta": 0.25}),
+    "simulate, masonry": (
+        mr.simulate,
+        {
+            "case": mr.MasonryCase(COLUMN, 0.02), "contacts": None, "timestep": None, "accuracy": 1e-2,
+            "newmark_beta": 0.25, "output_step": 1e-3, "ledger": False, "start": None,
+        },
+    ),
+    "Plan": (mr.Plan, {name: getattr(PLAN, name) for name in inspect.signature(mr.Plan).parameters}),
+}  # fmt: skip
+"""Arguments that work, by entry."""
+
+HOSTILE = st.one_of(
+    st.sampled_from(
+        [
+            None, True, False, "", "0.3", b"1", [], [1.0], (), {}, 1j, 10**400, -(10**400), math.nan, math.inf,
+            -math.inf, 0, -1, 1e-300, 1e300, np.nan, np.float32(2.0), np.int64(3), np.array(0.3), np.array([0.1, 0.2]),
+            object(),
+            WALL, E, SHORT, COLUMN, CONTACTS, CONTACTS.base, MOTION,
+            mr.Load(1e3, 2.0), mr.SideStop(2.0), [mr.Opening(0.2, 1.0)], RESPONSE, mr.CALIBRATED, print, "no", 2.5,
+        ]
+    ),
+    st.floats(),
+    st.integers(-(10**12), 10**12),
+)  # fmt: skip
+
+
+STANDS_FOR = {
+    "b": "half thickness",
+    "h": "half height",
+    "R": "half diagonal",
+    "base": "base restitution",
+    "side": "side restitution",
+    "lumped": "lumped restitution",
+    "k_n": "interface stiffness",
+    "k_base": "base stiffness",
+    "k_side": "side stiffness",
+    "xi": "damping ratio",
+    "xi_base": "damping ratio",
+    "xi_side": "damping ratio",
+    "theta0": "release rotation",
+    "omega0": "release velocity",
+    "frequency": "reference frequency",
+    "contacts": "the base contacts",
+    "wall": "alpha",
+}
+"""What messages call an argument, where that is not its name."""
+
+
+def named(message, arguments):
+    """Whether a message names an argument, or what it stands for."""
+    words = [rf"\b{re.escape(name)}\b" for name in arguments] + [
+        re.escape(STANDS_FOR[name]) for name in arguments if name in STANDS_FOR
+    ]
+    return any(re.search(word, message) for word in words)
+
+
+@st.composite
+def calls(draw):
+    name = draw(st.sampled_from(sorted(CALLS)))
+    function, arguments = CALLS[name]
+    replaced = draw(st.lists(st.sampled_from(sorted(arguments)), min_size=1, max_size=2, unique=True))
+    return name, function, arguments | {one: draw(HOSTILE) for one in replaced}
+
+
+def is_answered(call):
+    name, function, arguments = call
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            function(**arguments)
+        except mr.SimulationError:
+            pass
+        except (ValueError, TypeError) as error:
+            if not named(str(error), arguments):
+                pytest.fail(f"{name} names no argument: {type(error).__name__}: {error}")
+
+
+HEALTH = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+
+@given(calls())
+@settings(max_examples=400, deadline=None, derandomize=True, suppress_health_check=HEALTH)
+def test_a_call_is_answered_or_refused_by_name(call):
+    is_answered(call)
+
+
+@pytest.mark.slow
+@given(calls())
+@settings(max_examples=10_000, deadline=None, derandomize=False, suppress_health_check=HEALTH)
+def test_ten_thousand_calls(call):
+    is_answered(call)
+
+
+def test_every_public_entry_is_tried():
+    """What is not called here is made by a solver, or tested with the campaigns, the records and the reports."""
+    elsewhere = {
+        "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
+        "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
+        "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
+        "calibrate", "GroundMotion", "report",
+        "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
+        "MeasuredContact",
+    }  # fmt: skip
+    tried = {name.split(".")[0].split(",")[0] for name in CALLS}
+    assert set(mr.__all__) - elsewhere <= tried
+
+
+@pytest.mark.parametrize(
+    ("make", "complaint"),
+    [
+        (lambda: mr.Block(True, True), "half thickness b = True of type bool is not a real number"),
+        (lambda: mr.Block.from_slenderness(-1, 2.0), "slenderness h/b = -1 is outside the valid range 1 to 200"),
+        (lambda: mr.Case(WALL, 0.0, 1.0, side_stop="no"), "side_stop = 'no' of type str is neither True nor False"),
+        (lambda: mr.simulate(CONTACTS, SHORT), "case and contacts are swapped: the case comes first"),
+        (lambda: mr.simulate(SHORT, CONTACTS, start=0), "start = 0 of type int is not a pose and a velocity"),
+        (
+            lambda: mr.simulate(SHORT, CONTACTS, start=([[0, 0, math.nan]], [[0, 0, 0]])),
+            "start, pose holds a value that is not finite",
+        ),
+        (
+            lambda: mr.simulate(SHORT, CONTACTS, start=([[0, 0, 40]], [[0, 0, 0]])),
+            "start, rotation = 40 rad is outside the valid range",
+        ),
+        (lambda: mr.simulate(SHORT, CONTACTS, 1e-3, output_step=-1), "output_step = -1 s is outside"),
+        (
+            lambda: mr.simulate(mr.Case(WALL, 0.05, 1e5), CONTACTS, 1e-5),
+            r"the steps of this run would be 1e\+10; at most 5e\+07 fit into memory; take a longer timestep",
+        ),
+        (
+            lambda: mr.solve_analytical(mr.Case(WALL, 0.05, 1e6), E),
+            r"the samples of this answer would be 1e\+09; .* raise output_step",
+        ),
+        (lambda: mr.calibrate("x", "never.sqlite", points=2.5), "points = 2.5 is not a whole number"),
+        (lambda: mr.CALIBRATED.reach(WALL, 5e8, math.nan), "amplitude theta_0/alpha = nan is outside"),
+        (lambda: mr.CALIBRATED(WALL, E, 1e300), r"k_n = 1e\+300 N/m3 is outside the valid range"),
+        (lambda: mr.Interface(5e8, 0.05, 0.6, -1.0, 30.0), "length = -1 m is outside the valid range"),
+        (lambda: mr.Plan(losses=("a",)), "losses = 'a' of type str is not a real number"),
+    ],
+)
+def test_it_says_what_is_wrong(make, complaint):
+    with pytest.raises((ValueError, TypeError), match=complaint):
+        make()
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-1.0", '"text"', "true"])
+def test_a_law_with_coefficients_that_cannot_be(value, tmp_path):
+    path = mr.CALIBRATED.save(tmp_path / "law.toml")
+    text = re.sub(r"(?m)^floor = .*$", f"floor = {value}", path.read_text())
+    path.write_text(text)
+    with pytest.raises(ValueError, match=r"law.toml is not a damping law: base.floor = "):
+        mr.DampingLaw.load(path)
+
+
+def test_the_engine_leaves_no_log_behind(tmp_path, monkeypatch, caplog):
+    monkeypatch.chdir(tmp_path)
+    stiff = mr.Contacts.from_damping(WALL, k_base=1e13, xi_base=0.0)
+    model = mujoco.MjModel.from_xml_string(mr.wall_mjcf(mr.Case(WALL, 0.05, 1.0, side_stop=False), stiff, 1e-4))
+    data = mujoco.MjData(model)
+    data.qpos[0] = math.nan
+    mujoco.mj_step(model, data)
+    assert "QPOS" in caplog.text
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,53 @@
+"""What `import mjrock` brings, and what it leaves alone until it is asked for."""
+
+import subprocess
+import sys
+
+import pytest
+
+import mjrock as mr
+
+
+def test_importing_the_package_imports_no_matplotlib():
+    code = """
+import sys
+import mjrock as mr
+assert not [name for name in sys.modules if name.startswith(("matplotlib", "pandas", "dask"))]
+from mjrock.study.fragility import fit_fragility
+assert "matplotlib" not in sys.modules
+assert mr.plotting.rotation.__module__ == "mjrock.plotting.histories"
+from mjrock import plotting
+assert plotting is mr.plotting
+"""
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
+
+
+def test_contacts_alone_import_no_compiler_and_no_optimiser():
+    code = """
+import sys
+import mjrock as mr
+assert "mujoco" not in sys.modules
+contact = mr.contact_for, mr.contacts_for, mr.inspect_contacts, mr.contact_parameters
+assert not [name for name in sys.modules if name.startswith(("numba", "scipy.optimize", "matplotlib", "tqdm"))]
+"""
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
+
+
+@pytest.mark.parametrize("version", ["3.12.0", "3.8.1", "2.3.7"])
+def test_an_older_mujoco_is_refused_by_name(version):
+    with pytest.raises(ImportError, match=f"needs MuJoCo 4.0 or newer, and {version} is installed"):
+        mr._require_mujoco(version)
+    mr._require_mujoco("4.0.0")
+    mr._require_mujoco("10.1.0rc1")
+
+
+def test_every_name_is_there():
+    for name in mr.__all__:
+        assert getattr(mr, name) is not None
+    assert set(mr.HOME) | {"__version__"} == set(mr.__all__)
+    assert dir(mr) == sorted([*mr.__all__, "plotting"])
+
+
+def test_what_is_not_there_is_no_attribute():
+    with pytest.raises(AttributeError, match="module 'mjrock' has no attribute 'plots'"):
+        mr.plots  # noqa: B018

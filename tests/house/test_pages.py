@@ -1,0 +1,147 @@
+"""The pages of the documentation and the README: their lines run as they stand, and print what they say."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+import pytest
+
+import mjrock as mr
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
+"""Lines of Python, and what they print where the page shows it right below."""
+NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
+RUNS = ["stiffness.md", "law_and_step.md", "solvers.md"]
+LONG = ["tutorial.md", "analysis.md", "masonry.md", "impacts.md"]
+"""Pages whose lines run."""
+
+
+def blocks(page: Path) -> list[tuple[str, str | None]]:
+    return [(code, text or None) for code, text in BLOCK.findall(page.read_text(encoding="utf-8"))]
+
+
+def alike(printed: str, shown: str) -> bool:
+    """Whether two texts differ by no more than one unit of the last digit of each number."""
+    if NUMBER.split(printed.strip()) != NUMBER.split(shown.strip()):
+        return False
+    for one, other in zip(NUMBER.findall(printed), NUMBER.findall(shown), strict=True):
+        mantissa, _, exponent = other.partition("e")
+        unit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+        if abs(float(one) - float(other)) > 1.001 * unit:
+            return False
+    return True
+
+
+def run(page: Path, names: dict[str, object], most: int | None = None) -> list[tuple[str, str | None]]:
+    """Run the lines of a page, or its first blocks; what each block printed, and what the page shows."""
+    found = []
+    for code, shown in blocks(page)[:most]:
+        out = StringIO()
+        with redirect_stdout(out):
+            exec(compile(code, str(page), "exec"), names)
+        found.append((out.getvalue(), shown))
+    return found
+
+
+LINES = 185
+"""Most lines of a page that is to be read from its beginning to its end."""
+REFERENCE = {"damping.md", "api.md"}
+"""Pages to look things up in."""
+LINK = re.compile(r"\[[^\]]*\]\(([^)#]+)[^)]*\)")
+
+
+@pytest.mark.parametrize("name", [*RUNS, *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
+@pytest.mark.filterwarnings("ignore:CALIBRATED:UserWarning")
+def test_the_lines_of_a_page_run_and_print_what_it_shows(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for printed, shown in run(DOCS / name, {}):
+        assert (shown is None) == (printed == ""), printed
+        assert alike(printed, shown or ""), f"{name} shows\n{shown}\nand its lines print\n{printed}"
+
+
+def test_numbers_are_compared_to_their_last_digit():
+    assert alike("peak 0.24 alpha, 5e+08 N/m3", "peak 0.25 alpha, 5e+08 N/m3")
+    assert not alike("peak 0.23 alpha", "peak 0.25 alpha")
+    assert not alike("peak inf alpha", "peak 0.25 alpha")
+    assert not alike("4e+08 N/m3", "6e+08 N/m3")
+    assert not alike("at rest, peak 0.25", "overturned, peak 0.25")
+
+
+def test_the_first_lines_of_the_readme_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(readme.splitlines()) < 150
+    (lines,) = re.findall(r"## Ten lines\n.*?```python\n(.*?)```", readme, re.DOTALL)
+    assert sum(1 for line in lines.splitlines() if line and not line.startswith("import")) <= 10
+    printed = run(ROOT / "README.md", {}, 2)
+    assert "restitution [-]" in printed[0][0]
+    assert len(printed[1][0].split()) == 4
+
+
+@pytest.mark.slow
+def test_all_lines_of_the_readme_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run(ROOT / "README.md", {})
+    assert all((tmp_path / name).stat().st_size for name in ("rock.gif", "rock.png", "rock.csv"))
+
+
+def test_the_first_lines_of_the_page_on_damping_run(wall, e):
+    first = blocks(DOCS / "damping.md")[0][0]
+    names: dict[str, object] = {"wall": wall, "e": e}
+    exec(first, names)
+    assert names["contacts"].law == "as theory"  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("page", [ROOT / "README.md", *sorted(DOCS.glob("*.md"))], ids=lambda page: page.stem)
+def test_every_link_of_a_page_leads_somewhere(page):
+    text = page.read_text(encoding="utf-8")
+    for link in LINK.findall(text):
+        if not link.startswith("http"):
+            source = re.sub(r"^auto_examples/(.*)\.rst$", r"examples/\1.py", link)  # a page that the site makes of it
+            assert (page.parent / source).exists(), link
+    for script in re.findall(r"scripts/([\w/]+)\.py", text):
+        assert (ROOT / "scripts" / f"{script}.py").exists(), script
+    if page.name not in REFERENCE:
+        assert len(text.splitlines()) <= LINES
+
+
+def test_every_picture_is_in_the_gallery():
+    gallery = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    shown = set(re.findall(r"\(figures/([\w/]+\.(?:png|gif))\)", gallery))
+    made = {
+        str(one.relative_to(DOCS / "figures"))
+        for one in (DOCS / "figures").rglob("*.*")
+        if one.suffix in (".png", ".gif")
+    }
+    assert shown >= made
+
+
+def test_every_public_name_is_in_the_reference():
+    reference = (DOCS / "api.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\.\. auto(?:class|function|data):: mjrock\.(?:[a-z]+\.)*(\w+)$", reference, re.MULTILINE)
+    assert {name for name in mr.__all__ if not name.startswith("_")} <= set(listed)
+
+
+@pytest.mark.slow
+def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_read(tmp_path):
+    pytest.importorskip("sphinx_gallery", reason="the extra docs is not installed; make docs installs it")
+    source = tmp_path / "docs"
+    shutil.copytree(DOCS, source, ignore=shutil.ignore_patterns("build", "auto_examples"))
+    command = [sys.executable, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q"]
+    command += ["-d", str(tmp_path / "doctrees"), str(source), str(tmp_path / "html")]
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    found = subprocess.run(command, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stderr[-4000:]
+    pages = list((tmp_path / "html").rglob("*.html"))
+    examples = {page.stem for page in (DOCS / "examples").glob("*.py")}
+    assert examples <= {page.stem for page in pages}
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        assert not re.search(r"<(?:script|img)[^>]+src=.https?:|<link[^>]+href=.https?:", text), page

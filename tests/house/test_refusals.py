@@ -1,0 +1,210 @@
+"""Paths, options, names and titles that cannot be: refused by name, before anything is written or run."""
+
+import math
+import subprocess
+import sys
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.result.table import csv_text
+from mjrock.study.store import FIXED
+
+WALL = mr.Block(0.3, 2.1)
+E = mr.Restitution.from_geometry(WALL)
+CASE = mr.Case(WALL, 0.05, 0.05)
+ANSWER = mr.solve_analytical(CASE, E)
+SHAKE = mr.GroundMotion([0.0, 1.0], 0.1)
+SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
+
+
+class Unspeakable:
+    """What has no repr."""
+
+    def __repr__(self):
+        raise RuntimeError("repr fails")
+
+
+def analysis():
+    return mr.Analysis(CASE, "analytical", E)
+
+
+PATHS = {
+    "Response.csv": (lambda path: ANSWER.csv(path), "path"),
+    "animate": (lambda path: plotting.animate(ANSWER, path), "path"),
+    "save": (lambda path: plotting.save(plotting.single(lambda ax: ax), path), "path"),
+    "law.save": (lambda path: mr.CALIBRATED.save(path), "path"),
+    "law.load": (lambda path: mr.DampingLaw.load(path), "path"),
+    "from_at2": (mr.GroundMotion.from_at2, "path"),
+    "from_csv": (lambda path: mr.GroundMotion.from_csv(path, "g"), "path"),
+    "Store": (lambda path: mr.Store(path), "path"),
+    "rescue": (lambda path: mr.Store.rescue(path, "new.sqlite"), "damaged"),
+    "rescue to": (lambda path: mr.Store.rescue("old.sqlite", path), "path"),
+    "results": (lambda path: mr.results([], path), "store"),
+    "campaign": (lambda path: mr.campaign([], path), "store"),
+    "histories": (lambda path: mr.campaign([], "c.sqlite", histories=path), "histories"),
+    "ida": (lambda path: mr.ida(lambda scale: analysis(), [1.0], path), "store"),
+}
+NO_PATHS = (1, 1.0, True, b"a", [], "", "a\0b", "\ud800", Unspeakable())
+
+
+@pytest.mark.parametrize("path", NO_PATHS, ids=lambda path: f"{type(path).__name__}")
+@pytest.mark.parametrize("name", PATHS)
+def test_what_is_no_path(name, path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    function, argument = PATHS[name]
+    with pytest.raises((TypeError, ValueError), match=rf"^{argument} = "):
+        function(path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"workers": 1.5}, "workers = 1.5 is not a whole number"),
+        ({"workers": True}, "workers = True of type bool is not a real number"),
+        ({"workers": [1]}, r"workers = \[1\] of type list is not a real number"),
+        ({"workers": 0}, "workers = 0 is outside the valid range 1 to 10000"),
+        ({"workers": math.nan}, "workers = nan is outside"),
+        ({"time_limit": True}, "time_limit = True of type bool is not a real number"),
+        ({"time_limit": (1,)}, r"time_limit = \(1,\) of type tuple is not a real number"),
+        ({"time_limit": math.nan}, "time_limit = nan s is outside"),
+        ({"retry": "no"}, "retry = 'no' of type str is neither True nor False"),
+        ({"retry": 1}, "retry = 1 of type int is neither True nor False"),
+        ({"executor": 1}, "executor = 1 of type int is no executor"),
+        ({"tasks": 1.0}, "tasks = 1.0 of type float are no tasks"),
+        ({"tasks": "tasks"}, "tasks = 'tasks' of type str are no tasks"),
+        ({"tasks": None}, "tasks = None are no tasks"),
+    ],
+)
+def test_options_of_a_campaign(options, complaint, tmp_path):
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        mr.campaign(**({"tasks": [analysis()], "store": tmp_path / "c.sqlite"} | options))
+    if "tasks" in options:
+        with pytest.raises(TypeError, match=complaint):
+            mr.results(options["tasks"], tmp_path / "c.sqlite")
+    assert not list(tmp_path.iterdir())
+
+
+def test_numbers_of_numpy_are_options_too(tmp_path):
+    options = {"workers": np.float32(1), "retry": np.True_}
+    path = mr.campaign([analysis()], tmp_path / "c.sqlite", **options)
+    assert mr.results([analysis()], path)[0]["status"] == "done"
+
+
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (lambda: mr.SideStop(Unspeakable()), "top of the side stop = a Unspeakable of type Unspeakable"),
+        (lambda: mr.Polygon(SQUARE, name="\0x"), r"name = '\\x00x' of type str has a NUL"),
+        (lambda: mr.Polygon(SQUARE, name="\ud800"), "name = .* half of a surrogate pair"),
+        (lambda: mr.Polygon(SQUARE, name="x" * 1001), "name = .* has 1001 characters; the valid range is 0 to 1000"),
+        (lambda: mr.Polygon(SQUARE, name=1), "name = 1 of type int is not a str"),
+        (lambda: mr.Polygon(np.ma.array(SQUARE, mask=[[1, 0]] + [[0, 0]] * 3)), "vertices has masked values"),
+        (lambda: mr.Polygon([np.ma.array(p, mask=[1, 0]) for p in SQUARE]), "vertices has masked values"),
+        (lambda: mr.Polygon(np.array(SQUARE, complex)), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon(np.array(SQUARE, bool)), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon([(0, 0), (1, 0), (1, True), (0, 1)]), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon([*SQUARE[:3], np.array([False, True])]), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.GroundMotion([0.0, True], 0.1), "accel = .* does not hold real numbers alone"),
+        (lambda: mr.Contacts(None), "base = None is not a Interface"),
+        (lambda: mr.Polygon(np.array(SQUARE, str)), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon(np.array(SQUARE, "m8[s]")), "vertices = .* does not hold real numbers alone"),
+        (lambda: mr.Polygon([[0, 0], [1, 0, 2], [1, 1]]), "vertices = .* has rows of different lengths"),
+        (
+            lambda: mr.simulate(CASE, contacts(), start=(np.zeros((1, 3), complex), np.zeros((1, 3)))),
+            "start, pose = .* does not hold real numbers alone",
+        ),
+        (
+            lambda: mr.simulate(CASE, contacts(), start=(np.ma.masked_equal(np.zeros((1, 3)), 0), np.zeros((1, 3)))),
+            "start, pose has masked values",
+        ),
+        (lambda: mr.Analysis(CASE, np.array([1])), r"solver = array\(\[1\]\) is none of"),
+        (lambda: mr.Analysis(CASE, Unspeakable()), "solver = a Unspeakable"),
+        (lambda: contacts(side_friction=11.0), "^side_friction = 11 is outside"),
+        (lambda: contacts(friction=11.0), "^friction = 11 is outside"),
+        (
+            lambda: mr.Contacts.from_damping(WALL, k_base=5e8, xi_base=0.05, law="a\0b"),
+            r"law = 'a\\x00b' of type str has a NUL",
+        ),
+        (lambda: contacts(law=lambda wall, e, k_base: "x"), "law = .* to give two numbers: it gives 'x' of type str"),
+        (lambda: contacts(law=lambda wall, e, k_base: 0.05), "law = .* to give two numbers: it gives 0.05"),
+        (lambda: mr.contact_for(None, 0, 1, k=1.0, c=Unspeakable(), xi=0.1), "model = None"),
+        (
+            lambda: mr.GroundMotion([0.0, 1.0], 0.1).scaled(Unspeakable(), peak=1.0),
+            "factor = a Unspeakable, peak = 1.0",
+        ),
+        (lambda: plotting.animate(ANSWER, "a.gif", title="\ud800"), "title = .* half of a surrogate pair"),
+        (lambda: plotting.animate(ANSWER, "a.gif", title="x" * 1001), "title = .* has 1001 characters"),
+        (lambda: filmed(outlines=[[(0, 0), (1,)]]), r"outlines\[0\] = .* has rows of different lengths"),
+        (lambda: filmed(outlines=[object()]), r"outlines\[0\] = .* does not hold real numbers alone"),
+        (lambda: filmed(outlines=1), "outlines = 1 of type int is no sequence of outlines"),
+        (lambda: filmed(fixed="x"), "fixed = 'x' of type str is no sequence of outlines"),
+        (lambda: filmed(poses=[[[0, 0, 0]], [[0, 0]]]), "poses = .* has rows of different lengths"),
+        (lambda: filmed(poses=np.array([None])), "poses = .* does not hold real numbers alone"),
+        (lambda: filmed(t=[[0.0], [0.1, 0.2]]), "t = .* has rows of different lengths"),
+        (lambda: filmed(t=[0.1, 0.0]), "t = .* decreases"),
+        (lambda: filmed(t=[]), "t has the shape"),
+        (lambda: filmed(t=[0.0, math.inf]), "t holds a value that is not finite"),
+        (lambda: filmed(rests=object()), "rests = .* does not hold real numbers alone"),
+    ],
+)
+def test_what_cannot_be_is_named(call, complaint, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises((TypeError, ValueError, FileNotFoundError), match=complaint):
+        call()
+    assert not list(tmp_path.iterdir())
+
+
+def contacts(**options):
+    return mr.Contacts.from_law(WALL, E, 5e8, 5e8, **options)
+
+
+def filmed(**given):
+    bodies = {"t": [0.0, 0.1], "outlines": [SQUARE], "rests": [[0, 0]], "poses": np.zeros((2, 1, 3))}
+    return plotting.animate_bodies(**(bodies | {"path": "c.html"} | given))
+
+
+def test_outlines_of_different_numbers_of_corners(tmp_path):
+    outlines = [np.array(SQUARE), np.array(SQUARE[:3])]
+    path = filmed(
+        outlines=outlines, rests=np.zeros((2, 2)), poses=np.zeros((2, 2, 3)), path=tmp_path / "a.html", fps=10.0, dpi=20
+    )
+    assert path.stat().st_size
+
+
+def test_a_fraction_is_a_factor_and_a_file_may_have_any_name(tmp_path):
+    path = plotting.animate(ANSWER, tmp_path / "x\udcff.html", magnify=Fraction(1, 2), fps=5.0, dpi=20.0)
+    assert "<title>x?</title>" in path.read_text(encoding="utf-8")
+    assert mr.GroundMotion.sine(1.0, Fraction(1, 2)) == mr.GroundMotion.sine(1.0, 0.5)
+
+
+FORMULAS = {
+    "=HYPERLINK(1)": "'=HYPERLINK(1)", "=1+1": "'=1+1", "@SUM(A1)": "'@SUM(A1)", "+a": "'+a", "-a": "'-a",
+    "\t=1": "'\t=1", "-0.5": "-0.5", "+1e3": "+1e3", "-inf": "-inf", "a=1": "a=1", "": "",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", FORMULAS)
+def test_no_cell_is_a_formula(text, tmp_path):
+    assert csv_text(["a", "b"], [[text, -0.5]]) == f"a,b\n{FORMULAS[text]},-0.5\n"
+    with mr.Store(tmp_path / "s.sqlite", writing=True) as store:
+        store.add_columns(["=note"])
+        row = dict.fromkeys(FIXED, 0) | {"key": "k", "=note": text, "seconds": -1.5}
+        store.add([row])
+        head, line = store.csv().splitlines()
+        assert head.split(",")[-1] == "'=note"
+        assert line.split(",")[-2:] == ["-1.5", FORMULAS[text]]
+        assert store.rows()[0]["=note"] == text
+
+
+@pytest.mark.parametrize(("version", "old"), [("3.17.0", True), ("2.3.7", True), ("4.0.0", False), ("10.1", False)])
+def test_an_engine_that_is_too_old_says_so(version, old):
+    code = f"import mujoco; mujoco.__version__ = {version!r}; import mjrock"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode != 0) == old, done.stderr
+    message = f"ImportError: mjrock needs MuJoCo 4.0 or newer, and {version} is installed: pip install 'mujoco>=4.0'"
+    assert (message in done.stderr) == old

@@ -1,0 +1,166 @@
+"""Every script runs in its quick mode, writes what it says, and meets bad input with an error and no traceback."""
+
+import csv
+import importlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import mjrock as mr
+from scripts.paper import compare_wall
+from scripts.shared import cli
+
+SCRIPTS = {path.stem: path for path in Path(__file__).parents[2].glob("scripts/*/*.py") if path.parent.name != "shared"}
+"""Every script by its name."""
+WRITES = {
+    "animate": {"arch.gif", "figure3.gif"},
+    "compare_wall": {"scene.xml", "comparison.png", "comparison.csv"},
+    "figure3": {"figure3_one_sided.png", "figure3_two_sided.png", "figure3.csv"},
+    "table2": {"table2.png", "table2.csv"},
+    "layouts": {"layouts.txt"},
+    "friction": {"friction.txt"},
+    "hard_cases": {"hard_cases.md"},
+    "trouble": {"trouble.txt"},
+    "law_range": {"law_range.txt"},
+    "work_precision": {"work_precision.csv", "work_precision.png", "work_precision.txt"},
+    "peers": {"peers.csv", "peers.png", "peers.txt"},
+    "masonry_precision": {f"masonry_precision.{ending}" for ending in ("png", "csv", "txt")},
+    "convergence": {"convergence.png", "convergence.txt"},
+    "make_models": {"figure3_one_sided"},
+    "overturning_spectrum": {f"overturning_spectrum.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "ida": {f"ida.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "fragility": {f"fragility.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "polarity": {f"polarity.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "agreement": {f"agreement.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "pushover": {f"pushover.{ending}" for ending in ("png", "csv", "txt")} | {"pushover_bases.png"},
+    "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
+    "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "sliding": {"sliding.png", "sliding.txt"},
+    "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
+    "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
+    "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
+    "facade": {"facade.png", "facade.txt"},
+    "throughput": {"throughput.txt"},
+    "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
+    "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
+    "inspect_contacts": {"inspect_contacts.txt"},
+    "sketch": {"sketch.png"},
+    "first_pictures": {"effects.png", "tutorial.png"},
+    "speed": {"speed.txt"},
+    "thresholds": {"thresholds.txt"},
+    "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
+    | {"calibrated_residuals_side.png", "calibration.csv", "calibration.sqlite", "calibration.txt"},
+    "validate_contacts": {"validate_contacts.csv", "validate_contacts.txt"},
+    "validate_law": {"table2_laws.csv", "validation.csv", "validation.png", "validation.sqlite", "validation.txt"},
+}
+
+
+def test_no_script_is_forgotten():
+    assert set(SCRIPTS) == set(WRITES)
+
+
+def main_of(name):
+    return importlib.import_module(f"scripts.{SCRIPTS[name].parent.name}.{name}").main
+
+
+LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
+    "agreement",
+    "polarity",
+    "overturning_spectrum",
+    "ida",
+    "effect_costs",
+    "peers",
+    "cracked_facade",
+    "drums",
+    "panel",
+    "masonry_precision",
+    "stack_losses",
+    "convergence",
+    "validate_contacts",
+    "pushover",
+    "layouts",
+    "friction",
+    "figure3",
+    "trouble",
+    "animate",
+    "sliding",
+}
+"""Scripts that take a while even with --quick."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in WRITES]
+)
+def test_quick(name, tmp_path, capsys):
+    main_of(name)(["--quick", "--out", str(tmp_path / "deep" / "er")])
+    written = {p.name for p in (tmp_path / "deep" / "er").iterdir() if p.suffix != ".lock"}
+    assert written == WRITES[name]
+    if name != "make_models":
+        assert capsys.readouterr().out.strip()
+
+
+@pytest.mark.parametrize("name", WRITES)
+def test_help(name, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main_of(name)(["--help"])
+    assert stop.value.code == 0
+    printed = capsys.readouterr().out
+    assert "--out" in printed
+    assert "(default:" in printed
+    assert "None" not in printed
+    assert "False" not in printed
+
+
+def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
+    compare_wall.main(["--law", "published", "--out", str(tmp_path)])
+    step = mr.simulate(one_sided, contacts).stats["timestep"]
+    assert (tmp_path / "scene.xml").read_text() == mr.wall_mjcf(one_sided, contacts, step)
+    with open(tmp_path / "comparison.csv") as file:
+        assert float(next(csv.DictReader(file))["restitution analytical [-]"]) == pytest.approx(0.442223)
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (["--thickness", "600"], "thickness = 600 m is outside the valid range"),
+        (["--k-base", "500"], "k_n = 500 N/m3"),
+        (["--release", "30"], "theta0 = 4.25691 rad is outside the valid range"),
+        (["--lumped", "0.4"], "lumped restitution = 0.4"),
+        (["--timestep", "-1"], "timestep = -1 s"),
+        (["--law", "mine.toml"], "mine.toml"),
+        (["--law", "nope"], "law = 'nope' is none of published, calibrated, calibrated-bed"),
+        (["--out", "/dev/null/here"], "Not a directory"),
+    ],
+)
+def test_bad_input_is_an_error_without_a_traceback(options, complaint, tmp_path, monkeypatch, capsys):
+    out = [] if "--out" in options else ["--out", str(tmp_path / "out")]
+    monkeypatch.setattr(sys, "argv", ["compare_wall.py", *options, *out])
+    assert cli.run(compare_wall.main) == 2
+    printed = capsys.readouterr()
+    assert complaint in printed.err
+    assert printed.out == ""
+
+
+@pytest.mark.slow
+def test_an_error_ends_the_process_with_its_code(tmp_path):
+    command = [sys.executable, str(SCRIPTS["compare_wall"]), "--timestep", "-1", "--out", str(tmp_path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout) == (2, "")
+    assert run.stderr.startswith("error: timestep = -1 s")
+    assert "Traceback" not in run.stderr
+
+
+def test_a_full_disk_leaves_the_old_file_whole(tmp_path, monkeypatch):
+    target = cli.write_text(tmp_path / "table.csv", "old")
+
+    def full(descriptor):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        cli.write_text(target, "new")
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]

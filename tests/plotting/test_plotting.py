@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+
+
+@pytest.fixture(scope="module")
+def responses(one_sided, contacts, e):
+    return [mr.solve_analytical(one_sided, e), mr.simulate(one_sided, contacts, 1e-3)]
+
+
+def test_axes_carry_units_and_are_returned(responses):
+    ax = Figure().subplots()
+    assert plotting.rotation(ax, responses) is ax
+    assert ax.get_xlabel() == "time $t$ [s]"
+    assert "[-]" in ax.get_ylabel()
+    assert plotting.energy(Figure().subplots(), responses).get_ylabel() == "total energy $E$ [kJ]"
+
+
+def test_lines_are_told_apart_without_colour(responses):
+    ax = plotting.rotation(Figure().subplots(), responses)
+    styles = [(line.get_linestyle(), line.get_linewidth()) for line in ax.get_lines()[:2]]
+    assert len(set(styles)) == 2
+    assert len({(s["linestyle"], s["linewidth"]) for s in plotting.STYLES.values()}) == len(plotting.STYLES)
+    np.testing.assert_allclose(ax.get_lines()[0].get_ydata().max(), 0.5)
+
+
+def test_a_saved_figure_is_the_same_bytes_again(responses, tmp_path):
+    for name in ("a.png", "b.png"):
+        plotting.save(plotting.comparison(responses, "title"), tmp_path / name)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_grid_hides_the_panels_it_does_not_need(responses):
+    figure = plotting.grid([("one", responses)] * 3)
+    assert [ax.get_visible() for ax in figure.axes] == [True, True, True, False]
+
+
+def test_push_over_curves_beside_closed_forms(one_sided, contacts):
+    curves = {"rigid": mr.pushover(one_sided), "corner lines": mr.pushover(one_sided, contacts)}
+    ax = Figure().subplots()
+    assert plotting.pushover(ax, curves, {"rigid": ([0.0], [1 / 7])}) is ax
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (r"rotation $\theta$ [rad]", r"multiplier $\lambda$ [-]")
+    rigid, corners, closed = ax.get_lines()
+    np.testing.assert_array_equal(rigid.get_ydata(), curves["rigid"].multiplier)
+    np.testing.assert_array_equal(corners.get_xdata(), curves["corner lines"].rotation)
+    assert closed.get_color() == rigid.get_color() != corners.get_color()
+    assert len({(line.get_linestyle(), line.get_linewidth()) for line in (rigid, corners)}) == 2
+    ax = plotting.moment_rotation(Figure().subplots(), curves, {"corner lines": ([0.1], [5e3])})
+    assert ax.get_ylabel() == "restoring moment $M$ [kN m]"
+    rigid, corners, closed = ax.get_lines()
+    assert list(rigid.get_xdata()[:2]) == [0, 0]  # a rigid wall takes the whole moment before it turns
+    assert rigid.get_ydata()[:2] == pytest.approx([0, one_sided.wall.weight * one_sided.wall.b / 1e3])
+    np.testing.assert_array_equal(corners.get_ydata(), curves["corner lines"].moment / 1e3)
+    assert closed.get_ydata() == pytest.approx([5.0])
+
+
+def test_blocks_are_drawn_where_a_pose_has_brought_them():
+    """A block that turns by 90 degrees to the right about its centroid and moves by (3, 1)."""
+    box = [(0, 0), (2, 0), (2, 1), (0, 1)]
+    masonry = mr.Masonry([mr.Polygon(box), mr.Polygon([(0, -1), (2, -1), (2, 0), (0, 0)], fixed=True)])
+    ax = Figure().subplots()
+    assert plotting.blocks(ax, masonry) is ax
+    assert len(ax.patches) == 2
+    assert len(ax.get_lines()) == 1
+    ax = plotting.blocks(Figure().subplots(), masonry, [[3.0, 1.0, np.pi / 2]])
+    corners = ax.patches[0].get_xy()[:-1]
+    np.testing.assert_allclose(corners, [(3.5, 2.5), (3.5, 0.5), (4.5, 0.5), (4.5, 2.5)], atol=1e-12)
+    np.testing.assert_allclose(ax.patches[1].get_xy()[:-1], [(0, -1), (2, -1), (2, 0), (0, 0)])
+    assert not ax.get_lines()
+    with pytest.raises(ValueError, match=r"pose has the shape \(3,\); \(1, 3\) is needed"):
+        plotting.blocks(ax, masonry, [0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("draw", "complaint"),
+    [
+        (
+            lambda ax: plotting.parity(ax, [0.1, True], [0.1, 0.2], [1.0, 2.0]),
+            "matched = .* does not hold real numbers",
+        ),
+        (lambda ax: plotting.parity(ax, [0.1], [0.1, 0.2], [1.0, 2.0]), r"matched has the shape \(1,\), predicted"),
+        (lambda ax: plotting.damping_curves(ax, [("a", ([0.5], ["x"]), ([0.5], [0.1]))]), "xi = .* real numbers"),
+        (lambda ax: plotting.sensitivity(ax, {"R": ([], [])}), r"shares has the shape \(0,\)"),
+        (lambda ax: plotting.obtained(ax, {"law": ([0.5], None)}), "obtained = None does not hold real numbers"),
+        (lambda ax: plotting.residuals("t", [1.0], {"R": ([1.0, 2.0], "log")}), r"R has the shape \(2,\), residual"),
+    ],
+)
+def test_pictures_of_laws_take_rows_of_one_length(draw, complaint):
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        draw(Figure().subplots())
+
+
+def test_what_a_law_obtains_may_be_missing():
+    ax = plotting.obtained(Figure().subplots(), {"law": ([0.5, 0.6], [0.5, np.nan])})
+    np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), [0.5, np.nan])

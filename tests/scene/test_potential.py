@@ -1,0 +1,98 @@
+"""The pose of rest: first and second derivatives of the energy that is minimised, and which equilibria are none."""
+
+import numpy as np
+import pytest
+from scenes import fields, two_blocks
+from scipy.linalg import null_space
+
+import mjrock as mr
+from mjrock.geometry.frames import frames_of
+from mjrock.geometry.kinematics import along
+from mjrock.scene.equilibrium import held_slips
+
+
+@pytest.fixture
+def held():
+    """Two blocks with a tie between them and a force on the upper one, away from its centroid."""
+    scene = two_blocks()
+    changed = {
+        "tie_names": ("tie",), "tie_body": [1], "tie_point": [(0.3, 0.7)], "anchor_body": [0], "anchor": [(-0.3, 0.2)],
+        "tie_k": [3e6], "tie_length": [0.5], "tie_strength": [np.inf],
+        "force_names": ("pull",), "force_body": [1], "force_point": [(0.1, 0.9)], "force": [(3e4, -1e4)],
+    }  # fmt: skip
+    return mr.Scene(**fields(scene) | changed)
+
+
+def test_derivatives_of_the_energy(held):
+    """Central differences of the potential give its gradient and its second derivatives, turned bodies and all."""
+    potential, pose = held.potential, np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
+    assert (potential.openings(pose) < 0).sum() >= 3  # springs of both kinds are pressed, and one contact is open
+    assert (potential.openings(pose) > 0).any()
+    k = np.append(held.k, held.tie_k)
+    np.testing.assert_array_equal(potential.springs, k)
+    np.testing.assert_array_equal(potential.pressed(pose), np.maximum(-potential.openings(pose), 0))
+    pressed = np.maximum(-potential.openings(pose), 0) * k
+    rates = potential.rates(pose)
+    ways, h = np.eye(6), 1e-5
+    gradient = [(potential.energy(pose + h * way) - potential.energy(pose - h * way)) / (2 * h) for way in ways]
+    force = potential.load(pose) + rates.T @ pressed
+    assert -force == pytest.approx(gradient, rel=1e-6, abs=1e-6 * np.abs(force).max())
+    np.testing.assert_allclose(potential.gradient(pose), -force, rtol=1e-12, atol=1e-12 * np.abs(force).max())
+
+    def gradient_at(at):
+        closed = np.maximum(-potential.openings(at), 0) * k
+        return -potential.load(at) - potential.rates(at).T @ closed
+
+    second = np.array([(gradient_at(pose + h * way) - gradient_at(pose - h * way)) / (2 * h) for way in ways])
+    found = (rates.T * np.where(pressed > 0, k, 0)) @ rates + potential.curvature(pose)
+    np.testing.assert_allclose(found, second, rtol=1e-6, atol=1e-8 * np.abs(second).max())
+    np.testing.assert_allclose(potential.hessian(pose), found, rtol=1e-12, atol=1e-12 * np.abs(second).max())
+    bent = np.abs(potential.curvature(pose)).max()
+    assert bent > 1e4  # what the check of the second derivatives is about is no trifle
+
+
+def test_the_energy_is_that_of_the_accounts(held):
+    """Weight, forces and springs, at rest at some pose: one formula for the search for rest, another for a history."""
+    for pose in np.random.default_rng(3).normal(0, [0.01, 0.01, 0.05] * 2, (5, 6)):
+        stored = held.accounts(pose[None], np.zeros((1, 6)))[0][0]
+        assert stored[0] == 0
+        assert held.potential.energy(pose) == pytest.approx(stored.sum(), rel=1e-12)
+
+
+def test_rates_are_derivatives_of_openings_and_places(held):
+    """Of every gap, of the slack of the tie, and of where each point is along its face."""
+    potential, places, h = held.potential, held.places, 1e-6
+    pose = np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
+    none = np.zeros(6)
+
+    def along_faces(at):
+        return np.array([along(places, i, frames_of(at), none).place for i in range(4)])
+
+    for j, way in enumerate(np.eye(6)):
+        opened = (potential.openings(pose + h * way) - potential.openings(pose - h * way)) / (2 * h)
+        np.testing.assert_allclose(potential.rates(pose)[:, j], opened, rtol=0, atol=1e-8)
+        slid = (along_faces(pose + h * way) - along_faces(pose - h * way)) / (2 * h)
+        np.testing.assert_allclose(potential.slip_rates(pose)[:, j], slid, rtol=0, atol=1e-8)
+
+
+def test_at_rest_only_friction_holds_what_springs_do_not(held):
+    """The tie and the force would make the blocks slide: along all other ways the springs balance them."""
+    parts = fields(held) | {"force": [(3e3, -1e4)]}
+    for length, taut in ((0.75, True), (3.0, False)):
+        scene = mr.Scene(**parts | {"tie_length": [length]})
+        pose = scene.at_rest.ravel()
+        assert (scene.potential.pressed(pose)[4] > 0) == taut
+        closed = scene.potential.openings(pose) < 0
+        free = null_space(held_slips(scene.potential, scene.friction, closed, pose))
+        left = scene.potential.gradient(pose)
+        assert free.shape == (6, 4)  # friction holds the slip of two joints
+        np.testing.assert_allclose(free.T @ left, 0, rtol=0, atol=1e-8 * scene.mass[0] * mr.GRAVITY)
+        assert np.abs(left).max() > 1e3  # which carries some of the force
+        assert np.linalg.eigvalsh(free.T @ scene.potential.hessian(pose) @ free)[0] > 0
+
+
+def test_an_equilibrium_that_is_not_stable_is_no_rest():
+    """Two blocks upright on springs too soft for their height: every force balances, and they fall all the same."""
+    assert np.abs(two_blocks(k_n=5e7).at_rest[:, 2]).max() < 1e-9
+    with pytest.raises(ValueError, match="do not stand on their contacts"):
+        _ = two_blocks(k_n=1e6).at_rest
