@@ -46,6 +46,7 @@ models: $(READY)
 figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
 	$(BIN)/python scripts/paper/compare_wall.py --check --out docs/figures/demo
 	$(BIN)/python scripts/paper/sketch.py --out docs/figures
+	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
 	$(BIN)/python scripts/paper/figure3.py --out docs/figures
 	$(BIN)/python scripts/studies/animate.py --out docs/figures
 	$(BIN)/python scripts/paper/table2.py --out docs/figures

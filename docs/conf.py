@@ -20,7 +20,8 @@ author = "The mjrock developers"
 copyright = "the mjrock developers, Apache-2.0"
 release = version = mjrock.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
+extensions += ["sphinx_gallery.gen_gallery"]
 exclude_patterns = ["build", "examples", "figures"]
 default_role = "py:obj"  # docstrings name things in single backticks
 nitpicky = False

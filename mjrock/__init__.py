@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from .problem.wall.section import Opening
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
+    from .reporting.page import report
     from .result.compare import Comparison, compare
     from .result.ledger import Ledger
     from .result.response import MasonryResponse, Outcome, Response
@@ -162,6 +163,7 @@ __all__ = [
     "paired_ratio",
     "pushover",
     "reference_frequency",
+    "report",
     "response_spectrum",
     "results",
     "rigid_impact",
@@ -212,6 +214,7 @@ HOMES = {
     "problem.wall.section": "Opening",
     "quantities": "GRAVITY Implausible",
     "reference.compliant": "solve_compliant",
+    "reporting.page": "report",
     "result.compare": "Comparison compare",
     "result.ledger": "Ledger",
     "result.response": "MasonryResponse Outcome Response",

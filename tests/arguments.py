@@ -21,7 +21,7 @@ OF_NUMBERS = {
         mr.Tie,
         {
             "height": 100, "stiffness": 100, "slack": 1, "strength": 100, "length": 100, "anchor_height": 1,
-            "block": 100,
+            "block": 100, "ultimate": 1,
         },
     ),
     "Thrust": (mr.Thrust, {"height": 100, "force": 100, "block": 100}),

@@ -42,7 +42,7 @@ def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supp
         bodies,
         lines,
         links_of(scene.tie_body, scene.tie_point, scene.ties.between, k=scene.tie_k, reach=scene.tie_length,
-                 strength=scene.tie_strength),
+                 strength=scene.tie_strength, ultimate=scene.tie_ultimate, broken=np.full(len(scene.tie_k), np.inf)),
         links_of(scene.damper_body, scene.damper_point, scene.dampers.between, c=scene.damper_c),
         links_of(scene.force_body, scene.force_point, scene.force),
         course.ground,

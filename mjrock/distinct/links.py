@@ -31,16 +31,23 @@ def pull(link: Row, body: Row) -> Pull:
 
 
 @jitable
-def pull_links(system: System, books: Books, h: float) -> None:
-    """Add the forces of ties, dampers and constant forces, and book what the last step of length h took."""
+def pull_links(system: System, books: Books, t: float, h: float) -> None:
+    """Add the forces of ties, dampers and constant forces at time t, and book what the last step of length h took."""
     for i in range(len(system.ties)):
         tie = system.ties[i]
+        if t >= tie.broken:
+            continue
         body = system.bodies[tie.body]
         now = pull(tie, body)
         beyond = now.length - tie.reach - tie.strength / tie.k
-        if beyond > 0:  # it yields
-            tie.reach += beyond
-            books.ties[i] += tie.strength * beyond
+        if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
+            left = tie.ultimate - tie.drawn
+            tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
+            books.ties[i] += tie.strength * min(beyond, left)
+            if beyond >= left:
+                tie.broken = t
+                books.broken[i] = 0.5 * tie.strength**2 / tie.k
+                continue
         force = -tie.k * max(0.0, now.length - tie.reach)
         add_force(body, now.rx, now.rz, force * now.nx, force * now.nz)
     for i in range(len(system.dampers)):
@@ -66,6 +73,8 @@ def linked_energy(system: System) -> tuple[float, float]:
     falls, elastic = 0.0, 0.0
     for i in range(len(system.ties)):
         tie = system.ties[i]
+        if tie.broken < math.inf:
+            continue
         stretched = max(0.0, pull(tie, system.bodies[tie.body]).length - tie.reach)
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.forces)):

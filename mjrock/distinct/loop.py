@@ -102,9 +102,9 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
 
 @jitable
 def keep_work(books: Books, work: Array) -> None:
-    """Keep the accounts of dampers, ties and dashpots."""
+    """Keep the accounts of dampers, ties, broken ties and dashpots."""
     column = 2
-    for account in (books.dampers, books.ties, books.dashpots):
+    for account in (books.dampers, books.ties, books.broken, books.dashpots):
         for i in range(len(account)):
             work[column] = account[i]
             column += 1
@@ -147,7 +147,7 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
         before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
         move_supports(system.supports, n * h, before)
         weigh(system, books, n * h, h, kick)
-        pull_links(system, books, before)
+        pull_links(system, books, n * h, before)
         sticking = press_lines(system, books, before, kick)
         if sampled:
             keep_pose(system, books, samples, row)

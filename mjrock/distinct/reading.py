@@ -16,8 +16,9 @@ from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion, fallen_blocks
 from ..result.ledger import Ledger
-from ..result.response import Plastic, Response, ending, masonry_ending
+from ..result.response import Response, ending, masonry_ending
 from ..result.rocking import Rocking
+from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .system import Books, Samples, System
@@ -82,15 +83,19 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         pose=samples.pose[::stride],
         velocity=samples.velocity[::stride],
         energy=run.energy[::stride],
-        plastic={
-            name: Plastic(float(taken / strength), float(taken))
-            for name, taken, strength in zip(run.scene.tie_names, run.books.ties, run.scene.tie_strength, strict=True)
-        },
+        plastic=plastic_of(run),
         ledger=ledger_of(run, stride) if ledger else None,
         stats=reading.pop("stats") | stats,
         end=(samples.pose[-1].copy(), samples.velocity[-1].copy()),
         **reading,
     )
+
+
+def plastic_of(run: Run) -> dict[str, Plastic]:
+    """What each tie has yielded, and when it broke."""
+    ties, books = run.system.ties, run.books
+    columns = zip(run.scene.tie_names, ties["drawn"], books.ties, ties["broken"], books.broken, strict=True)
+    return {name: Plastic(*(float(value) for value in values)) for name, *values in columns}
 
 
 def wall_reading(run: Run) -> dict[str, Any]:
@@ -158,17 +163,25 @@ def require_no_gain(run: Run, count: int) -> None:
 def ledger_of(run: Run, stride: int) -> Ledger:
     """The ledger of a run."""
     samples, scene = run.samples, run.scene
-    names = (*scene.damper_names, *scene.tie_names, *dict.fromkeys(scene.group), "encounters")
-    accounts = dict(zip(names, samples.work[::stride, 2:].T, strict=True))
-    ties = {name: accounts.pop(name) for name in scene.tie_names}
+    work = samples.work[::stride, 2:].T
+    yielding = len(scene.damper_names)
+    breaking, groups = (yielding + i * len(scene.tie_names) for i in (1, 2))
+    may_break = np.isfinite(scene.tie_ultimate)
+    dashpots = dict(zip(scene.damper_names, work[:yielding], strict=True))
+    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:], strict=False))
     kinetic, potential, elastic = samples.energy[::stride].T
     return Ledger(
         t=run.t[::stride],
         kinetic=kinetic,
         potential=potential,
         elastic=elastic,
-        dashpots=accounts,
+        dashpots=dashpots,
         friction=samples.work[::stride, 0] - samples.work[0, 0],
         ground=samples.work[::stride, 1],
-        ties=ties,
+        ties=dict(zip(scene.tie_names, work[yielding:breaking], strict=True)),
+        broken={
+            name: account
+            for name, account, breaks in zip(scene.tie_names, work[breaking:groups], may_break, strict=True)
+            if breaks
+        },
     )

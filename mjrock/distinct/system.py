@@ -60,6 +60,7 @@ LINK = np.dtype(
         *((name, float) for name in ("between_x", "between_z")),  # from the anchor [m]; components of a force [N]
         *((name, float) for name in ("k", "c")),  # spring and dashpot [N/m, N s/m]
         *((name, float) for name in ("reach", "strength")),  # slack length of a tie [m], and its yield [N]
+        *((name, float) for name in ("drawn", "ultimate", "broken")),  # plastic elongation, its limit [m], time [s]
         ("pulled", float),  # force of a damper in the last step [N]
     ]
 )
@@ -112,7 +113,7 @@ class Books(NamedTuple):
 
     Args:
         dashpots: by group, shape (g,).
-        ties, dampers: by tie and damper, shapes (t,) and (d,).
+        ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
         friction: friction, what is in the shear springs included; then the work of ground and supports; then the
             accelerations of the ground in the last step [m/s2], shape (4,).
         active: room for the numbers of the lines that stick rigidly, shape (m,).
@@ -120,6 +121,7 @@ class Books(NamedTuple):
 
     dashpots: Array
     ties: Array
+    broken: Array
     dampers: Array
     friction: Array
     active: Integers
@@ -127,10 +129,9 @@ class Books(NamedTuple):
     @classmethod
     def of(cls, system: System, groups: int, further: int) -> Books:
         """Empty books, with room for some further lines."""
-        dashpots, ties, dampers, friction = (
-            np.zeros(size) for size in (groups, len(system.ties), len(system.dampers), 4)
-        )
-        return cls(dashpots, ties, dampers, friction, np.zeros(len(system.lines) + further, dtype=np.int64))
+        sizes = (groups, len(system.ties), len(system.ties), len(system.dampers), 4)
+        dashpots, ties, broken, dampers, friction = (np.zeros(size) for size in sizes)
+        return cls(dashpots, ties, broken, dampers, friction, np.zeros(len(system.lines) + further, dtype=np.int64))
 
 
 class Samples(NamedTuple):
@@ -139,8 +140,8 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shape (samples, n, 3).
         energy: kinetic, potential and elastic [J], shape (samples, 3).
-        work: friction and ground, then dampers, ties and dashpots by group [J], shape (samples, columns); without a
-            ledger the first two alone, and friction is that of shear springs.
+        work: friction and ground, then dampers, ties, broken ties and dashpots by group [J], shape (samples, columns).
+            Without a ledger it is the first two alone, and friction is that of shear springs.
     """
 
     pose: Array

@@ -22,7 +22,7 @@ from ..result.ledger import Ledger
 from ..scene.course import Course
 from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
-from ..scene.potential import spring_energy
+from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
 from .points import Points, points_of
 from .record import Kinds, Record, Steps, Windows
@@ -74,8 +74,9 @@ def contact_work(scene: Scene, steps: Steps) -> ContactWork:
 
 def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     """The ledger of a run."""
-    windows = steps.windows
-    stored, taken = scene.accounts(windows.pose, windows.velocity)
+    windows, broken = steps.windows, breaks(scene.ties, steps.pose, scene.places.freedom)
+    stored, taken = scene.accounts(windows.pose, windows.velocity, broken)
+    lost = lost_by_breaking(scene, broken, len(steps.t))
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
     groups, dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
@@ -91,7 +92,15 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, course, steps)),
         ties=dict(zip(scene.tie_names, (taken - taken[0]).T, strict=True)),
+        broken={name: account - account[0] for name, account in lost.items()},
     )
+
+
+def lost_by_breaking(scene: Scene, broken: Integers, steps: int) -> dict[str, Array]:
+    """Elastic energy that each tie that may break has lost by doing so, up to each of a number of steps [J]."""
+    elastic = 0.5 * scene.tie_k * scene.ties.stretch**2
+    may = np.flatnonzero(np.isfinite(scene.ties.limit))
+    return {scene.tie_names[i]: np.where(np.arange(steps) >= broken[i], elastic[i], 0.0) for i in may}
 
 
 def given_back(scene: Scene, steps: Steps) -> Array:
@@ -102,7 +111,10 @@ def given_back(scene: Scene, steps: Steps) -> Array:
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
     pose[::2], pose[1::2] = steps.pose, (steps.pose + steps.h[:, None] * steps.record.after)[:-1]
-    stored = scene.accounts(pose, np.zeros_like(pose))[0].sum(axis=1)
+    broken = np.maximum(
+        2 * breaks(scene.ties, steps.pose, scene.places.freedom) - 1, 0
+    )  # before the drift that ends at the pose
+    stored = scene.accounts(pose, np.zeros_like(pose), broken)[0].sum(axis=1)
     gained: Array = stored[2::2] - stored[1::2]
     return gained
 

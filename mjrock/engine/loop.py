@@ -13,7 +13,7 @@ from typing import Any
 
 from ..compiled import compiled, jitable
 from ..geometry.frames import take_frames
-from ..geometry.kinematics import stretch
+from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .pace import Pace, judged, step_of, while_loaded, while_taut
@@ -24,7 +24,10 @@ from .rows import set_rows
 from .setting import Setting, push
 from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .sticking import Moved, put_sticking_edges_back
-from .touches import Openings, closure_changed, follow, step_to_touch
+from .touches import Openings, closure_changed, follow, step_to_break, step_to_touch
+
+FAR = 1e9
+"""Length up to which a tie that has broken is slack [m]."""
 
 
 @jitable
@@ -148,13 +151,22 @@ def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array,
 
 @jitable
 def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, record: Record, n: int) -> None:
-    """Put sticking edges back after step n of the record, take the frames of the new pose, and let ties yield."""
+    """Put sticking edges back after step n of the record, take frames of the new pose, and let ties yield and break."""
     moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
     put_sticking_edges_back(setting.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
     for body in range(len(state.frames)):
         copied(state.next_frames[body], state.frames[body])
+    settle_ties(memory, setting, state.frames)
+
+
+@jitable
+def settle_ties(memory: Memory, setting: Setting, frames: Array) -> None:
+    """Let ties yield and break at a pose. For the engine, one that has broken is slack up to any length."""
+    axes = setting.points.places.axes
     for i in range(len(setting.ties.k)):
-        stretch(setting.ties, i, state.frames, memory.velocity, setting.points.places.axes)
+        if snaps(setting.ties, i, frames, memory.velocity, axes):
+            memory.plastic[memory.upper[i]] = FAR
+        stretch(setting.ties, i, frames, memory.velocity, axes)
 
 
 @jitable
@@ -191,6 +203,9 @@ def fitted_loop(
         to_touch = 0.0
         if not abrupt:
             to_touch = step_to_touch(state.springs, openings, now, h, least, pace.short, state.touches)
+            to_break = step_to_break(setting.ties, openings, now, pace.short)
+            if to_break > 0 and not 0 < to_touch < to_break:
+                to_touch = to_break
         if to_touch > 0:
             now = to_touch
 

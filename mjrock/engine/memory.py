@@ -41,6 +41,8 @@ class Memory(NamedTuple):
         guess: the acceleration that the engine starts its search from, shape (n nv,).
         rows: of all pairs.
         dimension: of all pairs, 1 without friction and 3 with it, shape (m,).
+        plastic: state of the tendons that yield: between which lengths each is slack [m], shape (2 yielding,).
+        upper: where the upper length of each tendon is in it; 0 for one that does not yield.
     """
 
     step: Any
@@ -57,6 +59,8 @@ class Memory(NamedTuple):
     applied: Array
     rows: Rows
     dimension: Integers
+    plastic: Array
+    upper: Integers
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
@@ -81,6 +85,8 @@ class Memory(NamedTuple):
             data.qfrc_applied,
             Rows(model.pair_solref, model.pair_solimp, model.pair_solreffriction),
             model.pair_dim,
+            data.plastic,
+            model.tendon_plasticadr.astype(np.int64) + 1,
         )
 
 

@@ -10,8 +10,10 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers
-from ..result.response import Plastic, Response
+from ..result.response import Response
+from ..result.ties import Plastic, told_of_ties
 from ..scene.course import Course
+from ..scene.potential import breaks
 from ..scene.scene import Scene
 from .energy_work import ground_work, ledger
 from .model import SimulationError
@@ -40,6 +42,7 @@ class Run:
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
+        broken: the step from which each tie no longer acts, see `mjrock.scene.potential.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, and of what the ground put in or took [J].
     """
@@ -50,6 +53,7 @@ class Run:
     steps: Steps
     energy: Array
     taken: Array
+    broken: Integers
     reading: Reading
     scale: float
 
@@ -60,18 +64,20 @@ class Run:
         Raises:
             StepError: if energy appears from nowhere.
         """
-        stored, taken = scene.accounts(steps.pose, steps.velocity)
+        broken = breaks(scene.ties, steps.pose, scene.places.freedom)
+        stored, taken = scene.accounts(steps.pose, steps.velocity, broken)
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
         reading = asked.read(scene, course, steps, energy)
         work = ground_work(scene, course, steps)[: reading.count]
         scale = max(float(energy[0]), 0.0) + float(np.abs(work).sum()) + float(scene.rest_energies[2])
         require_no_gain(scene, steps, work, reading.marks, scale)
-        return cls(asked, scene, course, steps, energy, taken, reading, scale)
+        return cls(asked, scene, course, steps, energy, taken, broken, reading, scale)
 
     def response(self, spacing: float | None, stride: int, want_ledger: bool, settings: dict[str, Any]) -> Response:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None."""
         scene, course, steps, reading = self.scene, self.course, self.steps, self.reading
         t, pose, velocity, end = steps.sampled(course.duration, spacing, stride)
+        plastic = plastic_of(scene, steps, self.taken, self.broken, course.duration)
         return Response(
             case=self.asked.case,
             solver="MuJoCo",
@@ -80,10 +86,10 @@ class Run:
             velocity=velocity,
             energy=np.interp(t, steps.t, self.energy),
             outcome=reading.outcome,
-            message=reading.message,
+            message=reading.message + told_of_ties(plastic),
             rocking=reading.rocking,
             joints=reading.joints,
-            plastic=plastic_of(scene, steps.t, self.taken, course.duration),
+            plastic=plastic,
             ledger=ledger(scene, course, steps).at(t) if want_ledger else None,
             stats=stats_of(scene, steps) | reading.stats | settings,
             end=end,
@@ -101,11 +107,16 @@ def stats_of(scene: Scene, steps: Steps) -> dict[str, Any]:
     }
 
 
-def plastic_of(scene: Scene, t: Array, taken: Array, duration: float) -> dict[str, Plastic]:
-    """What each tie has yielded when the duration [s] is over, from what it had taken [J] at times t, (n, ties)."""
-    ends = [float(np.interp(duration, t, energy)) for energy in taken.T]
-    each = zip(scene.tie_names, ends, scene.tie_strength.tolist(), strict=True)
-    return {name: Plastic(energy / strength, energy) for name, energy, strength in each}
+def plastic_of(scene: Scene, steps: Steps, taken: Array, broken: Integers, duration: float) -> dict[str, Plastic]:
+    """What each tie has yielded when the duration [s] is over, from what it had taken [J] by each step, (n, ties)."""
+    plastic = {}
+    for i, (name, strength) in enumerate(zip(scene.tie_names, scene.tie_strength.tolist(), strict=True)):
+        energy = float(np.interp(duration, steps.t, taken[:, i]))
+        plastic[name] = Plastic(energy / strength, energy)
+        if broken[i] < len(steps.t) and (when := float(steps.windows.t[broken[i]])) <= duration:
+            energy = strength * float(scene.tie_ultimate[i])
+            plastic[name] = Plastic(energy / strength, energy, when, 0.5 * strength**2 / float(scene.tie_k[i]))
+    return plastic
 
 
 def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, scale: float) -> None:
@@ -128,7 +139,8 @@ def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, sc
     windows = steps.windows
     yields = bool(np.isfinite(scene.tie_strength).any())  # a tie yields between the marks too
     at = np.arange(marks[-1] + 1) if yields else marks
-    stored, taken = scene.accounts(windows.pose[at], windows.velocity[at])
+    broken = (breaks(scene.ties, steps.pose, scene.places.freedom),) if yields else ()
+    stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
     balance = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
     balance = balance[marks] if yields else balance
     gains = balance - np.minimum.accumulate(balance)

@@ -12,8 +12,9 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_kind
-from ..result.response import Response, State
-from ..result.start import required_start
+from ..result.response import Outcome, Response, State
+from ..result.start import require_unbreakable, required_start
+from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.of_case import course_of, require_case, scene_of
 from ..scene.scene import Scene
@@ -77,12 +78,13 @@ def simulate(
 
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, if the masonry does not
-            stand, or for a value outside its range.
+            stand, for a tie that breaks with a fixed step, or for a value outside its range.
         SimulationError: if the run produces a NaN, an engine warning, or more energy than was there and was put in.
 
     Warns:
-        UserWarning: if a fixed step is too long to resolve the contacts, or if explicit steps would follow masonry of
-            more than eight blocks in a fraction of the time.
+        UserWarning: if a fixed step is too long to resolve the contacts, if explicit steps would follow masonry of more
+            than eight blocks in a fraction of the time, or if a tie without an `ultimate` was drawn out by more than a
+            bar or an anchor follows.
     """
     begun = time.perf_counter()
     require_case(case, contacts)
@@ -90,6 +92,8 @@ def simulate(
     if isinstance(case, MasonryCase):
         require_still(case)
         warn_if_sheared(case.masonry)
+    if options.timestep is not None:
+        require_unbreakable(case)
     state = None if start is None else required_start(start, case)
     scene = scene_of(case, contacts, method)
     course = course_of(case, scene)
@@ -109,6 +113,8 @@ def simulate(
     if isinstance(asked, AskedWall):
         warn_if_slid(run, asked)
         warn_if_open(response, run, asked, options.remedy)
+    if response.outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, response.plastic)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response
 

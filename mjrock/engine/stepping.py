@@ -15,11 +15,10 @@ import numpy as np
 from tqdm import tqdm
 
 from ..geometry.frames import frames_of
-from ..geometry.kinematics import stretch
 from ..method import METHOD, Method
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .loop import fitted_loop, fixed_loop, release
+from .loop import fitted_loop, fixed_loop, release, settle_ties
 from .model import Engine
 from .pace import Pace
 from .progress import Clock, Progress
@@ -42,8 +41,7 @@ def fitted_steps(
     memory, setting, pace = engine.memory, Setting.of(scene, course, method), Pace.of(scene, course, accuracy, method)
     places, released_on = setting.points.places, engine.closed
     engine.model.tendon_damping[:] = 0.0  # dampers act as applied forces, at the velocity of the pose
-    for i in range(len(setting.ties.k)):
-        stretch(setting.ties, i, frames_of(memory.pose, places.freedom), memory.velocity, places.axes)
+    settle_ties(memory, setting, frames_of(memory.pose, places.freedom))
     sliding = Sliding.of(setting.points, coulomb=coulomb, method=method)
     state = Progress.of(memory, setting, Joints.of_scene(scene), sliding)
     clock = Clock.started(pace, course.energy(scene))

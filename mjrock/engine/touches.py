@@ -1,8 +1,9 @@
-"""Touches: when a contact closes, and how the step is fitted to it.
+"""Touches: when a contact closes or a tie breaks, and how the step is fitted to it.
 
 A step in which a point would touch, to second order in time, ends half a short step after the touch. The touch is then
 the start of the leapfrog window in which the new contact first acts. Ending the step at the touch itself would apply
-half a step of force too much. A touch that is too faint to matter is ignored.
+half a step of force too much. A touch that is too faint to matter is ignored. A tie that breaks is met in the same way:
+it pulls up to the end of a window.
 """
 
 from __future__ import annotations
@@ -132,3 +133,25 @@ def step_to_touch(
     if first == math.inf:
         return 0.0
     return hardest(touches, first + 0.5 * short) + 0.5 * short
+
+
+@jitable
+def step_to_break(ties: Ties, openings: Openings, now: float, short: float) -> float:
+    """Length of a step that ends half a short step after a tie breaks within it, or zero if none does [s].
+
+    Args:
+        ties: the ties, their reach up to date.
+        openings: of the contacts and the ties.
+        now: the step that is about to be made [s].
+        short: the short step [s].
+    """
+    first, contacts = math.inf, len(openings.value) - len(ties.k)
+    for i in range(len(ties.k)):
+        if ties.limit[i] == math.inf or ties.reach[i] == math.inf:
+            continue
+        j = contacts + i
+        left = ties.limit[i] - ties.reach[i] + openings.value[j]
+        g1, g2 = openings.rate[j], openings.linear[j] + openings.swept[j]
+        if left + now * (g1 + 0.5 * now * g2) <= 0:
+            first = min(first, 2 * left / (math.sqrt(max(0.0, g1 * g1 - 2 * left * g2)) - g1))
+    return 0.0 if first == math.inf else first + 0.5 * short

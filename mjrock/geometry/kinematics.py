@@ -58,8 +58,10 @@ class Ties(NamedTuple):
         anchor_at: the anchor from the centroid of its body, at rest, or from the origin of the world [m], shape (t, d).
         between: vector from the anchor to the held point, at rest [m], shape (t, d).
         k: stiffness [N/m], shape (t,).
-        reach: length up to which the tie is slack [m], shape (t,). It grows as the tie yields.
+        reach: length up to which the tie is slack [m], shape (t,). It grows as the tie yields, and is infinite once
+            the tie has broken.
         stretch: elongation at which the tie yields [m], infinite for one that does not, shape (t,).
+        limit: length beyond which the tie breaks [m], infinite for one that never does, shape (t,).
     """
 
     body: Integers
@@ -70,6 +72,7 @@ class Ties(NamedTuple):
     k: Array
     reach: Array
     stretch: Array
+    limit: Array
 
 
 class Forces(NamedTuple):
@@ -252,6 +255,17 @@ def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) 
     yielded = max(pulled - ties.stretch[i], 0.0)
     ties.reach[i] += yielded
     return max(pulled - yielded, 0.0), yielded
+
+
+@jitable
+def snaps(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> bool:
+    """Whether tie i is longer than its limit and breaks now. It is slack from then on."""
+    if ties.limit[i] == math.inf or ties.reach[i] == math.inf:
+        return False
+    if ties.reach[i] - slack(ties, i, frames, v, v, axes).value <= ties.limit[i]:
+        return False
+    ties.reach[i] = math.inf
+    return True
 
 
 @inlined

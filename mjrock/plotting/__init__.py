@@ -3,10 +3,11 @@
 from .accuracy import convergence, peers, work_precision
 from .animation import animate, animate_bodies
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
-from .histories import acceleration, comparison, energy, grid, history, rotation
+from .histories import acceleration, comparison, energy, grid, history, rotation, ties
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
 from .pushing import moment_rotation, pushover
+from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
 from .tornado import tornado
 
@@ -41,6 +42,8 @@ __all__ = [
     "save",
     "sensitivity",
     "single",
+    "sketch",
+    "ties",
     "tornado",
     "work_precision",
 ]

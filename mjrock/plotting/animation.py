@@ -7,20 +7,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from ..files import replacing
+from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path, require_text, require_within
 from ..result.response import Response
 from .bodies import Bodies
-from .histories import acceleration, rotation
+from .film import GifWriter, PageWriter, Stage
+from .histories import acceleration, rotation, ties
 from .page import standalone
-from .section import Update, blocks, frame_view, surroundings
+from .section import Update, blocks, frame_view, surroundings, ties_of_masonry
 
 ENDINGS = (".gif", ".mp4", ".html")
 """Endings of the files that are written."""
@@ -46,7 +48,8 @@ def animate(
     """Write the motion of a response as a moving picture.
 
     It shows the wall with its base, pivots, side stop, ties, openings, loads, thrusts and masses, and beside it the
-    rotation over time and the motion of the ground where there is one. Of masonry it shows the blocks.
+    rotation over time, the motion of the ground and the forces of the ties where there are any. Of masonry it shows
+    the blocks and their ties.
 
     Args:
         response: of any solver.
@@ -71,8 +74,10 @@ def animate(
         if case.shaken:
             drawn.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
         drawn.append(lambda ax: rotation(ax, [response]))
+        if response.ties:
+            drawn.append(lambda ax: ties(ax, [response]))
         return _film(bodies, path, drawn, case, speed=speed, fps=fps, title=title, dpi=dpi)
-    return _film(bodies, path, drawn, None, speed=speed, fps=fps, title=title, dpi=dpi)
+    return _film(bodies, path, drawn, response.case, speed=speed, fps=fps, title=title, dpi=dpi)
 
 
 def animate_bodies(
@@ -105,7 +110,7 @@ def _film(
     bodies: Bodies,
     path: str | Path,
     histories: Sequence[Callable[[Axes], object]],
-    case: Case | None,
+    case: Case | MasonryCase | None,
     *,
     speed: float,
     fps: float,
@@ -122,7 +127,9 @@ def _film(
     figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title)
     with replacing(path) as partial:
         with writer.saving(figure, str(partial), dpi):
-            for frame in tqdm(range(len(times)), desc=path.name, unit="frame", delay=2, disable=None, leave=False):
+            if isinstance(writer, GifWriter | PageWriter):
+                writer.stage = Stage(figure, dpi)
+            for frame in tqdm(range(len(times)), desc=path.name, unit="frame", delay=0.5, disable=None, leave=False):
                 update(frame)
                 writer.grab_frame()
         if path.suffix.lower() == ".html":
@@ -137,7 +144,7 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
     match path.suffix.lower():
         case ".gif":
             interval = max(2, round(HUNDREDTHS / fps)) / HUNDREDTHS
-            return PillowWriter(fps=JUST / interval), interval  # type: ignore[arg-type]
+            return GifWriter(fps=JUST / interval), interval  # type: ignore[arg-type]
         case ".mp4":
             if not FFMpegWriter.isAvailable():
                 raise RuntimeError(
@@ -148,7 +155,7 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
         case ".html":
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
-            return HTMLWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
+            return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
     raise ValueError(f"path = {path.name!r} ends in none of {', '.join(ENDINGS)}")
 
 
@@ -167,7 +174,7 @@ def frame_times(t: Array, step: float) -> Array:
 def scene(
     bodies: Bodies,
     histories: Sequence[Callable[[Axes], object]],
-    case: Case | None,
+    case: Case | MasonryCase | None,
     *,
     speed: float = 1.0,
     title: str = "",
@@ -186,11 +193,15 @@ def scene(
     updates = [blocks(ax, bodies)]
     if case is None:
         frame_view(ax, bodies)
-    else:
+    elif isinstance(case, Case):
         updates.append(surroundings(ax, case, bodies))
+    else:
+        frame_view(ax, bodies)
+        updates.append(ties_of_masonry(ax, case, bodies))
     scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
+    clock.set_animated(True)
     if halves is not None:
         axes = halves[1].subplots(len(histories), 1, sharex=True, squeeze=False)[:, 0]
         for panel, draw in zip(axes, histories, strict=True):
@@ -217,6 +228,8 @@ def _marker(ax: Axes, times: Array) -> Update:
     values = np.interp(times, np.asarray(curve.get_xdata(), dtype=float), np.asarray(curve.get_ydata(), dtype=float))
     (line,) = ax.plot([], [], color="0.5", linewidth=0.8, transform=ax.get_xaxis_transform(), zorder=4)
     (dot,) = ax.plot([], [], marker="o", markersize=6, color="#b5462f", zorder=5)
+    for artist in (line, dot):
+        artist.set_animated(True)
 
     def update(frame: int) -> None:
         line.set_data([times[frame]] * 2, [0.0, 1.0])

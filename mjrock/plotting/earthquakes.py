@@ -33,12 +33,15 @@ def mode_legend(figure: Figure) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9)
 
 
-def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, top: float = 1.2) -> Axes:
+def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, top: float | None = None) -> Axes:
     """Incremental dynamic analysis: peak rotation against intensity, a line a motion, with its 16, 50, 84 % fractiles.
 
-    `peaks` are multiples of alpha, shape (motions, intensities); infinity stands for overturning, drawn at `top`.
+    `peaks` are multiples of alpha, shape (motions, intensities). Infinity stands for overturning, drawn at `top`. None
+    is 1.2, or above the largest peak of a wall that stands: one on ties may stand beyond alpha.
     """
     levels, values = np.asarray(intensity, dtype=float), np.asarray(peaks, dtype=float)
+    if top is None:
+        top = max(1.2, 1.15 * float(values[np.isfinite(values)].max(initial=0.0)))
     shown = np.minimum(values, top)
     ax.plot(levels, shown.T, color="0.75", linewidth=0.6)
     fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
@@ -46,7 +49,10 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
         ax.plot(levels, line, color="#12406b", linewidth=1.8, linestyle=style, label=label)
     ax.set_ylim(0, 1.03 * top)
     ax.axhline(1, color="0.3", linewidth=0.6)
+    ax.axhline(top, color="0.3", linewidth=0.6, linestyle=":")
+    ax.text(0.01 * levels.max(), top, "overturned", fontsize=7, va="top", color="0.3")
     ax.set_xlim(0, levels.max())
+    ax.legend(frameon=False, fontsize=7, loc="center left")
     ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
     ax.set_xlabel("peak ground acceleration [g]")
     ax.set_ylabel(r"peak rotation $\theta_{max}/\alpha$ [-]")

@@ -9,36 +9,38 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..problem.wall.case import Case
-from ..quantities import require_kind
+from ..quantities import require_kind, require_text, shown
 from ..result.response import Outcome, Response
-from .style import style_of
+from .style import style_of, styles_of
 
 BEYOND = 1.2
 """Rotation up to which a wall that overturns is shown, in multiples of alpha [-]."""
 
 
-def rotation(ax: Axes, responses: Sequence[Response]) -> Axes:
+def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Rotation in multiples of alpha against time.
 
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. The picture
-    says when that was.
+    says when that was. Responses have the lines of their solvers, or with `labels` colours of their own.
     """
     fallen = [overturned_at(response) for response in responses]
-    reached = [0.0]
-    for response, end in zip(responses, fallen, strict=True):
+    reached, styles = [0.0], styles_of(responses, labels)
+    for response, end, style in zip(responses, fallen, styles, strict=True):
         share = response.theta / response.case.wall.alpha
-        ax.plot(response.t, share, **style_of(response))
+        ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set_xlabel("time $t$ [s]")
     ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")
-    said = [f"{r.solver}: overturned at t = {t:.3g} s" for r, t in zip(responses, fallen, strict=True) if t is not None]
+    names = [response.solver for response in responses] if labels is None else labels
+    said = [f"{name}: overturned at t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
     if said:
         top = max(BEYOND, 1.05 * max(reached))
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
-        text = "\n".join(said) if len(responses) > 1 else said[0].split(": ")[1]
-        ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top")
+        text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
+        note = ax.text(0.02, 0.96, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
+        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0})
     return ax
 
 
@@ -64,8 +66,50 @@ def acceleration(ax: Axes, case: Case, until: float) -> Axes:
     return ax
 
 
-def history(responses: Response | Sequence[Response], title: str = "") -> Figure:
-    """Rotation against time of one response, or of several to one case, below the acceleration of the ground."""
+def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
+    """Force of the ties against time [kN], a cross where one broke, and how far each was drawn out.
+
+    Ties of one response that did the same are drawn once.
+    """
+    several, known = len(responses) > 1, styles_of(responses, labels)
+    for response, style in zip(responses, known, strict=True):
+        drawn: dict[bytes, list[str]] = {}
+        for name, tie in response.ties.items():
+            drawn.setdefault(tie.force.tobytes(), []).append(name)
+        for i, names in enumerate(drawn.values()):
+            tie = response.ties[names[0]]
+            said = f"{style['label']}, " if several else ""
+            said += f"{', '.join(names)}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
+            look = style | {"label": said, "zorder": 2} | ({"linestyle": "--"} if i else {})
+            (line,) = ax.plot(response.t, tie.force / 1e3, **look)
+            if tie.broken < np.inf:
+                line.set_label(f"{said}, broke at {tie.broken:.3g} s")
+                at = min(int(np.searchsorted(response.t, tie.broken)), len(response.t) - 1)
+                height = tie.force[max(at - 1, 0)] / 1e3
+                ax.plot(response.t[at], height, "x", color=line.get_color(), markersize=9, markeredgewidth=2, zorder=5)
+    ax.set_ylim(bottom=0.0)
+    ax.set_ylim(top=1.0 + 1.35 * ax.get_ylim()[1] if ax.get_ylim()[1] == 0 else 1.35 * ax.get_ylim()[1])
+    ax.legend(frameon=False, fontsize=7, loc="upper right")
+    ax.set_xlabel("time $t$ [s]")
+    ax.set_ylabel("ties [kN]")
+    return ax
+
+
+def history(
+    responses: Response | Sequence[Response], title: str = "", *, labels: Sequence[str] | None = None
+) -> Figure:
+    """Rotation against time of one response or of several, below the ground motion and above the forces of the ties.
+
+    Args:
+        responses: one, or several under the same ground motion: of one case by several solvers, or of two cases, such
+            as one with a tie and one without.
+        title: what stands above.
+        labels: what each response is called, one for each; each then has a colour of its own. Without them responses
+            have the names of their solvers, and cases that differ are numbered.
+
+    Raises:
+        ValueError: for no response, responses under different ground motions, or another number of labels.
+    """
     if not isinstance(responses, Sequence):
         require_kind("responses", responses, Response)
     several = [responses] if isinstance(responses, Response) else list(responses)
@@ -73,19 +117,54 @@ def history(responses: Response | Sequence[Response], title: str = "") -> Figure
         require_kind(f"responses[{i}]", response, Response)
     if not several:
         raise ValueError("responses is empty; at least one response is needed")
+    for i, response in enumerate(several):
+        response.of_wall  # noqa: B018, raises for masonry
+        if not same_ground(several[0], response):
+            raise ValueError(
+                f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion"
+            )
+    names = required_labels(several, labels)
     case, until = several[0].case, max(float(response.t[-1]) for response in several)
-    figure = Figure(figsize=(6.3, 4.2 if case.shaken else 3.0), layout="constrained")
+    tied = any(response.ties for response in several)
+    heights = [1.0] * case.shaken + [2.0] + [1.2] * tied
+    figure = Figure(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
+    axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
     if case.shaken:
-        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
-        acceleration(above, case, until).set_xlabel("")
-    else:
-        above = below = figure.subplots()
-    rotation(below, several)
-    below.set_xlim(0, until)
-    above.set_title(title, fontsize=10)
+        acceleration(axes[0], case, until)
+    rotation(axes[int(case.shaken)], several, names)
+    if tied:
+        ties(axes[-1], several, names)
+    for ax in axes[:-1]:
+        ax.set_xlabel("")
+    axes[0].set_xlim(0, until)
+    axes[0].set_title(title, fontsize=10)
     if len(several) > 1:
-        figure.legend(*below.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+        lines = axes[int(case.shaken)].get_legend_handles_labels()
+        figure.legend(*lines, loc="outside lower center", ncols=3, frameon=False)
     return figure
+
+
+def same_ground(left: Response, right: Response) -> bool:
+    """Whether two responses are those to the same ground motions."""
+    return bool(left.case.motion == right.case.motion and left.case.vertical == right.case.vertical)
+
+
+def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:
+    """The labels of responses: those given, or solvers and numbers where cases differ, or None where solvers say it.
+
+    Raises:
+        TypeError: if they are no texts.
+        ValueError: for another number of them.
+    """
+    if labels is None:
+        if len({response.solver for response in responses}) == len(responses):
+            return None
+        return [f"{response.solver} {i + 1}" for i, response in enumerate(responses)]
+    if isinstance(labels, str) or not isinstance(labels, Sequence):
+        raise TypeError(f"labels = {shown(labels)} is no sequence of texts")
+    if len(labels) != len(responses):
+        raise ValueError(f"labels has {len(labels)} texts for {len(responses)} responses; one for each is needed")
+    return [require_text(f"labels[{i}]", label) for i, label in enumerate(labels)]
 
 
 def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
@@ -128,5 +207,6 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top
         ax.set_xlabel("")
     for ax in axes[:, 1:].flat:
         ax.set_ylabel("")
-    axes[0, 0].legend(loc="upper right", frameon=False, fontsize=8)
+    handles = axes[0, 0].get_legend_handles_labels()
+    figure.legend(*handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     return figure

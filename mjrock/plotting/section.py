@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 
+from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effects import AddedMass, Load, Thrust, Tie
 from ..quantities import Array
+from ..result.ties import elongation_at, elongation_of, held_by
 from .bodies import Bodies
 
 STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
@@ -30,7 +32,9 @@ def blocks(ax: Axes, bodies: Bodies) -> Update:
         ax.add_patch(Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8))
     patches = []
     for j, outline in enumerate(bodies.outlines):
-        patch = Polygon(bodies.placed(0, j, outline), facecolor=STONE, edgecolor="0.15", linewidth=1.2, zorder=2)
+        patch = Polygon(
+            bodies.placed(0, j, outline), facecolor=STONE, edgecolor="0.15", linewidth=1.2, zorder=2, animated=True
+        )
         ax.add_patch(patch)
         patches.append(patch)
     ax.set_aspect("equal")
@@ -71,13 +75,53 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     toes = (1.0,) if case.one_sided else (1.0, -1.0)
     toe_x = [side * wall.half_base for side in toes]
     ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
-    updates = [_openings(ax, case, bodies), *(_tie(ax, case, tie, bodies) for tie in ties)]
+    updates = [_openings(ax, case, bodies)]
+    updates += [_tie(ax, case, i, bodies, text) for i, text in enumerate(tie_texts(ties, left, height))]
     updates += [_force(ax, case, effect, bodies) for effect in forces]
     updates += [_mass(ax, case, added, bodies) for added in case.wall.masses]
 
     def update(frame: int) -> None:
         for move in updates:
             move(frame)
+
+    return update
+
+
+def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
+    """Ties of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
+    low, high = bodies.extent()
+    ties, updates = [effect for effect in case.effects if isinstance(effect, Tie)], []
+    edge = float(low[0]) - 0.25 * float(high[1] - low[1])
+    for i, tie in enumerate(ties):
+        body, held, centroid = held_by(case, tie)
+        updates.append(_tie_of_block(ax, bodies, tie, (body, held - centroid), edge))
+        ax.annotate(f"tie_{i}", (edge, held[1] + tie.rise), (4, 4), textcoords="offset points", fontsize=7, color=STEEL)
+    if ties:
+        ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
+
+    def update(frame: int) -> None:
+        for move in updates:
+            move(frame)
+
+    return update
+
+
+def _tie_of_block(ax: Axes, bodies: Bodies, tie: Tie, at: tuple[int, Array], edge: float) -> Update:
+    """A tie that holds a point of a body: solid where it pulls, dotted where it is slack, gone once it broke."""
+    held = bodies.rests[at[0]] + at[1]
+    anchor = held + np.array([-tie.length, tie.rise])
+    if anchor[0] < edge:
+        anchor = held + (anchor - held) * (held[0] - edge) / tie.length
+    elongation = elongation_at(bodies.poses[:, at[0]], tie, at[1])
+    yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+    (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
+    ax.plot(*anchor, marker="s", markersize=5, color=STEEL, zorder=4)
+
+    def update(frame: int) -> None:
+        point = bodies.placed(frame, at[0], at[1][None])[0]
+        line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
+        line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
+        line.set_visible(bool(yielded[frame] <= tie.breaks_at))
 
     return update
 
@@ -96,7 +140,7 @@ def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     for z in heights:
         outer = float(np.interp(z, *np.transpose(profile))) - wall.b
         segments.append(np.concatenate([_local(case, -wall.b, z), _local(case, outer, z)]))
-        lines += ax.plot([], [], color="0.35", linewidth=0.9, linestyle="--", zorder=3)
+        lines += ax.plot([], [], color="0.35", linewidth=0.9, linestyle="--", zorder=3, animated=True)
 
     def update(frame: int) -> None:
         for line, ends in zip(lines, segments, strict=True):
@@ -105,33 +149,44 @@ def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     return update
 
 
-def _tie(ax: Axes, case: Case, tie: Tie, bodies: Bodies) -> Update:
-    """A tie from the inner face to its anchor: solid where it pulls, dotted where it is slack."""
+def tie_texts(ties: Sequence[Tie], left: float, height: float) -> list[str]:
+    """What stands at each tie: how many are there, at the first of them, and how far behind a hidden anchor is."""
+    placed = [(round(tie.height / (0.03 * height)), tie.length, tie.rise) for tie in ties]
+    texts = []
+    for i, (tie, place) in enumerate(zip(ties, placed, strict=True)):
+        number = f"{placed.count(place)} x " if placed.count(place) > 1 else ""
+        where = f"anchor {tie.length:g} m behind" if tie.length > -left else number and "tie"
+        texts.append("" if place in placed[:i] else f"{number}{where}")
+    return texts
+
+
+def _tie(ax: Axes, case: Case, i: int, bodies: Bodies, text: str) -> Update:
+    """Tie i from the inner face to its anchor: solid where it pulls, dotted where it is slack, gone once it broke."""
+    tie = case.each(Tie)[i]
     held, anchor = _local(case, -case.block.b, tie.height), (-case.block.b - tie.length, tie.height + tie.rise)
     pulls = pulling(case, tie, bodies)
-    (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4)
+    broken = np.logical_or.accumulate(elongation_of(case, tie, bodies.poses) - tie.stretch > tie.breaks_at)
+    (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
     ax.plot(*anchor, marker="s", markersize=6, color=STEEL, zorder=4)
-    shown = anchor[0] > ax.get_xlim()[0]
-    where = f"anchor {tie.length:g} m behind" if not shown else ""
-    ax.text(ax.get_xlim()[0], anchor[1], where, fontsize=7, color=STEEL, va="bottom", clip_on=True)
+    left, right = ax.get_xlim()
+    at = left + 0.02 * (right - left), max(anchor[1], tie.height)
+    note = ax.annotate(text, at, (0, 3), textcoords="offset points", fontsize=6, color=STEEL, va="bottom", zorder=6)
+    note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
 
     def update(frame: int) -> None:
         point = bodies.placed(frame, 0, held)[0]
         line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
         line.set_linestyle("-" if pulls[frame] else ":")
+        line.set_visible(not broken[frame])
 
     return update
 
 
 def pulling(case: Case, tie: Tie, bodies: Bodies) -> Array:
     """Whether a tie pulls at each frame, shape (n,): it is longer than when it was slack or last yielded."""
-    held = _local(case, -case.block.b, tie.height)[0]
-    x, z, theta = bodies.poses[:, 0].T
-    right = case.wall.centroid_offset + x + held[0] * np.cos(theta) + held[1] * np.sin(theta) + case.block.b
-    up = case.wall.centroid_height + z - held[0] * np.sin(theta) + held[1] * np.cos(theta) - tie.height
-    elongation = np.hypot(tie.length + right, up - tie.rise) - tie.reach
+    elongation = elongation_of(case, tie, bodies.poses)
     yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
-    return np.asarray(elongation > yielded)
+    return np.asarray((elongation > yielded) & (np.maximum.accumulate(elongation) - tie.stretch <= tie.breaks_at))
 
 
 def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Update:
@@ -140,9 +195,12 @@ def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Updat
     point = _local(case, effect.offset if isinstance(effect, Load) else 0.0, effect.height)
     along = np.array([0.0, -length]) if loads else np.array([np.sign(effect.force) * length, 0.0])
     arrow = FancyArrowPatch((0, 0), (1, 0), arrowstyle="-|>", mutation_scale=12, color=FORCE, linewidth=1.6, zorder=6)
+    arrow.set_animated(True)
     ax.add_patch(arrow)
     place = "center" if loads else "right"
-    text = ax.text(0, 0, f"{effect.force / 1e3:g} kN", fontsize=7, color=FORCE, ha=place, va="bottom", zorder=6)
+    text = ax.text(
+        0, 0, f"{effect.force / 1e3:g} kN", fontsize=7, color=FORCE, ha=place, va="bottom", zorder=6, animated=True
+    )
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]
@@ -156,8 +214,8 @@ def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Updat
 def _mass(ax: Axes, case: Case, added: AddedMass, bodies: Bodies) -> Update:
     """An added mass as a dot with its size."""
     point = _local(case, added.offset, added.height)
-    (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5)
-    text = ax.text(0, 0, f"  {added.mass:g} kg", fontsize=7, color="0.25", va="center", zorder=6)
+    (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
+    text = ax.text(0, 0, f"  {added.mass:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]

@@ -28,6 +28,23 @@ def style_of(response: Response) -> dict[str, Any]:
     return STYLES.get(response.solver, {"label": response.solver})
 
 
+OWN: tuple[dict[str, Any], ...] = (
+    {"color": "#12406b", "linestyle": "-", "linewidth": 1.5, "zorder": 2.4},
+    {"color": "#e07b2a", "linestyle": "-", "linewidth": 2.4, "zorder": 2.2},
+    {"color": "#3f8f5b", "linestyle": "--", "linewidth": 1.6, "zorder": 2.3},
+    {"color": "#8c4a8f", "linestyle": ":", "linewidth": 2.0, "zorder": 2.5},
+    {"color": "0.25", "linestyle": "-.", "linewidth": 1.4, "zorder": 2.1},
+)
+"""Lines of responses that have labels of their own."""
+
+
+def styles_of(responses: Sequence[Response], labels: Sequence[str] | None) -> list[dict[str, Any]]:
+    """The line style of each response: that of its solver, or with labels one of its own."""
+    if labels is None:
+        return [style_of(response) for response in responses]
+    return [OWN[i % len(OWN)] | {"label": label} for i, label in enumerate(labels)]
+
+
 def save(figure: Figure, path: str | Path) -> Path:
     """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes).
 

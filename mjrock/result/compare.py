@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from ..quantities import Array, require_kind
+from ..quantities import Array, Integers, require_kind
+from .pairing import FAINT, TOGETHER, paired, taken_by
 from .response import Outcome, Response
 from .table import csv_text
 
@@ -15,6 +18,10 @@ from .table import csv_text
 @dataclass(frozen=True)
 class Comparison:
     """What distinguishes `candidate` from `reference`. Rebounds are counted from 1; NaN where one has fewer.
+
+    On a base at rest the first impact of one belongs to the first of the other. Under ground motion impacts are paired
+    by their times, and those before which the wall has less than a hundredth of the energy that overturns it are left
+    out, see `mjrock.result.pairing`.
 
     Args:
         reference, candidate: the responses.
@@ -33,14 +40,31 @@ class Comparison:
         )
 
     @property
+    def _both(self) -> tuple[Response, Response]:
+        return self.reference, self.candidate
+
+    @cached_property
+    def pairs(self) -> Integers | None:
+        """Numbers of the impacts that belong to each other, -1 for none, shape (n, 2); None on a base at rest."""
+        case = self.reference.case
+        if not case.shaken:
+            return None
+        outer = case.restoring.outer
+        least = FAINT * float(outer.energy(max(outer.alpha, 0.0)))
+        return paired(self.reference.impacts, self.candidate.impacts, TOGETHER / case.wall.p, least)
+
+    def _values(self, left: Array | list[float], right: Array | list[float]) -> Array:
+        return _columns(left, right) if self.pairs is None else taken_by(self.pairs, left, right)
+
+    @property
     def restitution(self) -> Array:
         """|e| per rebound, reference and candidate [-], shape (n, 2)."""
-        return _columns(self.reference.restitution, self.candidate.restitution)
+        return self._values(*(r.restitution for r in self._both))
 
     @property
     def energy_loss(self) -> Array:
         """Energy lost per impact, reference and candidate [J], shape (n, 2)."""
-        return _columns(*([i.energy_loss for i in r.impacts] for r in (self.reference, self.candidate)))
+        return self._values(*([i.energy_loss for i in r.impacts] for r in self._both))
 
     @property
     def energy_share(self) -> Array:
@@ -51,12 +75,17 @@ class Comparison:
     @property
     def impact_times(self) -> Array:
         """Times of the impacts [s], shape (n, 2)."""
-        return _columns(*([i.t for i in r.impacts] for r in (self.reference, self.candidate)))
+        return self._values(*([i.t for i in r.impacts] for r in self._both))
 
     @property
     def rebound_peaks(self) -> Array:
-        """Rotation maxima after each impact as shares of alpha [-], shape (n, 2)."""
+        """Rotation maxima after each impact as shares of alpha [-], shape (n, 2).
+
+        Under ground motion each is the largest rotation up to the next impact.
+        """
         alpha = self.reference.case.wall.alpha
+        if self.pairs is not None:
+            return self._values(*(_largest_after(r) / alpha for r in self._both))
         skip = 0 if self.reference.case.released_outwards else 1
         return _columns(*(r.peaks[skip:] / alpha for r in (self.reference, self.candidate)))
 
@@ -122,6 +151,10 @@ class Comparison:
             row = [(values[i] if i < len(values) else (math.nan,) * 2, form) for _, values, form in columns]
             cells = (" ".join(f"{'-':>10}" if math.isnan(v) else f"{v:{form}}" for v in pair) for pair, form in row)
             lines.append(f"{i + 1:>6} |" + "|".join(cells))
+        if self.pairs is not None:
+            lines.append(
+                f"Impacts are paired by time; those of less than {FAINT:.0%} of the overturning energy are out."
+            )
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
         for label, response in zip(labels, (self.reference, self.candidate), strict=True):
             lines.append(f"{label}: {response.message}")
@@ -144,6 +177,13 @@ def compare(reference: Response, candidate: Response) -> Comparison:
     difference = np.interp(reference.t[common], candidate.t, candidate.theta) - reference.theta[common]
     rms = float(np.sqrt(np.mean(difference**2))) / reference.case.wall.alpha
     return Comparison(reference, candidate, rms)
+
+
+def _largest_after(response: Response) -> Array:
+    """Largest |rotation| from each impact to the next [rad], shape (impacts,)."""
+    ends = np.searchsorted(response.t, [*(impact.t for impact in response.impacts), np.inf])
+    theta = np.abs(response.theta)
+    return np.array([theta[first : last + 1].max(initial=0.0) for first, last in itertools.pairwise(ends)])
 
 
 def _columns(left: Array | list[float], right: Array | list[float]) -> Array:

@@ -24,6 +24,7 @@ class Ledger:
         friction: work that friction has taken since the release.
         ground: work that the ground motion has put in, as seen from the base.
         ties: work that yielding ties have taken since the release, by tie.
+        broken: elastic energy that ties have lost by breaking since the release, by tie; only those that may break.
     """
 
     t: Array
@@ -34,6 +35,7 @@ class Ledger:
     friction: Array
     ground: Array
     ties: Mapping[str, Array] = field(default_factory=dict)
+    broken: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def held(self) -> Array:
@@ -46,7 +48,8 @@ class Ledger:
 
         It is zero for an exact integration. A positive residual is energy that nothing has put in.
         """
-        gone = sum((*self.dashpots.values(), *self.ties.values()), self.friction) - self.ground
+        taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values())
+        gone = sum(taken, self.friction) - self.ground
         total: Array = self.held + gone
         residual: Array = total - total[0]
         return residual
@@ -66,12 +69,14 @@ class Ledger:
             then(self.friction),
             then(self.ground),
             {tie: then(account) for tie, account in self.ties.items()},
+            {tie: then(account) for tie, account in self.broken.items()},
         )
 
     def __repr__(self) -> str:
         taken = ", ".join(
             [f"{group} dashpots {account[-1]:.4g}" for group, account in self.dashpots.items()]
             + [f"{tie} {account[-1]:.4g}" for tie, account in self.ties.items()]
+            + [f"breaking of {tie} {account[-1]:.4g}" for tie, account in self.broken.items()]
         )
         return (
             f"<Ledger over {self.t[-1]:.4g} s [J]: at the end held {self.held[-1]:.4g}, taken by {taken}, "

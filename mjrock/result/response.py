@@ -6,8 +6,9 @@ import enum
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from .joints import JointMotion
 from .ledger import Ledger
 from .rocking import Impact, Rocking, displacement_at, restitution_of
 from .table import csv_text
+from .ties import Plastic, TieMotion, motion_of_ties
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3)."""
@@ -29,18 +31,6 @@ class Outcome(enum.Enum):
     AT_REST = "at rest"
     OVERTURNED = "overturned"
     TIME_ENDED = "time ended"
-
-
-class Plastic(NamedTuple):
-    """How far a tie has yielded by the end of a run.
-
-    Args:
-        elongation: plastic elongation [m].
-        energy: the energy that this took [J].
-    """
-
-    elongation: float
-    energy: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,7 +53,7 @@ class Response:
         message: the same in words, for the user.
         rocking: impacts and peaks of a wall; None for masonry.
         joints: openings and slidings of joints, and fallen blocks; None for a wall.
-        plastic: what ties have yielded, by tie.
+        plastic: what ties have yielded, and when they broke, by tie.
         ledger: every part of the energy, or None where none was asked for.
         stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s]. MuJoCo adds the deepest
             penetrations, `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
@@ -105,6 +95,11 @@ class Response:
     def energy_residual(self) -> Array | None:
         """Closure error of the energy ledger [J], shape (n,), or None where none was asked for."""
         return None if self.ledger is None else self.ledger.residual
+
+    @cached_property
+    def ties(self) -> Mapping[str, TieMotion]:
+        """Elongation, force and energy of each tie at the samples, by its name, see `TieMotion`."""
+        return motion_of_ties(self.case, self.t, self.pose, self.plastic)
 
     @property
     def of_wall(self) -> tuple[Case, Rocking]:

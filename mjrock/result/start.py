@@ -38,3 +38,14 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
     for name, values in zip(PARTS, (pose, velocity), strict=True):
         require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, LARGEST)
     return pose, velocity
+
+
+def require_unbreakable(case: Case | MasonryCase) -> None:
+    """Raise ValueError for a tie that breaks, of which the text of a model, which a fixed step is, knows nothing."""
+    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
+    for i, tie in enumerate(ties):
+        if tie.ultimate is not None:
+            raise ValueError(
+                f"a fixed step is the text of a model, in which no tie breaks, and tie_{i} has ultimate = "
+                f"{tie.ultimate:g} m; leave timestep out, so that steps fit the motion, or leave ultimate out"
+            )

@@ -16,7 +16,7 @@ GROUND = -1
 NUMBERS = {
     "names": ("mass", "inertia"),
     "group": ("point_body", "face_body", "k", "c", "friction"),
-    "tie_names": ("tie_body", "anchor_body", "tie_k", "tie_length", "tie_strength"),
+    "tie_names": ("tie_body", "anchor_body", "tie_k", "tie_length", "tie_strength", "tie_ultimate"),
     "damper_names": ("damper_body", "damper_c"),
     "force_names": ("force_body",),
 }
@@ -30,7 +30,9 @@ VECTORS = {
 }
 """The same for arrays with one vector for each."""
 POSITIVE = ("mass", "inertia", "k", "tie_k", "tie_length", "tie_strength")
-NOT_NEGATIVE = ("c", "friction", "damper_c")
+NOT_NEGATIVE = ("c", "friction", "damper_c", "tie_ultimate")
+INFINITE = ("tie_strength", "tie_ultimate")
+"""What may be infinite."""
 CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
 """Where the body of a face or an anchor stands, and the body that must be another one."""
 
@@ -64,7 +66,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
         values = values if values.size else values.reshape(wanted)
         if values.shape != wanted:
             raise ValueError(f"{name} has the shape {values.shape}; {wanted} is needed")
-        if np.isnan(values).any() or (name != "tie_strength" and not np.isfinite(values).all()):
+        if np.isnan(values).any() or (name not in INFINITE and not np.isfinite(values).all()):
             raise ValueError(f"{name} holds a value that is not finite")
         arrays[name] = frozen(values)
     for name in POSITIVE:

@@ -44,6 +44,7 @@ def attachments(
             "tie_k": np.array([tie.stiffness for tie in ties]),
             "tie_length": np.array([tie.reach for tie in ties]),
             "tie_strength": np.array([tie.strength for tie in ties]),
+            "tie_ultimate": np.array([tie.breaks_at for tie in ties]),
         }
     if loads or thrusts:
         bodies, points = placed([*loads, *thrusts])

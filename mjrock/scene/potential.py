@@ -6,6 +6,7 @@ Velocities and forces are those of the joints of all bodies, shape (n nv,) with 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -14,8 +15,8 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 
 from ..compiled import compiled, inlined, jitable
-from ..geometry.frames import frames_of, push_body, swung, take_frames
-from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, stretch
+from ..geometry.frames import Freedom, frames_of, push_body, swung, take_frames
+from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, slack, stretch
 from ..geometry.vectors import dot, plus, vector
 from ..linear import entries, sprung
 from ..quantities import GRAVITY, Array, Integers
@@ -67,7 +68,7 @@ def force_energy(forces: Forces, frames: Array, axes: tuple[int, ...]) -> float:
     return energy
 
 
-def energies(structure: Structure, q: Array, v: Array) -> tuple[Array, Array]:
+def energies(structure: Structure, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
     """Kinetic, potential and elastic energy at the steps of a motion [J], shape (steps, 3), and what ties have taken.
 
     The potential energy is that of the weight above the position of rest of the centroids, and that of the constant
@@ -76,16 +77,21 @@ def energies(structure: Structure, q: Array, v: Array) -> tuple[Array, Array]:
     Args:
         structure: what has energy.
         q, v: poses and velocities, shapes (steps, n nq) and (steps, n nv).
+        broken: the step from which each tie no longer acts, shape (t,), as many as there are steps or more for one that
+            does not break. None breaks none.
     """
     parts, taken = np.zeros((len(q), 3)), np.zeros((len(q), len(structure.ties.k)))
     ties = structure.ties._replace(reach=np.array(structure.ties.reach))
-    freedom = structure.places.freedom
-    _energies(structure._replace(ties=ties), q, v, freedom.frames(q.shape[1] // freedom.nq), parts, taken)
+    freedom, until = structure.places.freedom, np.full(taken.shape[1], len(q)) if broken is None else broken
+    frames = freedom.frames(q.shape[1] // freedom.nq)
+    _energies(structure._replace(ties=ties), q, v, frames, until, parts, taken)
     return parts, taken
 
 
 @compiled
-def _energies(structure: Structure, q: Array, v: Array, frames: Array, parts: Array, taken: Array) -> None:
+def _energies(
+    structure: Structure, q: Array, v: Array, frames: Array, broken: Integers, parts: Array, taken: Array
+) -> None:
     places, k, ties, masses = structure.places, structure.k, structure.ties, structure.masses
     for step in range(len(q)):
         take_frames(q[step], frames, places.axes)
@@ -96,9 +102,42 @@ def _energies(structure: Structure, q: Array, v: Array, frames: Array, parts: Ar
         for i in range(len(k)):
             parts[step, 2] += spring_energy(places, k, i, frames)
         for i in range(len(ties.k)):
+            if step >= broken[i]:
+                taken[step, i] = taken[step - 1, i] if step else 0.0
+                if ties.reach[i] < math.inf:  # it yields up to its limit, and breaks
+                    left = ties.limit[i] - ties.stretch[i] - ties.reach[i]
+                    taken[step, i] += ties.k[i] * ties.stretch[i] * left
+                    ties.reach[i] = math.inf
+                continue
             stretched, yielded = stretch(ties, i, frames, v[step], places.axes)
             parts[step, 2] += 0.5 * ties.k[i] * stretched * stretched
             taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * stretched * yielded
+
+
+def breaks(ties: Ties, q: Array, freedom: Freedom) -> Integers:
+    """The first step of a motion at whose pose each tie is longer than its limit, or the number of steps, shape (t,).
+
+    Args:
+        ties: the ties, none of which has yielded.
+        q: poses, shape (steps, n nq).
+        freedom: of the bodies.
+    """
+    broken = np.full(len(ties.k), len(q))
+    if np.isfinite(ties.limit).any():
+        _breaks(ties, q, freedom.axes, freedom.frames(q.shape[1] // freedom.nq), broken)
+    return broken
+
+
+@compiled
+def _breaks(ties: Ties, q: Array, axes: tuple[int, ...], frames: Array, broken: Integers) -> None:
+    for step in range(len(q)):
+        take_frames(q[step], frames, axes)
+        for i in range(len(broken)):
+            if (
+                broken[i] == len(q)
+                and ties.reach[i] - slack(ties, i, frames, q[step], q[step], axes).value > (ties.limit[i])
+            ):
+                broken[i] = step
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,6 +58,7 @@ class Scene:
         tie_k: stiffness of each tie [N/m], shape (t,).
         tie_length: length up to which it is slack [m], shape (t,).
         tie_strength: force at which it yields [N], infinite for one that does not, shape (t,).
+        tie_ultimate: plastic elongation at which it breaks [m], shape (t,); infinite, or nothing, where none does.
         damper_names: names of the d viscous dampers, which are anchored in the ground.
         damper_body, damper_point: the body that each damper holds, and where, from its centroid [m], (d,) and (d, 2).
         damper_anchor: its other end, from the origin of the world [m], shape (d, 2).
@@ -101,6 +102,7 @@ class Scene:
     tie_k: Array = field(default_factory=nothing)
     tie_length: Array = field(default_factory=nothing)
     tie_strength: Array = field(default_factory=nothing)
+    tie_ultimate: Array = field(default_factory=nothing)
     damper_names: tuple[str, ...] = ()
     damper_body: Integers = field(default_factory=nothing)
     damper_point: Array = field(default_factory=nothing)
@@ -121,6 +123,8 @@ class Scene:
         return f"<Scene of {len(self.names)} bodies, {len(self.k)} contacts, {len(self.tie_names)} ties>"
 
     def __post_init__(self) -> None:
+        if not np.size(self.tie_ultimate):
+            object.__setattr__(self, "tie_ultimate", np.full(len(self.tie_names), math.inf))
         for name, values in checked(vars(self)).items():
             object.__setattr__(self, name, values)
         object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), self.k.shape)))
@@ -198,6 +202,7 @@ class Scene:
             k=self.tie_k,
             reach=self.tie_length,
             stretch=frozen(self.tie_strength / self.tie_k),
+            limit=frozen(self.tie_length + self.tie_strength / self.tie_k + self.tie_ultimate),
         )
 
     @cached_property
@@ -238,9 +243,9 @@ class Scene:
         rest = _one(self.at_rest)
         return self.accounts(rest, np.zeros_like(rest))[0][0]
 
-    def accounts(self, q: Array, v: Array) -> tuple[Array, Array]:
+    def accounts(self, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
         """Kinetic, potential and elastic energy, and what ties have taken, see `potential.energies`."""
-        return energies(self.structure, q, v)
+        return energies(self.structure, q, v, broken)
 
     def energy(self, pose: Array, velocity: Array) -> Array:
         """Energy above the scene at rest [J], shape (steps,), for poses and velocities of shape (steps, n, 3)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,9 +16,11 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
+from ..problem.wall.effects import Tie
 from ..quantities import Implausible, keep, require_kind, shown, spelt
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
+from ..result.ties import Plastic
 from ..theory.analytical import solve_analytical
 from .campaign_task import Row
 
@@ -44,6 +46,9 @@ WALL_COLUMNS = (
     "end_s",
     "message",
 )
+TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
+"""Columns of each tie, after its name: how far it has yielded, its largest force, what yielding and breaking took, and
+when it broke, empty where it did not."""
 MASONRY_COLUMNS = (
     "outcome",
     "fallen",
@@ -123,7 +128,9 @@ class Analysis:
     @property
     def COLUMNS(self) -> tuple[str, ...]:
         """The columns of a row."""
-        return WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS
+        ties = sum(isinstance(effect, Tie) for effect in self.case.effects)
+        own = tuple(f"tie_{i}_{name}" for i in range(ties) for name in TIE_COLUMNS)
+        return (WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS) + own
 
     @property
     def PEAK(self) -> str:
@@ -146,7 +153,8 @@ class Analysis:
         if history is not None:
             save_history(response, history)
         values = self._of_wall(response) if isinstance(self.case, Case) else _of_masonry(response)
-        return dict(zip(self.COLUMNS, (*values, float(response.t[-1]), response.message), strict=True))
+        ending = float(response.t[-1]), response.message
+        return dict(zip(self.COLUMNS, (*values, *ending, *_of_ties(response)), strict=True))
 
     def _of_wall(self, response: Response) -> tuple[object, ...]:
         """The columns of a wall but the last two."""
@@ -154,6 +162,18 @@ class Analysis:
         law = "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
         peak = response.peak_over_alpha
         return self.solver, law, response.outcome.value, peak, len(response.impacts), *restitution[:3]
+
+
+def _of_ties(response: Response) -> Iterator[float | None]:
+    """The columns of ties. A tie that did not yield has an elongation and an energy of zero."""
+    for name, tie in response.ties.items():
+        drawn = response.plastic.get(name, Plastic(0.0, 0.0))
+        yield from (
+            drawn.elongation,
+            tie.largest_force,
+            drawn.energy + drawn.lost,
+            None if math.isinf(drawn.broken) else drawn.broken,
+        )
 
 
 def _of_masonry(response: Response) -> tuple[object, ...]:

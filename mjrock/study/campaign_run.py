@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
@@ -40,7 +40,8 @@ class Runner:
 
     def __init__(self, file: Store, progress: Progress, folder: Path | None, retry: bool) -> None:
         self.file, self.progress, self.folder, self.retry = file, progress, folder, retry
-        self.failed = 0
+        self.statuses: Counter[str] = Counter()
+        self.outcomes: Counter[str] = Counter()
         self.seconds = 0.0
         self.finished = 0
         self.skipped = 0
@@ -90,8 +91,13 @@ class Runner:
         )
         self.finished += len(rows)
         self.seconds += sum(row["seconds"] for row in rows)
-        self.failed += sum(row["status"] == "failed" for row in rows)
-        self.progress.show(self.skipped, self.finished, self.failed)
+        self.statuses.update(row["status"] for row in rows)
+        self.outcomes.update(str(row["outcome"]) for row in rows if row.get("outcome") is not None)
+        self.progress.show(self.skipped, self.finished, self.statuses["failed"])
+
+    def close(self) -> None:
+        """Say how the campaign ended."""
+        self.progress.close(self.skipped, self.statuses, self.outcomes)
 
     def here(self, job: Job, reason: object) -> None:
         """Run a job that can go to no other process, for a reason that the user is told, in a thread of this one.

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 
 from tqdm import tqdm
+
+from .status import closing
 
 EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
@@ -52,6 +55,11 @@ class Progress:
             self.noted = True
             self.bar.clear()
             self._say(text)
+
+    def close(self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int]) -> None:
+        """Say how many tasks had a row, how the others ended and how long that took, and how many are left."""
+        self.bar.close()
+        self._say(closing(skipped, statuses, outcomes, time.monotonic() - self.started, self.total))
 
     def _say(self, text: str) -> None:
         print(f"campaign: {text}", file=sys.stderr, flush=True)

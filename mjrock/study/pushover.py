@@ -61,7 +61,7 @@ def pushover(
     """The static curve of a wall that a horizontal acceleration pushes outwards, away from its side stop.
 
     The acceleration acts on the mass of the wall, with all added masses, at its centroid. Loads and thrusts have no
-    mass. Ties yield along the curve. The release, the ground motion and the duration of the case play no part.
+    mass. Ties yield and break along the curve. The release, the ground motion and the duration play no part.
 
     A rigid wall has the closed form lambda = [P cos(theta) - Q sin(theta) + T(theta) lever] / (W z'), with P and Q of
     `case.restoring`, T the pull of the ties, and z' = z cos(theta) + d sin(theta) the height of the centroid. On
@@ -134,7 +134,8 @@ def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
         # the uplift itself is known to second order in the rotation
         parts += [near * np.array([1 - 1e-3, 1 - 1e-4, 1 + 1e-6, 1 + 1e-4, 1 + 1e-3])]
     for pull in case.pulls:
-        for elongation in (0.0, pull.strength / pull.stiffness):
+        stretch = pull.strength / pull.stiffness
+        for elongation in (0.0, stretch, stretch + pull.ultimate):
             beyond = np.flatnonzero(pulled(pull, fine, 1.0)[0] > elongation)
             if beyond.size:
                 parts.append(fine[max(beyond[0] - 1, 0) : beyond[0] + 1])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.frames import frames_of
-from ..geometry.kinematics import along, gaps, stretch
+from ..geometry.kinematics import along, gaps, snaps, stretch
 from ..quantities import GRAVITY, Array, Flags, Integers
 from ..scene.potential import Potential
 from ..scene.scene import Scene
@@ -38,7 +38,7 @@ class Tilted(NamedTuple):
 
 
 def tilted(scene: Scene, rotations: Array) -> Tilted:
-    """The wall of a scene at rotations that follow each other, its ties yielding on the way.
+    """The wall of a scene at rotations that follow each other, its ties yielding and breaking on the way.
 
     The vertical equilibrium gives the compression of the base. The condition that the held point of the outer edge does
     not slip gives the displacement along the base, by the trapezoidal rule from rest.
@@ -66,6 +66,7 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
             lever = _lever(scene, int(base[-1]), pose)
         total = potential.load(pose) + springs
         for i in range(len(ties.k)):
+            snaps(ties, i, frames_of(pose), pose, scene.places.axes)
             stretch(ties, i, frames_of(pose), pose, scene.places.axes)
         # with F the friction and H the force at the centroid: total_x + F + H = 0 and total_theta + F lever = 0
         rows[n] = *pose, total[2] / lever - total[0], -lever

@@ -13,10 +13,11 @@ import numpy as np
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
-from ..problem.wall.ties_on_wall import stored
+from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, require_kind, require_size, require_within
-from ..result.response import Outcome, Plastic, Response, describe
+from ..result.response import Outcome, Response, describe
 from ..result.rocking import Impact, Rocking
+from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .forced import rock_forced
 from .free import rock_freely
 from .motion import Motion
@@ -53,6 +54,9 @@ def solve_analytical(
         ValueError: for a tolerance or step out of range, a side stop from which the wall does not rebound, or a
             vertical motion that lifts the wall off its base.
         RuntimeError: if the integration fails.
+
+    Warns:
+        UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
     """
     require_kind("case", case, Case)
     require_kind("e", e, Restitution)
@@ -71,6 +75,8 @@ def solve_analytical(
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
     pose, velocity = case.wall.motion(theta, omega)
     stretched, plastic = _with_ties(case, motion, samples, theta)
+    if outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, plastic)
     return Response(
         case=case,
         solver="analytical",
@@ -81,7 +87,7 @@ def solve_analytical(
         rocking=Rocking(tuple(map(Impact._make, motion.impacts.tolist())), np.append(released, motion.peaks)),
         outcome=outcome,
         plastic=plastic,
-        message=describe(outcome, case, t_end, float(theta[-1])),
+        message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
         stats={
             "wall_time": time.perf_counter() - started,
             "evaluations": motion.evaluations,
@@ -137,9 +143,13 @@ def _with_ties(case: Case, motion: Motion, t: Array, theta: Array) -> tuple[Arra
     if not case.pulls or motion.plastic is None:
         return 0.0, {}
     times, yielded = motion.plastic
-    plastic = np.column_stack([np.interp(t, times, elongation) for elongation in yielded.T])
-    ends = [
-        Plastic(float(gone), float(gone) * pull.strength if gone else 0.0)
-        for gone, pull in zip(yielded[-1], case.pulls, strict=True)
-    ]
-    return stored(case.pulls, theta, plastic), {f"tie_{i}": end for i, end in enumerate(ends)}
+    plastic, ends = np.empty((len(t), len(case.pulls))), {}
+    for i, (pull, elongation) in enumerate(zip(case.pulls, yielded.T, strict=True)):
+        drawn, broken = np.where(np.isinf(elongation), pull.ultimate, elongation), np.flatnonzero(np.isinf(elongation))
+        plastic[:, i], gone = np.interp(t, times, drawn), float(drawn[-1])
+        ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength if gone else 0.0)
+        if broken.size:
+            when = float(times[broken[0]])
+            plastic[t >= when, i] = np.inf
+            ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength, when, lost(pull))
+    return stored(case.pulls, theta, plastic), ends

@@ -2,7 +2,7 @@
 
 Between two samples the acceleration of the ground is linear, so that each step of Nystroem's fourth-order method
 integrates a smooth function. (A general integrator would be restarted at each of thousands of samples.) A step also
-ends where a tie goes taut, yields or goes slack. The wall rests until the moment about a free toe turns it.
+ends where a tie goes taut, yields, breaks or goes slack. The wall rests until the moment about a free toe turns it.
 """
 
 from __future__ import annotations

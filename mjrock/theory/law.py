@@ -26,7 +26,7 @@ SMALL = 0.05
 """Largest change of an angle in a step for which its sine and cosine are taken from series [rad]."""
 SINE, COSINE = (-1 / 6, 1 / 120, -1 / 5040), (-1 / 2, 1 / 24, -1 / 720, 1 / 40320)
 """Coefficients of these series."""
-SLACK, TAUT, YIELDING = 0, 1, 2
+SLACK, TAUT, YIELDING, BROKEN = 0, 1, 2, 3
 """What a tie does in a step."""
 
 
@@ -71,7 +71,7 @@ class Ties(NamedTuple):
     """The ties of a wall.
 
     Args:
-        pulls: the numbers of each `Pull`, shape (t, 8).
+        pulls: the numbers of each `Pull`, shape (t, 9).
         doing: what each tie does, shape (t,).
         plastic: elongation that each tie has yielded [m], shape (t,).
     """
@@ -164,7 +164,7 @@ def held_back(toe: Toe, ties: Ties, theta: float) -> float:
     """Acceleration by the ties, each doing in the step what it did at its start [rad/s2]."""
     total = 0.0
     for i in range(len(ties.doing)):
-        if ties.doing[i] != SLACK:
+        if ties.doing[i] == TAUT or ties.doing[i] == YIELDING:
             tie = pull_of(ties, i)
             elongation, lever = pulled(tie, theta, toe.side)
             force = tie.strength if ties.doing[i] == YIELDING else tie.stiffness * (elongation - ties.plastic[i])
@@ -176,7 +176,7 @@ def held_back(toe: Toe, ties: Ties, theta: float) -> float:
 def pull_of(ties: Ties, i: int) -> Pull:
     """Tie i."""
     tie = ties.pulls[i]
-    return Pull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7])
+    return Pull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7], tie[8])
 
 
 @jitable

@@ -21,7 +21,8 @@ class Motion:
         sample: rotation [rad] and angular velocity [rad/s] at increasing times [s].
         arcs: how many arcs, or steps, the motion is made of.
         evaluations: evaluations of Eq. 1.
-        plastic: times [s] and elongations that ties have yielded by then [m], shapes (n,) and (n, ties); or None.
+        plastic: times [s] and elongations that ties have yielded by then [m], infinite once they have broken, shapes
+            (n,) and (n, ties); or None.
     """
 
     impacts: Array

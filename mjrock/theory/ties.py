@@ -1,10 +1,10 @@
-"""Ties in rocking theory: when one goes taut, yields or goes slack, and what it has yielded."""
+"""Ties in rocking theory: when one goes taut, yields, breaks or goes slack, and what it has yielded."""
 
 from __future__ import annotations
 
 from ..compiled import jitable
 from ..problem.wall.ties_on_wall import pulled
-from .law import SLACK, TAUT, YIELDING, Push, Ties, Toe, nystroem, pull_of
+from .law import BROKEN, SLACK, TAUT, YIELDING, Push, Ties, Toe, nystroem, pull_of
 
 HALVINGS = 50
 """Halvings of a step in the search of the time at which a tie changes."""
@@ -14,8 +14,10 @@ HALVINGS = 50
 def change_of(toe: Toe, ties: Ties, i: int, theta: float) -> int:
     """What tie i does at a rotation, other than what it does in this step; -1 where that is the same.
 
-    A tie that yields goes on until the wall turns.
+    A tie that yields goes on until the wall turns or it breaks, and one that has broken stays so.
     """
+    if ties.doing[i] == BROKEN:
+        return -1
     tie = pull_of(ties, i)
     elastic = pulled(tie, theta, toe.side)[0] - ties.plastic[i]
     if ties.doing[i] == SLACK:
@@ -25,6 +27,10 @@ def change_of(toe: Toe, ties: Ties, i: int, theta: float) -> int:
             return SLACK
         if elastic * tie.stiffness > tie.strength:
             return YIELDING
+    if ties.doing[i] == YIELDING:
+        drawn = pulled(tie, theta, toe.side)[0] - tie.strength / tie.stiffness
+        if drawn > tie.ultimate:
+            return BROKEN
     return -1
 
 
@@ -56,11 +62,10 @@ def until_change(toe: Toe, ties: Ties, push: Push, theta: float, omega: float, h
 def take_changes(toe: Toe, ties: Ties, theta: float, turned: bool) -> None:
     """Let every tie do what it does from here on. One that yields has yielded for good when the wall turns."""
     for i in range(len(ties.doing)):
-        if ties.doing[i] == YIELDING and turned:
+        change = change_of(toe, ties, i, theta)
+        if change >= 0:
+            ties.doing[i] = change
+        elif ties.doing[i] == YIELDING and turned:
             tie = pull_of(ties, i)
             ties.plastic[i] = pulled(tie, theta, toe.side)[0] - tie.strength / tie.stiffness
             ties.doing[i] = TAUT
-        else:
-            change = change_of(toe, ties, i, theta)
-            if change >= 0:
-                ties.doing[i] = change

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from mjrock import __main__ as command
+from mjrock.anymodel import command
 from scripts.models.make_models import MODELS
 from scripts.shared import cli
 
@@ -23,9 +23,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     wall = MODELS / "figure3_one_sided" / "scene.xml"
     options.add_argument("model", type=Path, nargs="?", default=wall, help="MJCF or URDF file")
     args, others = options.parse_known_args(argv)
-    asked = ["inspect", str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
-    text = command.inspected(command.parser().parse_args(asked))
-    cli.report(cli.folder(args.out) / "inspect_contacts", text)
+    asked = [str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
+    cli.report(cli.folder(args.out) / "inspect_contacts", command.answer(asked))
 
 
 if __name__ == "__main__":

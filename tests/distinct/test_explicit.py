@@ -139,6 +139,19 @@ def test_the_ledger_closes_with_every_effect_and_both_motions():
     np.testing.assert_allclose(run.peak, engine.peak, rtol=0.05)  # its joints stick rigidly
 
 
+def test_a_tie_breaks_and_its_books_close():
+    """A cube on ice is caught by a tie, draws it out and breaks it: the energies of both stay behind."""
+    ice = mr.Masonry(CUBE.blocks, k_n=1e9, friction=0.0, xi=0.05)
+    tie = mr.Tie(height=0.5, stiffness=1e6, slack=1e-3, strength=5e3, ultimate=0.1, block=1)
+    run = solve(ice, 0.6, velocity=[(2.0, 0.0, 0.0)], effects=(tie,), ledger=True)
+    taken = 5e3 * 0.1 + 0.5 * 5e3**2 / 1e6
+    left = math.sqrt(4.0 - 2 * taken / CUBE.blocks[1].mass)
+    assert run.velocity[-1, 0, 0] == pytest.approx(left, rel=2e-3)
+    assert run.plastic["tie_0"].elongation == pytest.approx(0.1, rel=1e-9)
+    assert run.plastic["tie_0"].broken < 0.2
+    assert np.abs(run.energy_residual).max() < 5e-3 * run.energy[0]
+
+
 def test_a_support_that_settles_takes_what_stands_on_it_along():
     t = np.linspace(0, 1, 101)
     smooth = 0.5 - 0.5 * np.cos(np.pi * t)

@@ -301,14 +301,14 @@ def test_ten_thousand_calls(call):
 
 
 def test_every_public_entry_is_tried():
-    """What is not called here is made by a solver, or tested with the campaigns and the records."""
+    """What is not called here is made by a solver, or tested with the campaigns, the records and the reports."""
     elsewhere = {
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
         "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
-        "calibrate", "GroundMotion",
+        "calibrate", "GroundMotion", "report",
         "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact",
     }  # fmt: skip

@@ -20,6 +20,7 @@ FLOORS = (
     ("anymodel",),
     ("study",),
     ("plotting",),
+    ("reporting",),
     ("__main__",),
 )
 """From the ground up. Rooms of one floor do not import each other."""

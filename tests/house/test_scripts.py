@@ -53,6 +53,7 @@ WRITES = {
     "fragility_coverage": {"fragility_coverage.txt"},
     "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
+    "first_pictures": {"effects.png", "tutorial.png"},
     "speed": {"speed.txt"},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}

@@ -329,7 +329,7 @@ def test_one_worker_needs_no_guard(tmp_path):
         [sys.executable, "unguarded.py"], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False
     )
     assert run.stdout == f"{[2, None, *(i**2 for i in range(1, 20)), 4]}\n"
-    (line,) = run.stderr.splitlines()
+    line, _ = run.stderr.splitlines()
     assert line.startswith("campaign: tasks that no other process can take run in this one, which may die of them: ")
     assert "Double" in line
 

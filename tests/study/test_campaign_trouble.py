@@ -193,7 +193,10 @@ def test_ctrl_c(tmp_path, workers):
     said = run.communicate()[1]
     assert time.monotonic() - started < 2
     assert run.returncode == 130
-    assert said == f"interrupted: {path}: 2 rows are kept, and the same call carries on from there\n"
+    closed, interrupted = said.splitlines()
+    assert interrupted == f"interrupted: {path}: 2 rows are kept, and the same call carries on from there"
+    assert closed.startswith("campaign: 2 of 3 tasks have a row: 2 done, 0 failed (1 time ended) in ")
+    assert closed.endswith(", 1 left; the same call carries on")
     assert gone(workers)
 
 
@@ -245,8 +248,8 @@ def test_without_a_terminal_lines_say_how_far_it_is(tmp_path, monkeypatch, capsy
     path = tmp_path / "c.sqlite"
     mr.campaign([Square(1), Square(-2)], path, workers=1)
     first = capsys.readouterr().err.splitlines()
-    assert first[-1].startswith("campaign: 2 of 2 cases, ")
-    assert first[-1].endswith("0 s left, 1 failed")
+    assert first[-2].startswith("campaign: 2 of 2 cases, ")
+    assert first[-2].endswith("0 s left, 1 failed")
     mr.campaign([Square(1), Square(-2), Square(3)], path, workers=1)
     again = capsys.readouterr().err.splitlines()
     assert again[0] == f"campaign: 2 rows in {path} are kept"

@@ -16,10 +16,11 @@ from .limits import BLOCKS, HIGHEST
 
 @dataclass(frozen=True)
 class Tie:
-    """A tie that holds the inner face of the wall back: it pulls, never pushes, and yields plastically.
+    """A tie that holds the inner face of the wall back: it pulls, never pushes, yields plastically, and may break.
 
     The tie runs horizontally from the inner face to an anchor behind the wall, unless `anchor_height` says otherwise.
     Its force is min(strength, stiffness times elongation), the elongation beyond the slack and beyond what has yielded.
+    A tie that has yielded by `ultimate` breaks: it pulls no more, and its elastic energy is lost.
 
     Args:
         height: where it holds the wall [m].
@@ -29,9 +30,11 @@ class Tie:
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
         anchor_height: height of the anchor [m]; None is that of the tie.
         block: the block that it holds.
+        ultimate: plastic elongation at which it breaks [m], 0 to 10, such as the slip at which an anchor plate is
+            pulled through; 0 for one that breaks as it begins to yield. None never breaks.
 
     Raises:
-        ValueError: for a value outside its range.
+        ValueError: for a value outside its range, or an `ultimate` without a finite strength.
     """
 
     height: float
@@ -41,6 +44,7 @@ class Tie:
     length: float = 5.0
     anchor_height: float | None = None
     block: int = 0
+    ultimate: float | None = None
 
     def __post_init__(self) -> None:
         keep(
@@ -59,6 +63,13 @@ class Tie:
         if self.anchor_height is not None:
             anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
             keep(self, anchor_height=anchored)
+        if self.ultimate is not None:
+            keep(self, ultimate=require_within("ultimate of the tie", self.ultimate, 0.0, 10.0, "m"))
+            if self.strength == math.inf:
+                raise ValueError(
+                    f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield and "
+                    "never breaks; give it a strength [N], or leave ultimate out"
+                )
 
     @property
     def rise(self) -> float:
@@ -74,6 +85,11 @@ class Tie:
     def stretch(self) -> float:
         """Elastic elongation at which it yields [m]."""
         return self.strength / self.stiffness
+
+    @property
+    def breaks_at(self) -> float:
+        """Plastic elongation at which it breaks [m], infinite for one that never does."""
+        return math.inf if self.ultimate is None else self.ultimate
 
 
 @dataclass(frozen=True)

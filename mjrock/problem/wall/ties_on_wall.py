@@ -22,6 +22,7 @@ class Pull(NamedTuple):
         reach: length up to which the tie is slack [m].
         stiffness: [N/m].
         strength: force at which it yields [N].
+        ultimate: plastic elongation at which it breaks [m], infinite for one that never does.
     """
 
     offset: float
@@ -32,16 +33,19 @@ class Pull(NamedTuple):
     reach: float
     stiffness: float
     strength: float
+    ultimate: float
 
     @classmethod
     def of(cls, tie: Tie, b: float, half_base: float) -> Pull:
         """A tie that holds the inner face of a wall of half thickness `b` and half base `half_base` [m]."""
-        return cls(-b, tie.height, tie.length, tie.rise, half_base, tie.reach, tie.stiffness, tie.strength)
+        shape = -b, tie.height, tie.length, tie.rise, half_base, tie.reach
+        return cls(*shape, tie.stiffness, tie.strength, tie.breaks_at)
 
     def moment(self, phi: Array) -> Array:
         """Restoring moment at rotations about the outer toe, stretched for the first time [N m], shape (n,)."""
         elongation, lever = pulled(self, phi, 1.0)
         moment: Array = np.minimum(self.strength, self.stiffness * np.maximum(elongation, 0.0)) * lever
+        moment[elongation - self.strength / self.stiffness > self.ultimate] = 0.0
         return moment
 
 
@@ -63,12 +67,14 @@ def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
 
 
 def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
-    """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties)."""
+    """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties).
+
+    It is infinite from where the tie has broken: it is slack from then on.
+    """
     plastic = np.zeros((len(theta), len(pulls)))
     for i, pull in enumerate(pulls):
-        plastic[:, i] = np.maximum(
-            np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness), 0.0
-        )
+        drawn = np.maximum.accumulate(_elongation(pull, theta) - pull.strength / pull.stiffness)
+        plastic[:, i] = np.where(drawn > pull.ultimate, np.inf, np.maximum(drawn, 0.0))
     return plastic
 
 
@@ -81,11 +87,20 @@ def stored(pulls: Sequence[Pull], theta: Array, plastic: Array) -> Array:
 
 
 def taken(pulls: Sequence[Pull], plastic: Array) -> Array:
-    """Energy that all ties have taken by yielding so far [J], shape (n,), for plastic elongations (n, ties)."""
-    return sum(
-        (pull.strength * gone for pull, gone in zip(pulls, plastic.T, strict=True) if gone.any()),
-        np.zeros(len(plastic)),
-    )
+    """Energy that all ties have taken by yielding and breaking so far [J], shape (n,), for plastic elongations (n,
+    ties)."""
+    total = np.zeros(len(plastic))
+    for pull, gone in zip(pulls, plastic.T, strict=True):
+        if gone.any():
+            broken = np.isinf(gone)
+            total = total + pull.strength * np.where(broken, pull.ultimate, gone)
+            total[broken] += lost(pull)
+    return total
+
+
+def lost(pull: Pull) -> float:
+    """Elastic energy that a tie loses as it breaks [J]."""
+    return 0.5 * pull.strength**2 / pull.stiffness
 
 
 def _elongation(pull: Pull, theta: Array) -> Array:

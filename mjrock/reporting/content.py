@@ -1,0 +1,173 @@
+"""What a report says: inputs with their units, results, and what to be careful of."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+
+import matplotlib
+import mujoco
+import numpy
+import scipy
+
+from .._version import __version__
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
+from ..problem.wall.case import Case
+from ..problem.wall.damper import Damper
+from ..problem.wall.effects import Load, Thrust, Tie
+from ..quantities import GRAVITY
+from ..result.response import Outcome, Response
+from ..result.ties import PLAUSIBLE
+
+Rows = list[tuple[str, ...]]
+"""Rows of a table."""
+
+
+def of_wall(case: Case) -> Rows:
+    """The wall: quantity, value with unit."""
+    block, wall = case.block, case.wall
+    rows: Rows = [
+        ("thickness", f"{2 * block.b:.4g} m"),
+        ("height", f"{2 * block.h:.4g} m"),
+        ("length", f"{block.length:.4g} m"),
+        ("density", f"{block.density:.4g} kg/m³"),
+        ("inset", f"{block.inset:.4g} m"),
+        ("mass, with added masses", f"{wall.mass:.5g} kg"),
+        ("centroid_height", f"{wall.centroid_height:.4g} m"),
+        ("alpha, rotation at which it falls alone", f"{wall.alpha:.4g} rad"),
+        ("overturning_rotation, with effects", f"{case.overturning_rotation:.4g} rad"),
+        ("p, frequency parameter", f"{wall.p:.4g} rad/s"),
+    ]
+    for opening in block.openings:
+        rows.append(("opening", f"{opening.width:.4g} x {opening.height:.4g} m, sill {opening.sill:.4g} m"))
+    stop = "none: the wall rocks to both sides" if case.stop_top is None else f"up to {case.stop_top:.4g} m"
+    return [*rows, ("side_stop", stop)]
+
+
+def of_effects(case: Case) -> Rows:
+    """The effects: name and values with units."""
+    rows: Rows = []
+    for i, tie in enumerate(case.each(Tie)):
+        said = f"at {tie.height:g} m, {tie.stiffness / 1e6:.4g} kN/mm, slack {1e3 * tie.slack:g} mm, "
+        said += f"length {tie.length:g} m, strength {tie.strength / 1e3:g} kN, "
+        said += "never breaks" if tie.ultimate is None else f"breaks at {1e3 * tie.ultimate:g} mm of yielding"
+        rows.append((f"tie_{i}", said))
+    rows += [
+        (f"thrust_{i}", f"{t.force / 1e3:g} kN outwards at {t.height:g} m") for i, t in enumerate(case.each(Thrust))
+    ]
+    for i, load in enumerate(case.each(Load)):
+        rows.append((f"load_{i}", f"{load.force / 1e3:g} kN downwards at {load.height:g} m, x = {load.offset:g} m"))
+    for i, damper in enumerate(case.each(Damper)):
+        rows.append((f"damper_{i}", f"{damper.c / 1e3:g} kN s/m at {damper.height:g} m"))
+    for mass in case.wall.masses:
+        rows.append(("added mass", f"{mass.mass:g} kg at {mass.height:g} m, x = {mass.offset:g} m"))
+    return rows
+
+
+def of_contacts(e: Restitution | None, contacts: Contacts | None) -> Rows:
+    """Restitution, stiffness and damping."""
+    rows: Rows = []
+    if e is not None:
+        rows += [("e, base", f"{e.base:.4f}"), ("e, side", f"{e.side:.4f}"), ("e, lumped", f"{e.lumped:.4f}")]
+    if contacts is not None:
+        rows.append(("law of the damping", contacts.law))
+        for name, face in (("base", contacts.base), ("side", contacts.side)):
+            if face is None:
+                continue
+            friction = "holds" if face.friction is None else f"{face.friction:g}"
+            said = f"{face.k_n:.4g} N/m³, damping ratio {face.xi:.3%}, friction {friction}, {face.points} lines"
+            rows.append((f"k_{name}", said))
+    return rows
+
+
+def of_motions(responses: Sequence[Response]) -> Rows:
+    """The ground motions of the responses, each once."""
+    motions: dict[tuple[str, str, str], tuple[str, ...]] = {}
+    for response in responses:
+        for name in ("motion", "vertical"):
+            motion = getattr(response.case, name)
+            if motion is not None:
+                peak = float(abs(motion.accel).max())
+                said = f"{peak:.4g} m/s² = {peak / GRAVITY:.3g} g, {motion.duration:.4g} s, step {motion.dt:.4g} s"
+                motions[name, motion.name, said] = ("horizontal" if name == "motion" else "vertical", motion.name, said)
+    return list(motions.values())
+
+
+def of_results(responses: Sequence[Response], names: Sequence[str]) -> Rows:
+    """Outcome, peak and impacts of each response."""
+    rows: Rows = []
+    for response, name in zip(responses, names, strict=True):
+        over, height = response.peak_over_alpha, 2 * response.case.block.h
+        top = "-" if over == float("inf") else f"{1e3 * over * response.case.wall.alpha * height:.0f} mm"
+        peak = "overturned" if over == float("inf") else f"{over:.3f}"
+        rows.append((name, response.outcome.value, peak, top, str(len(response.impacts)), _settings(response)))
+    return rows
+
+
+def _settings(response: Response) -> str:
+    """How a response was solved."""
+    known = ("accuracy", "timestep", "newmark_beta", "rtol", "atol", "steps")
+    values = ((name, response.stats.get(name)) for name in known)
+    return ", ".join(f"{name} {value:.3g}" if name != "steps" else f"{value} steps" for name, value in values if value)
+
+
+def of_ties(responses: Sequence[Response], names: Sequence[str]) -> Rows:
+    """What each tie did in each response."""
+    rows: Rows = []
+    for response, name in zip(responses, names, strict=True):
+        for tie, motion in response.ties.items():
+            drawn = response.plastic.get(tie)
+            yielded = 0.0 if drawn is None else drawn.elongation
+            energy = 0.0 if drawn is None else drawn.energy + drawn.lost
+            broke = "-" if motion.broken == float("inf") else f"{motion.broken:.3f} s"
+            force = f"{motion.largest_force / 1e3:.4g} kN"
+            rows.append((name, tie, force, f"{1e3 * yielded:.3g} mm", f"{energy:.4g} J", broke))
+    return rows
+
+
+def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) -> list[str]:
+    """What to be careful of in these results."""
+    said = []
+    outcomes = {response.outcome for response in responses}
+    if Outcome.OVERTURNED in outcomes and len(outcomes) > 1:
+        said.append("The responses do not agree on whether the wall overturns.")
+    motions = [response.case.motion for response in responses if response.case.motion is not None]
+    if case.one_sided and motions and all(motion.reversed() not in motions for motion in motions):
+        said.append(
+            "The wall opens to one side, and no motion is here in both polarities: run the reversed motion too."
+        )
+    if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
+        said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
+    if not any(response.solver == "MuJoCo" for response in responses):
+        said.append("Rocking theory alone knows no stiffness of the base and is most often the upper bound.")
+    if case.motion is None and not motions:
+        said.append("There is no ground motion: this is the motion after a release.")
+    for response, name in zip(responses, names, strict=True):
+        if response.outcome is Outcome.TIME_ENDED:
+            said.append(f"{name}: the wall was still moving when the time ended, at {_share(response):.3g} alpha.")
+        for (tie, drawn), effect in zip(response.plastic.items(), response.case.each(Tie), strict=False):
+            if effect.ultimate is None and drawn.elongation > PLAUSIBLE * effect.length:
+                said.append(
+                    f"{name}: {tie}, which never breaks here, was drawn out by {1e3 * drawn.elongation:.3g} mm, "
+                    f"{drawn.elongation / effect.length:.1%} of its length."
+                )
+            elif drawn.broken < float("inf"):
+                said.append(f"{name}: {tie} broke at {drawn.broken:.3f} s.")
+    return said
+
+
+def _share(response: Response) -> float:
+    return abs(float(response.theta[-1])) / float(response.case.wall.alpha)
+
+
+def versions() -> Rows:
+    """Versions of what has computed this."""
+    return [
+        ("mjrock", __version__),
+        ("MuJoCo", mujoco.__version__),
+        ("NumPy", numpy.__version__),
+        ("SciPy", scipy.__version__),
+        ("matplotlib", matplotlib.__version__),
+        ("Python", platform.python_version()),
+    ]

@@ -1,0 +1,204 @@
+"""A report as one page that needs no other file: HTML with its pictures inside, which prints to PDF."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Mapping, Sequence
+from io import BytesIO
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from ..files import write_text
+from ..plotting.histories import history, required_labels, same_ground
+from ..plotting.sketch import sketch
+from ..problem.damping.contacts import Contacts
+from ..problem.damping.restitution import Restitution
+from ..problem.wall.case import Case
+from ..quantities import require_kind, require_path, require_text, shown
+from ..result.response import Response
+from . import content
+
+LOOK = """
+@page { size: A4; margin: 18mm 16mm }
+body { font: 10.5pt/1.4 Georgia, serif; color: #222; max-width: 46em; margin: 2em auto; padding: 0 1em }
+h1 { font-size: 1.6em; border-bottom: 2px solid #12406b; padding-bottom: .2em }
+h2 { font-size: 1.15em; margin: 1.6em 0 .4em; color: #12406b; break-after: avoid }
+table { border-collapse: collapse; width: 100%; font: .85em/1.35 Helvetica, Arial, sans-serif }
+th, td { text-align: left; vertical-align: top; padding: .18em .5em; border-bottom: 1px solid #ddd }
+th { border-bottom: 1px solid #888; font-weight: 600 }
+tr, figure { break-inside: avoid }
+thead { break-after: avoid }
+tr:nth-child(-n+2) { break-before: avoid }
+figure { margin: .6em 0; text-align: center }
+figure img { max-width: 100% }
+ul.cautions { background: #fdf3e7; border-left: 4px solid #e07b2a; padding: .6em 1em .6em 2em }
+footer { margin-top: 2em; font-size: .8em; color: #666 }
+"""
+
+
+def report(
+    case: Case,
+    responses: Response | Sequence[Response],
+    path: str | Path,
+    *,
+    title: str = "Rocking of a wall",
+    labels: Sequence[str] | None = None,
+    e: Restitution | None = None,
+    contacts: Contacts | None = None,
+    basis: Mapping[str, str] | None = None,
+    notes: str = "",
+) -> Path:
+    """Write a report of a case and its responses: one HTML page that needs no other file and prints to PDF.
+
+    It has a sketch with dimensions, the inputs with their units and what they rest on, what to be careful of, the
+    histories with the forces of the ties, a table of the results and the versions of the programs.
+
+    Args:
+        case: the wall and its effects, for the sketch and the inputs.
+        responses: of walls of this size, by any solver, under any motions. Those under one motion share a picture.
+        path: where to, an .html.
+        title: of the page.
+        labels: what each response is called, one for each.
+        e, contacts: what the responses were computed with, for the inputs.
+        basis: what inputs rest on, by the name that the page gives them, such as {"density": "3 cores, 2024", "k_base":
+            "E of the mortar 800 MPa, 30 mm"}.
+        notes: a paragraph that stands first: the question, the building, who asked.
+
+    Returns:
+        The path that was written.
+
+    Raises:
+        TypeError: for an argument of another type, and for responses of masonry.
+        ValueError: for another ending of the path, no response, one of another wall, another number of labels, or a
+            basis of an input that the page does not have.
+    """
+    require_kind("case", case, Case)
+    path = require_path("path", path)
+    if path.suffix.lower() != ".html":
+        raise ValueError(f"path = {path.name!r} does not end in .html")
+    require_text("title", title)
+    require_text("notes", notes, 100_000)
+    require_kind("e", e, Restitution, type(None))
+    require_kind("contacts", contacts, Contacts, type(None))
+    several = required_responses(case, responses)
+    names = required_labels(several, labels) or [response.solver for response in several]
+    inputs = {
+        "Wall": content.of_wall(case),
+        "Effects": content.of_effects(case),
+        "Impacts and contacts": content.of_contacts(e, contacts),
+    }
+    rests = required_basis(basis, {row[0] for rows in inputs.values() for row in rows})
+    head = [f"<h1>{html.escape(title)}</h1>", *([f"<p>{html.escape(notes)}</p>"] if notes else [])]
+    parts = [*head, heading("The wall"), picture(sketch(case), "Section and elevation, true to scale [m].")]
+    parts += [heading("What to be careful of"), listed(content.cautions(case, several, names))]
+    parts += [heading("Results"), results(several, names), *histories(several, names)]
+    for name, rows in inputs.items():
+        if rows:
+            found = [(key, value, rests.get(key, "")) for key, value in rows]
+            parts += [heading(f"Inputs: {name.lower()}"), table(("quantity", "value", "basis"), found)]
+    motions = content.of_motions(several)
+    if motions:
+        parts += [heading("Inputs: ground motions"), table(("direction", "name", "peak, duration, step"), motions)]
+    parts += [heading("Versions"), table(("program", "version"), content.versions())]
+    parts.append("<footer>The wall is rigid and moves in one vertical plane. SI units; rotations in radians.</footer>")
+    write_text(path, page(title, parts))
+    return path
+
+
+def required_responses(case: Case, responses: object) -> list[Response]:
+    """Responses of walls of the size of a case, at least one.
+
+    Raises:
+        TypeError: if they are none.
+        ValueError: for no response, or one of another wall.
+    """
+    given = [responses] if isinstance(responses, Response) else responses
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        raise TypeError(f"responses = {shown(responses)} is no Response and no sequence of them")
+    if not given:
+        raise ValueError("responses is empty; at least one response is needed")
+    for i, response in enumerate(given):
+        require_kind(f"responses[{i}]", response, Response)
+        if not isinstance(response.case, Case):
+            raise TypeError(f"responses[{i}] is that of masonry; a report is of one wall")
+        if response.case.block != case.block:
+            raise ValueError(f"responses[{i}] is of {response.case.block!r}, and the case of {case.block!r}")
+    return list(given)
+
+
+def required_basis(basis: object, known: set[str]) -> dict[str, str]:
+    """What inputs rest on, by their names.
+
+    Raises:
+        TypeError: if it is no mapping of texts.
+        ValueError: for a name that is none of those on the page.
+    """
+    if basis is None:
+        return {}
+    if not isinstance(basis, Mapping):
+        raise TypeError(f"basis = {shown(basis)} is no mapping of names to texts")
+    for name, text in basis.items():
+        if name not in known:
+            raise ValueError(f"basis has {name!r}, which is none of {', '.join(sorted(known))}")
+        require_text(f"basis[{name!r}]", text)
+    return dict(basis)
+
+
+def results(responses: Sequence[Response], names: Sequence[str]) -> str:
+    """The tables of results, of ties, and the messages."""
+    columns = ("response", "outcome", "peak/alpha", "top moves by", "impacts", "solved with")
+    made = table(columns, content.of_results(responses, names))
+    ties = content.of_ties(responses, names)
+    if ties:
+        columns = ("response", "tie", "largest force", "drawn out by", "energy taken", "broke at")
+        made += "<p></p>" + table(columns, ties)
+    return made + listed([f"{name}: {r.message}" for r, name in zip(responses, names, strict=True)], "")
+
+
+def histories(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
+    """A picture for each ground motion."""
+    left, made = list(zip(responses, names, strict=True)), []
+    while left:
+        first = left[0][0]
+        own = [pair for pair in left if same_ground(first, pair[0])]
+        left = [pair for pair in left if not same_ground(first, pair[0])]
+        motion = first.case.motion
+        drawn = history([response for response, _ in own], labels=[name for _, name in own])
+        made.append(picture(drawn, "No ground motion." if motion is None else f"Ground motion: {motion.name}."))
+    return made
+
+
+def heading(text: str) -> str:
+    """A heading."""
+    return f"<h2>{html.escape(text)}</h2>"
+
+
+def listed(texts: Sequence[str], kind: str = "cautions") -> str:
+    """Texts as a list; a sentence where there are none."""
+    if not texts:
+        return "<p>Nothing that the program can tell.</p>"
+    return f'<ul class="{kind}">' + "".join(f"<li>{html.escape(text)}</li>" for text in texts) + "</ul>"
+
+
+def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table."""
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
+    lines = ("".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+
+
+def picture(figure: Figure, caption: str) -> str:
+    """A figure inside the page."""
+    file = BytesIO()
+    figure.savefig(file, format="png", dpi=160, metadata={"Software": None})
+    data, said = base64.b64encode(file.getvalue()).decode("ascii"), html.escape(caption)
+    return f'<figure><img alt="{said}" src="data:image/png;base64,{data}"><figcaption>{said}</figcaption></figure>'
+
+
+def page(title: str, parts: Sequence[str]) -> str:
+    """The whole page."""
+    body = "\n".join(parts)
+    head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{LOOK}</style>'
+    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n{body}\n</body></html>\n'

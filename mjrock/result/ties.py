@@ -1,0 +1,133 @@
+"""What ties did: how far they were drawn out, what they pulled, and when they broke."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..problem.wall.case import Case
+from ..problem.wall.effects import AddedMass, Tie
+from ..quantities import Array
+
+PLAUSIBLE = 0.05
+"""Share of its length up to which a tie may yield before that is warned of [-]: the characteristic strain at the
+greatest force of reinforcing steel of class B, EN 1992-1-1, Table C.1. Anchorages in masonry follow less."""
+
+
+class Plastic(NamedTuple):
+    """How far a tie has yielded by the end of a run, and whether it has broken.
+
+    Args:
+        elongation: plastic elongation [m].
+        energy: the energy that this took [J].
+        broken: when the tie broke [s], infinite for one that did not.
+        lost: the elastic energy that it lost as it broke [J].
+    """
+
+    elongation: float
+    energy: float
+    broken: float = math.inf
+    lost: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class TieMotion:
+    """A tie at the samples of a response.
+
+    Args:
+        elongation: beyond its slack, with what has yielded; zero where the tie is slack for the first time, NaN once it
+            has broken [m], shape (n,).
+        plastic: the part that has yielded [m], shape (n,).
+        force: what it pulls with, zero once it has broken [N], shape (n,).
+        largest_force: the largest force [N]: that among the samples, or the strength where it has yielded or broken.
+        broken: when it broke [s], infinite for one that did not.
+    """
+
+    elongation: Array
+    plastic: Array
+    force: Array
+    largest_force: float
+    broken: float
+
+    @property
+    def largest_elongation(self) -> float:
+        """The largest elongation beyond the slack among the samples before it broke [m]."""
+        return float(np.nanmax(self.elongation, initial=0.0))
+
+
+def motion_of_ties(case: Any, t: Array, pose: Array, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
+    """The ties of a case, of a wall or of masonry, at poses of shape (n, bodies, 3) and times t [s]."""
+    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
+    return {f"tie_{i}": _motion(case, tie, t, pose, plastic.get(f"tie_{i}")) for i, tie in enumerate(ties)}
+
+
+def _motion(case: Any, tie: Tie, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
+    elongation = elongation_of(case, tie, pose)
+    broken = math.inf if ended is None else ended.broken
+    pulls = t < broken
+    drawn = np.minimum(np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0)), tie.breaks_at)
+    if broken < math.inf:
+        drawn = np.where(pulls, drawn, tie.breaks_at)
+    force = np.where(pulls, np.clip(tie.stiffness * (elongation - drawn), 0.0, tie.strength), 0.0)
+    elongation = np.where(pulls, np.maximum(elongation, drawn), np.nan)
+    spent = broken < math.inf or (ended is not None and ended.elongation > 0)
+    return TieMotion(elongation, drawn, force, tie.strength if spent else float(force.max()), broken)
+
+
+def elongation_of(case: Any, tie: Tie, pose: Array) -> Array:
+    """How much longer than its slack length a tie is at poses of shape (n, bodies, 3) [m], negative where it is
+    slack."""
+    body, held, centroid = held_by(case, tie)
+    return elongation_at(pose[:, body], tie, held - centroid)
+
+
+def elongation_at(pose: Array, tie: Tie, arm: Array) -> Array:
+    """The same at poses of the body that it holds, shape (n, 3), at a point from its centroid at rest [m]."""
+    x, z, theta = pose.T
+    sine, cosine = np.sin(theta), np.cos(theta)
+    across = tie.length + x + arm[0] * (cosine - 1) + arm[1] * sine
+    up = z - arm[0] * sine + arm[1] * (cosine - 1) - tie.rise
+    elongation: Array = np.hypot(across, up) - tie.reach
+    return elongation
+
+
+def held_by(case: Any, tie: Tie) -> tuple[int, Array, Array]:
+    """The body that a tie holds, the point where it does and the centroid of the body, at rest [m]."""
+    if isinstance(case, Case):
+        wall = case.wall
+        return 0, np.array([-case.block.b, tie.height]), np.array([wall.centroid_offset, wall.centroid_height])
+    block, masonry = case.masonry.blocks[tie.block], case.masonry
+    held = np.array([block.left_at(tie.height), tie.height])
+    masses, moments = block.mass, block.mass * np.asarray(block.centroid)
+    for effect in case.effects:
+        if isinstance(effect, AddedMass) and effect.block == tie.block:
+            masses = masses + effect.mass
+            moments = moments + effect.mass * np.array([block.centroid[0] + effect.offset, effect.height])
+    return list(masonry.free).index(tie.block), held, moments / masses
+
+
+def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
+    """Which ties broke, and when, as sentences after a message; nothing where none did."""
+    broken = sorted((tie.broken, name, tie) for name, tie in plastic.items() if tie.broken < math.inf)
+    return "".join(
+        f" {name} broke at {when:.4g} s, drawn out by {1e3 * tie.elongation:.3g} mm." for when, name, tie in broken
+    )
+
+
+def warn_of_ties(case: Any, plastic: Mapping[str, Plastic]) -> None:
+    """Warn of ties without an `ultimate` that were drawn out beyond PLAUSIBLE of their length."""
+    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
+    for tie, (name, drawn) in zip(ties, plastic.items(), strict=False):
+        length = float(np.hypot(tie.length, tie.rise))
+        if tie.ultimate is None and drawn.elongation > PLAUSIBLE * length:
+            warnings.warn(
+                f"{name} was drawn out by {1e3 * drawn.elongation:.3g} mm, {drawn.elongation / length:.1%} of its "
+                f"length of {length:g} m. A steel bar breaks at some {PLAUSIBLE:.0%}, and an anchor plate follows "
+                "less; give the tie the elongation up to which it holds as ultimate",
+                stacklevel=3,
+            )

@@ -1,0 +1,52 @@
+"""The pictures of the first pages: every effect with its arguments, and a façade with and without a tie.
+
+Writes effects.png and tutorial.png and prints how far the tie was drawn out.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import mjrock as mr
+from mjrock import plotting
+from scripts.shared import cli
+
+
+def with_every_effect() -> mr.Case:
+    """A wall that carries one of each effect."""
+    wall = mr.Block.from_size(thickness=0.7, height=6.0, length=4.0, openings=[mr.Opening(width=1.2, height=2.2)])
+    effects = (
+        mr.Tie(height=5.2, stiffness=2e6, strength=2e4, length=2.0),
+        mr.Thrust(height=4.4, force=3e3),
+        mr.Load(force=2e4, height=6.0, offset=0.15),
+        mr.AddedMass(mass=500.0, height=6.0, offset=-0.2),
+        mr.Damper(height=3.0, c=1e4, length=2.0),
+    )
+    return mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(4.0), effects=effects)
+
+
+def of_the_tutorial(duration: float) -> list[mr.Response]:
+    """The façade of docs/tutorial.md in the reversed motion, with the tie of its sixth step and without it."""
+    door = mr.Opening(width=1.2, height=2.2)
+    wall = mr.Block.from_size(thickness=0.5, height=6.0, length=5.0, density=1800.0, openings=[door])
+    contacts = mr.Contacts.from_law(wall, mr.Restitution.from_geometry(wall), k_base=5e8, k_side=5e8)
+    motion = mr.GroundMotion.synthetic(peak=4.0, duration=12.0, seed=7).reversed()
+    tie = mr.Tie(height=5.5, stiffness=20e6, slack=0.005, strength=15e3, length=2.0, ultimate=0.05)
+    cases = [mr.Case(wall, 0.0, duration, motion=motion, effects=effects) for effects in ((tie,), ())]
+    return [mr.simulate(case, contacts, accuracy=1e-4) for case in cases]
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Draw both."""
+    args = cli.parser(__doc__, "first_pictures").parse_args(argv)
+    out = cli.folder(args.out)
+    plotting.save(plotting.sketch(with_every_effect(), arguments=True), out / "effects.png")
+    responses = of_the_tutorial(0.5 if args.quick else 15.0)
+    plotting.save(plotting.history(responses, labels=["with the tie", "as it is"]), out / "tutorial.png")
+    for response in responses:
+        print(response.message)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

@@ -1,0 +1,97 @@
+"""The report: one page that holds all that it needs, and what it refuses."""
+
+import base64
+import re
+from io import BytesIO
+
+import pytest
+from PIL import Image
+
+import mjrock as mr
+
+WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
+E = mr.Restitution.from_geometry(WALL)
+CONTACTS = mr.Contacts.from_law(WALL, E, 5e8, 5e8)
+TIE = mr.Tie(height=4.0, stiffness=2e6, slack=1e-3, strength=3e3, ultimate=0.002)
+MOTION = mr.GroundMotion.synthetic(4.0, 2.0, seed=2)
+EFFECTS = (TIE, mr.Thrust(3.5, 5e2), mr.Load(5e3, 4.2), mr.AddedMass(200.0, 4.2), mr.Damper(2.0, 10.0))
+CASE = mr.Case(WALL, 0.0, 2.5, motion=MOTION, effects=(TIE,))
+ANSWER = mr.solve_analytical(CASE, E)
+
+
+def test_one_page_with_all_that_it_needs(tmp_path):
+    turned = mr.solve_analytical(mr.Case(WALL, 0.0, 2.5, motion=MOTION.reversed(), effects=(TIE,)), E)
+    bare = mr.solve_analytical(mr.Case(WALL, 0.0, 2.5, motion=MOTION), E)
+    path = mr.report(
+        CASE,
+        [ANSWER, bare, turned],
+        tmp_path / "façade.html",
+        title="Façade <7>",
+        labels=["tied", "bare", "reversed"],
+        e=E,
+        contacts=CONTACTS,
+        basis={"density": "3 cores", "k_base": "mortar"},
+        notes="Does it stand?",
+    )
+    text = path.read_text(encoding="utf-8")
+    assert "<title>Façade &lt;7&gt;</title>" in text
+    assert not re.search(r"https?://|<script|<link|src=\"(?!data:)", text)
+    pictures = re.findall(r'src="data:image/png;base64,([^"]*)"', text)
+    sizes = [Image.open(BytesIO(base64.b64decode(data))).size for data in pictures]
+    assert len(sizes) == 3  # the sketch, and a history for each of two motions
+    assert min(min(size) for size in sizes) > 400
+    for said in ("3 cores", "mortar", "Does it stand?", "2000 kg/m³", "1 x 2 m, sill 0 m", "breaks at 2 mm"):
+        assert said in text
+    for said in ("5e+08 N/m³", f"{MOTION.name}, reversed", "peak/alpha", "one record proves little", mr.__version__):
+        assert said in text
+    assert "both polarities" not in text
+    assert ANSWER.message in text.replace("&#x27;", "'")
+
+
+@pytest.mark.slow
+def test_the_same_report_is_the_same_bytes(tmp_path):
+    paths = [mr.report(CASE, ANSWER, tmp_path / name) for name in ("a.html", "b.html")]
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+    assert "in both polarities" in paths[0].read_text()
+
+
+def test_a_sketch_names_values_or_arguments():
+    case = mr.Case(WALL, 0.0, 1.0, side_stop=mr.SideStop(3.0), effects=EFFECTS)
+    section = mr.plotting.sketch(case).axes[0]
+    texts = "\n".join(text.get_text() for text in section.texts)
+    for said in ("4.2 m", "0.6 m", "stop 3 m", "breaks at 2 mm", "0.5 kN outwards", "5 kN downwards", "200 kg"):
+        assert said in texts
+    section = mr.plotting.sketch(case, arguments=True).axes[0]
+    texts = "\n".join(text.get_text() for text in section.texts)
+    for said in ("Tie(height", "Thrust(height, force)", "Load(", "AddedMass(", "SideStop(top)", "Damper("):
+        assert said in texts
+
+
+@pytest.mark.parametrize(
+    ("changed", "complaint"),
+    [
+        ({"path": "facade.pdf"}, "path = 'facade.pdf' does not end in .html"),
+        ({"responses": []}, "responses is empty"),
+        ({"responses": 3}, "responses = 3 of type int"),
+        ({"responses": [3]}, r"responses\[0\] = 3"),
+        ({"labels": ["a", "b"]}, "labels has 2 texts for 1 responses"),
+        ({"basis": {"k": "?"}}, "basis has 'k', which is none of"),
+        ({"basis": "mortar"}, "basis = 'mortar'"),
+        ({"title": 3}, "title = 3"),
+        ({"e": 3}, "e = 3"),
+        ({"case": mr.Case(mr.Block.from_size(0.5, 4.2), 0.0, 1.0)}, r"responses\[0\] is of"),
+    ],
+)
+def test_what_cannot_be_reported(changed, complaint, tmp_path):
+    given = {"case": CASE, "responses": ANSWER, "path": "facade.html"} | changed
+    given["path"] = tmp_path / given["path"]
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        mr.report(**given)
+    assert not list(tmp_path.iterdir())
+
+
+def test_masonry_has_no_report(tmp_path):
+    column = mr.Masonry.stack([mr.Block(0.3, 2.1)], 5e8)
+    answer = mr.simulate(mr.MasonryCase(column, 0.05))
+    with pytest.raises(TypeError, match=r"responses\[0\] is that of masonry"):
+        mr.report(CASE, answer, tmp_path / "a.html")
