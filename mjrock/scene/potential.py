@@ -117,10 +117,7 @@ def _energies(
 def breaks(ties: Ties, q: Array, freedom: Freedom) -> Integers:
     """The first step of a motion at whose pose each tie is longer than its limit, or the number of steps, shape (t,).
 
-    Args:
-        ties: the ties, none of which has yielded.
-        q: poses, shape (steps, n nq).
-        freedom: of the bodies.
+    No tie has yielded before. Poses have the shape (steps, n nq).
     """
     broken = np.full(len(ties.k), len(q))
     if np.isfinite(ties.limit).any():
@@ -133,10 +130,8 @@ def _breaks(ties: Ties, q: Array, axes: tuple[int, ...], frames: Array, broken: 
     for step in range(len(q)):
         take_frames(q[step], frames, axes)
         for i in range(len(broken)):
-            if (
-                broken[i] == len(q)
-                and ties.reach[i] - slack(ties, i, frames, q[step], q[step], axes).value > (ties.limit[i])
-            ):
+            longer = ties.reach[i] - slack(ties, i, frames, q[step], q[step], axes).value > ties.limit[i]
+            if longer and broken[i] == len(q):
                 broken[i] = step
 
 
