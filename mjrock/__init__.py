@@ -28,12 +28,14 @@ if TYPE_CHECKING:
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
     from .problem.damping.contacts import Contacts
     from .problem.damping.forms import PowerLaw
+    from .problem.damping.inputs import MASONRY_TYPES, MasonryType, StiffnessRange, crushed_inset, stiffness_range
     from .problem.damping.interface import Interface, reference_frequency
     from .problem.damping.law import CALIBRATED, CALIBRATED_BED, PUBLISHED, DampingLaw
     from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
     from .problem.damping.restitution import Restitution
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
     from .problem.ground.motion import GroundMotion
+    from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.case import MasonryCase
     from .problem.masonry.joints import Joint
     from .problem.masonry.masonry import Masonry
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
     from .problem.wall.damper import Damper
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
     from .problem.wall.section import Opening
-    from .quantities import GRAVITY
+    from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
     from .result.compare import Comparison, compare
@@ -57,12 +59,17 @@ if TYPE_CHECKING:
     from .study.analysis import Analysis, MasonryAnalysis
     from .study.calibration import Plan, calibrate
     from .study.campaign import campaign, results
+    from .study.capacities import PairedRatio, fit_capacities, lost, paired_ratio
+    from .study.capacity import Capacity
     from .study.contacts_by_matching import as_theory, matched_contacts
-    from .study.fragility import fit_fragility
+    from .study.fragility import Fragility, fit_fragility
     from .study.grid import Grid
     from .study.ida import ida, overturning_intensity
     from .study.masonry_by_matching import matched_masonry
+    from .study.mechanism import MechanismCheck, mechanism_check
     from .study.pushover import pushover
+    from .study.rocking_spectrum import RockingSpectrum, rocking_spectrum
+    from .study.sensitivity import Sensitivity, sensitivity
     from .study.store import Store
     from .theory.analytical import solve_analytical
     from .theory.impact import RigidImpact, rigid_impact
@@ -71,10 +78,12 @@ __all__ = [
     "CALIBRATED",
     "CALIBRATED_BED",
     "GRAVITY",
+    "MASONRY_TYPES",
     "PUBLISHED",
     "AddedMass",
     "Analysis",
     "Block",
+    "Capacity",
     "Case",
     "Comparison",
     "ContactParameters",
@@ -82,9 +91,11 @@ __all__ = [
     "CoulombFriction",
     "Damper",
     "DampingLaw",
+    "Fragility",
     "Grid",
     "GroundMotion",
     "Impact",
+    "Implausible",
     "InspectedContact",
     "Interface",
     "Joint",
@@ -95,20 +106,27 @@ __all__ = [
     "MasonryAnalysis",
     "MasonryCase",
     "MasonryResponse",
+    "MasonryType",
     "MeasuredContact",
+    "MechanismCheck",
     "Opening",
     "Outcome",
     "PairContact",
     "PairContacts",
+    "PairedRatio",
     "Plan",
     "Polygon",
     "PowerLaw",
     "Response",
+    "ResponseSpectrum",
     "Restitution",
     "RigidImpact",
+    "RockingSpectrum",
     "Scene",
+    "Sensitivity",
     "SideStop",
     "SimulationError",
+    "StiffnessRange",
     "Store",
     "Thrust",
     "Tie",
@@ -122,29 +140,40 @@ __all__ = [
     "contact_parameters",
     "contact_stiffness",
     "contacts_for",
+    "crushed_inset",
+    "fit_capacities",
     "fit_fragility",
     "hertz_stiffness",
     "ida",
     "inspect_contacts",
     "joint_stiffness",
     "layered_stiffness",
+    "lost",
     "masonry_mjcf",
     "masonry_scene",
     "matched_contacts",
     "matched_masonry",
     "measured_contact",
     "measured_stiffness",
+    "mechanism_check",
     "mjcf_of",
     "overturning_intensity",
+    "paired_ratio",
     "pushover",
     "reference_frequency",
     "report",
+    "response_spectrum",
     "results",
     "rigid_impact",
+    "rocking_spectrum",
+    "scaled_to_sa",
+    "scaled_to_spectrum",
     "scene_of",
+    "sensitivity",
     "simulate",
     "solve_analytical",
     "solve_compliant",
+    "stiffness_range",
     "wall_mjcf",
     "wall_scene",
     "wall_stiffness",
@@ -162,12 +191,14 @@ HOMES = {
     "engine.text": "masonry_mjcf mjcf_of wall_mjcf",
     "problem.damping.contacts": "Contacts",
     "problem.damping.forms": "PowerLaw",
+    "problem.damping.inputs": "MASONRY_TYPES MasonryType StiffnessRange crushed_inset stiffness_range",
     "problem.damping.interface": "Interface reference_frequency",
     "problem.damping.law": "CALIBRATED CALIBRATED_BED PUBLISHED DampingLaw",
     "problem.damping.measured": "MeasuredContact hertz_stiffness measured_contact",
     "problem.damping.restitution": "Restitution",
     "problem.damping.stiffness": "joint_stiffness layered_stiffness measured_stiffness wall_stiffness",
     "problem.ground.motion": "GroundMotion",
+    "problem.ground.spectrum": "ResponseSpectrum response_spectrum scaled_to_sa scaled_to_spectrum",
     "problem.masonry.case": "MasonryCase",
     "problem.masonry.joints": "Joint",
     "problem.masonry.masonry": "Masonry",
@@ -177,7 +208,7 @@ HOMES = {
     "problem.wall.damper": "Damper",
     "problem.wall.effects": "AddedMass Load SideStop Thrust Tie",
     "problem.wall.section": "Opening",
-    "quantities": "GRAVITY",
+    "quantities": "GRAVITY Implausible",
     "reference.compliant": "solve_compliant",
     "reporting.page": "report",
     "result.compare": "Comparison compare",
@@ -191,12 +222,17 @@ HOMES = {
     "study.analysis": "Analysis MasonryAnalysis",
     "study.calibration": "Plan calibrate",
     "study.campaign": "campaign results",
+    "study.capacities": "PairedRatio fit_capacities lost paired_ratio",
+    "study.capacity": "Capacity",
     "study.contacts_by_matching": "as_theory matched_contacts",
-    "study.fragility": "fit_fragility",
+    "study.fragility": "Fragility fit_fragility",
     "study.grid": "Grid",
     "study.ida": "ida overturning_intensity",
     "study.masonry_by_matching": "matched_masonry",
+    "study.mechanism": "MechanismCheck mechanism_check",
     "study.pushover": "pushover",
+    "study.rocking_spectrum": "RockingSpectrum rocking_spectrum",
+    "study.sensitivity": "Sensitivity sensitivity",
     "study.store": "Store",
     "theory.analytical": "solve_analytical",
     "theory.impact": "RigidImpact rigid_impact",

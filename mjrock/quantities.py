@@ -29,6 +29,10 @@ MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 
 
+class Implausible(UserWarning):
+    """A value that can be, and is most often one in another unit or of another wall."""
+
+
 def keep(instance: object, **checked: object) -> None:
     """Set fields of a frozen dataclass to what their checks returned, while it is made.
 

@@ -9,6 +9,7 @@ from .masonry import blocks
 from .pushing import moment_rotation, pushover
 from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
+from .tornado import tornado
 
 __all__ = [
     "MODES",
@@ -43,5 +44,6 @@ __all__ = [
     "single",
     "sketch",
     "ties",
+    "tornado",
     "work_precision",
 ]

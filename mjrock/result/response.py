@@ -17,7 +17,7 @@ from ..problem.wall.case import Case
 from ..quantities import Array, named, require_path
 from .joints import JointMotion
 from .ledger import Ledger
-from .rocking import Impact, Rocking, restitution_of
+from .rocking import Impact, Rocking, displacement_at, restitution_of
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
 
@@ -89,8 +89,7 @@ class Response:
     @property
     def peak(self) -> Array:
         """Largest |rotation| of each body among the samples [rad], shape (bodies,)."""
-        peak: Array = np.abs(self.pose[:, :, 2]).max(axis=0)
-        return peak
+        return np.asarray(np.abs(self.pose[:, :, 2]).max(axis=0))
 
     @property
     def energy_residual(self) -> Array | None:
@@ -137,6 +136,10 @@ class Response:
         """Rotation maxima |theta| of a wall [rad], the release first, shape (m,)."""
         return self.of_wall[1].peaks
 
+    def displacement(self, z: float) -> Array:
+        """Horizontal displacement of the middle of a wall at the height z, from rest, seen from the base [m], (n,)."""
+        return displacement_at(self.of_wall[0], self.pose[:, 0], z)
+
     @property
     def opening(self) -> Array:
         """Largest gap of each joint of masonry [m], shape (joints,)."""
@@ -166,8 +169,7 @@ class Response:
     @property
     def restitution(self) -> Array:
         """|e| of each rebound of a wall, from successive peaks [-], see `Rocking.restitution`."""
-        case, rocking = self.of_wall
-        return rocking.restitution(case)
+        return self.of_wall[1].restitution(self.of_wall[0])
 
     @property
     def settled_restitution(self) -> Array:
@@ -207,7 +209,7 @@ class Response:
             columns |= {"theta [rad]": self.theta, "omega [rad/s]": self.omega}
         columns["energy [J]"] = self.energy
         for i, body in enumerate(self.bodies):
-            of = "" if self.rocking is not None else f" of {body}"
+            of = f" of {body}" if self.rocking is None else ""
             for j, (name, unit) in enumerate((("x", "m"), ("z", "m"), ("rotation", "rad"))):
                 columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
         for motion, name in ((self.case.motion, "horizontal"), (self.case.vertical, "vertical")):

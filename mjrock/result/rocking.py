@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problem.wall.case import Case
-from ..quantities import Array
+from ..quantities import Array, require_within
 
 
 class Impact(NamedTuple):
@@ -87,3 +87,20 @@ def restitution_of(leaving: Array, reaching: Array) -> Array:
     """|e| between successive peaks, from their energies [-]. It is NaN after a peak of no energy."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.sqrt(reaching[1:] / leaving[:-1])
+
+
+def displacement_at(case: Case, pose: Array, z: float) -> Array:
+    """Horizontal displacement of the middle of a wall at the height z [m], shape (n,).
+
+    Args:
+        case: the case of the wall.
+        pose: displacement x, z of the centroid [m] and rotation [rad], shape (n, 3).
+        z: height above the base at rest [m].
+
+    Raises:
+        ValueError: for a height that is not on the wall.
+    """
+    wall = case.wall
+    above = require_within("height z", z, 0.0, 2 * wall.h * (1 + 1e-12), "m") - wall.centroid_height
+    moved: Array = pose[:, 0] + above * np.sin(pose[:, 2]) + wall.centroid_offset * (1 - np.cos(pose[:, 2]))
+    return moved

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effects import Tie
-from ..quantities import keep, require_kind, shown, spelt
+from ..quantities import Implausible, keep, require_kind, shown, spelt
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
 from ..result.ties import Plastic
@@ -117,6 +118,8 @@ class Analysis:
         needed = "e" if self.solver == "analytical" else "contacts"
         if getattr(self, needed) is None:
             raise ValueError(f"the solver {self.solver} needs {needed}")
+        if self.solver == "analytical" and self.e is not None and (doubt := self.e.doubt(case.wall, case.stop_top)):
+            warnings.warn(doubt, Implausible, stacklevel=4)
         if self.contacts is not None and self.solver != "analytical":
             self.contacts.require_fit(case.block, side_stop=case.one_sided)
 

@@ -13,7 +13,7 @@ from ..problem.damping.contacts import Contacts, required_frictions, required_la
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.block import Block
 from ..problem.wall.effects import SideStop
-from ..quantities import require_flag, require_kind, require_whole, require_within
+from ..quantities import Implausible, require_flag, require_kind, require_whole, require_within
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Match, highest_branch
 
 RIGID = 16.0
@@ -88,6 +88,9 @@ def matched_contacts(
     friction, side_friction = required_frictions(friction, side_friction)
     if k_side is not None:
         e.require_rebound()
+    top = 2 * wall.h if not isinstance(side_stop, SideStop) else min(side_stop.top, 2 * wall.h)
+    if doubt := e.doubt(wall, top if k_side is not None else None):
+        warnings.warn(doubt, Implausible, stacklevel=2)
     standing = Standing(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
     options = {"accuracy": accuracy, "friction": friction, "side_friction": side_friction}
     base = Match(standing, e, points, **options)  # type: ignore[arg-type]
@@ -105,6 +108,7 @@ def matched_contacts(
         friction=friction,
         side_friction=side_friction,
         law="matched",
+        stop_top=None if k_side is None else top,
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..quantities import spelt
+from ..quantities import shown, spelt
 from .campaign_task import Refused
 
 
@@ -57,9 +57,9 @@ class Grid(Sequence[Any]):
         try:
             task = self.build(**point)
         except ValueError as error:
-            shown = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
-            raise ValueError(f"{error} (at {shown})") from error
-        return replace(task, labels=self._labels(point) | dict(task.labels))
+            at = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
+            raise ValueError(f"{error} (at {at})") from error
+        return labelled(task, self._labels(point))
 
     def _point(self, index: int) -> dict[str, Any]:
         places = np.unravel_index(index, [len(values) for values in self.axes.values()])
@@ -67,10 +67,25 @@ class Grid(Sequence[Any]):
 
     @staticmethod
     def _labels(point: Mapping[str, object]) -> dict[str, object]:
-        return {name: _label(value) for name, value in point.items()}
+        return {name: label_of(value) for name, value in point.items()}
 
 
-def _label(value: object) -> object:
+def labelled(task: Any, labels: Mapping[str, object]) -> Any:
+    """The task with these labels; its own count where both have one of a name.
+
+    Raises:
+        TypeError: for what is no task.
+    """
+    if not hasattr(task, "labels"):
+        raise TypeError(f"build gives {shown(task)}, which is no task of a campaign, such as an Analysis")
+    labels = dict(labels) | dict(task.labels)
+    if hasattr(task, "labelled"):
+        return task.labelled(labels)
+    return replace(task, labels=labels)
+
+
+def label_of(value: object) -> object:
+    """What a table says of the value of an axis, see `Grid`."""
     if isinstance(value, np.generic):
         value = value.item()
     return value if value is None or isinstance(value, str | int | float) else getattr(value, "name", spelt(value))

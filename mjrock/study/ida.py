@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,10 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, require_increasing, require_kind, require_within, shown
+from ..quantities import Array, Implausible, require_increasing, require_kind, require_within, shown
 from .analysis import Analysis
 from .campaign import completed
 from .campaign_task import Row
+from .capacities import lost
+from .capacity import bracket, halved
+from .fragility import Fragility, fit_fragility, labels_of
 
 Build = Callable[[float], Analysis]
 
@@ -43,6 +47,27 @@ class IncrementalAnalysis:
         """
         fell = np.isinf(self.peaks)
         return np.where(fell.any(axis=1), self.scales[fell.argmax(axis=1)], math.nan)
+
+    def fragility(self, groups: ArrayLike | None = None, **options: Any) -> Fragility:
+        """The fragility curve of these runs, with the records as groups, see `fit_fragility` and `lost`.
+
+        Records that overturn the wall at no scale count: every run does, and not the capacities alone.
+
+        Args:
+            groups: what each record belongs to, where both polarities of a record stand for one, shape (records,);
+                None takes each as a record of its own.
+            options: `resamples` and `seed` of `fit_fragility`.
+
+        Raises:
+            TypeError, ValueError: as `fit_fragility`, and for groups of another number.
+        """
+        own = np.arange(len(self.records)) if groups is None else labels_of(groups)
+        if own.shape != (len(self.records),):
+            raise ValueError(f"groups has the shape {own.shape}; ({len(self.records)},) is needed")
+        used = self.scales > 0
+        fell = np.array([lost(rows) for rows in self.rows]).reshape(self.peaks.shape)[:, used]
+        levels = self.scales[used]
+        return fit_fragility(np.tile(levels, len(own)), fell.ravel(), np.repeat(own, len(levels)), **options)
 
     def percentiles(self, shares: Sequence[float] = (16, 50, 84)) -> Array:
         """Peaks over all records that these shares of the records stay below [-], shape (shares, scales).
@@ -99,27 +124,46 @@ def ida(
     return IncrementalAnalysis(tuple(builds), levels, peaks, table)
 
 
-def overturning_intensity(build: Build, low: float, high: float, *, tolerance: float = 1e-3) -> float:
+def overturning_intensity(
+    build: Build,
+    low: float | None = None,
+    high: float | None = None,
+    *,
+    tolerance: float = 1e-3,
+    start: float = 1.0,
+) -> float:
     """A scale at which a record overturns a wall, while at a scale that is hardly lower it does not.
 
-    The interval from `low` to `high` is halved until it is as narrow as asked. A wall may overturn at a scale and stand
-    at a higher one. There may then be several such scales, and this is one of them; `ida` shows all.
+    The interval from `low` to `high` is halved until it is as narrow as asked. Without them the scale goes up from
+    `start` by a quarter at a time until the wall falls, or down until it stands. A wall may overturn at a scale and
+    stand at a higher one. There may then be several such scales, and this is one of them; `ida` shows all.
 
     Args:
         build: `build(scale)` makes the `Analysis` of a scale.
-        low: a scale at which the wall does not overturn, not negative.
-        high: a scale at which it does, above `low`.
+        low: a scale at which the wall does not overturn, not negative; None to search for it.
+        high: a scale at which it does, above `low`; None to search for it. Both are given, or neither.
         tolerance: how far below the answer the wall may be known to stand, over the answer [-], 1e-9 to 0.5.
+        start: where the search starts, 1e-6 to 1e6.
 
     Returns:
         The upper end of the last interval.
 
     Raises:
         TypeError: if `build` is no function, or returns no `Analysis`.
-        ValueError: for a value outside its range, or if the wall overturns at `low` or does not at `high`.
+        ValueError: for a value outside its range, if the wall overturns at `low` or does not at `high`, or if no scale
+            from 1e-6 to 1e3 times the start parts the two.
     """
-    low, high = require_within("low", low, 0.0, 1e12), require_within("high", high, 0.0, 1e12)
     tolerance = require_within("tolerance", tolerance, 1e-9, 0.5)
+    start = require_within("start", start, 1e-6, 1e6)
+
+    def falls(scale: float) -> bool:
+        return _peak(build, scale) == math.inf
+
+    if low is None and high is None:
+        return halved(falls, *bracket(falls, start), tolerance)[1]
+    if low is None or high is None:
+        raise ValueError(f"low = {low} and high = {high}: give both, or neither")
+    low, high = require_within("low", low, 0.0, 1e12), require_within("high", high, 0.0, 1e12)
     if not low < high:
         raise ValueError(f"high = {high:g} is outside the valid range, which is above low = {low:g}")
     peaks = [_peak(build, scale) for scale in (low, high)]
@@ -130,13 +174,7 @@ def overturning_intensity(build: Build, low: float, high: float, *, tolerance: f
             f"high = {high:g}: the wall does not overturn at that scale, its largest rotation is "
             f"{peaks[1]:.4g} alpha; give a higher one"
         )
-    while high - low > tolerance * high:
-        middle = 0.5 * (low + high)
-        if _peak(build, middle) == math.inf:
-            high = middle
-        else:
-            low = middle
-    return high
+    return halved(falls, low, high, tolerance)[1]
 
 
 def _peak(build: Build, scale: float) -> float:
@@ -153,7 +191,9 @@ def built(build: Build, scale: float, name: str) -> Analysis:
     """
     if not callable(build):
         raise TypeError(f"{name} = {shown(build)} is no function of a scale")
-    analysis = build(scale)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="the record peaks at ", category=Implausible)  # low scales are meant
+        analysis = build(scale)
     if not isinstance(analysis, Analysis):
         raise TypeError(f"{name}({scale:g}) = {shown(analysis)} is not an Analysis")
     return analysis

@@ -68,7 +68,13 @@ CALLS = OF_NUMBERS | {
     "law.reach": (mr.CALIBRATED.reach, {"wall": WALL, "k_n": 5e8, "amplitude": 0.5}),
     "law.covers": (mr.CALIBRATED.covers, {"wall": WALL, "e": E, "k_n": 5e8, "k_side": 5e8, "amplitude": 0.5}),
     "reference_frequency": (mr.reference_frequency, {"wall": WALL, "k_n": 5e8, "points": 2}),
-    "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL}),
+    "wall_stiffness": (mr.wall_stiffness, {"E": 1e9, "wall": WALL, "points": 2}),
+    "stiffness_range": (
+        mr.stiffness_range,
+        {"wall": WALL, "E": 1e9, "joint": (1e9, 0.01), "frequency": 4.0, "points": 2},
+    ),
+    "StiffnessRange": (mr.StiffnessRange, {"low": 1e8, "best": 2e8, "high": 3e8, "basis": "a guess"}),
+    "crushed_inset": (mr.crushed_inset, {"wall": WALL, "f_c": 2e6, "load": 1e3}),
     "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
     "layered_stiffness": (
         lambda stiffnesses: mr.layered_stiffness(*stiffnesses) if isinstance(stiffnesses, tuple) else
@@ -128,19 +134,36 @@ CALLS = OF_NUMBERS | {
     "scene_of, masonry": (mr.scene_of, {"case": mr.MasonryCase(COLUMN, 0.02), "contacts": None}),
     "mjcf_of": (mr.mjcf_of, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
     "overturning_intensity": (
-        mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1},
+        mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1, "start": 1.0},
     ),
+    "Capacity": (mr.Capacity, {"analysis": pushed(1.0), "tolerance": 0.1, "start": 1.0}),
+    "fit_fragility": (
+        mr.fit_fragility,
+        {
+            "intensity": [1.0, 2.0, 3.0, 4.0, 2.5, 3.5], "overturned": [0, 0, 1, 1, 1, 0], "groups": range(6),
+            "resamples": 20, "seed": 0,
+        },
+    ),
+    "fit_capacities": (
+        mr.fit_capacities, {"capacities": [1.0, 2.0, 3.0, 4.0, 5.0], "groups": None, "resamples": 20, "seed": 0},
+    ),
+    "paired_ratio": (
+        mr.paired_ratio, {"capacities": [1.0, 2.0], "over": [1.0, 1.5], "groups": ["a", "b"], "confidence": 0.9},
+    ),
+    "lost": (mr.lost, {"rows": [{"outcome": "at rest", "peak_over_alpha": 0.1}]}),
+    "response_spectrum": (mr.response_spectrum, {"motion": MOTION, "periods": [0.5, 1.0], "damping": 0.05}),
+    "scaled_to_sa": (mr.scaled_to_sa, {"motion": MOTION, "period": 0.5, "sa": 2.0, "damping": 0.05}),
+    "scaled_to_spectrum": (
+        mr.scaled_to_spectrum, {"motion": MOTION, "periods": [0.5, 1.0], "target": [2.0, 1.0], "damping": 0.05},
+    ),
+    "rocking_spectrum": (
+        mr.rocking_spectrum, {"motion": MOTION, "R": [2.0], "slenderness": 7.0, "side_stop": True, "rtol": 1e-4},
+    ),
+    "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
         mr.matched_contacts,
         {"wall": WALL, "e": E, "k_base": 5e8, "points": 2, "amplitude": 0.5, "friction": None, "accuracy": 1e-2},
-    ),
-    "fit_fragility": (
-        mr.fit_fragility,
-        {
-            "intensity": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], "overturned": [0, 0, 1, 0, 1, 1], "groups": None,
-            "resamples": 20, "seed": 0,
-        },
     ),
     "as_theory": (mr.as_theory, {"wall": WALL, "e": E, "side_stop": False, "rebounds": 2, "amplitude": 0.5}),
     "Polygon": (
@@ -223,6 +246,8 @@ STANDS_FOR = {
     "theta0": "release rotation",
     "omega0": "release velocity",
     "frequency": "reference frequency",
+    "E": "modulus E",
+    "f_c": "compressive strength",
     "contacts": "the base contacts",
     "wall": "alpha",
 }
@@ -280,6 +305,8 @@ def test_every_public_entry_is_tried():
         "CALIBRATED", "CALIBRATED_BED", "PUBLISHED", "GRAVITY", "Comparison", "ContactParameters", "Impact", "Ledger",
         "Outcome", "Response", "MasonryResponse", "RigidImpact", "Joint", "SimulationError", "__version__", "PowerLaw",
         "DampingLaw", "Scene", "Analysis", "MasonryAnalysis", "Grid", "Store", "campaign", "ida", "results",
+        "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
+        "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact",

@@ -19,7 +19,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DO
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
 RUNS = ["stiffness.md", "law_and_step.md", "solvers.md"]
-LONG = ["tutorial.md", "analysis.md", "masonry.md", "impacts.md"]
+LONG = ["tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "impacts.md"]
 """Pages whose lines run."""
 
 

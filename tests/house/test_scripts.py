@@ -47,6 +47,8 @@ WRITES = {
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
+    "fragility_coverage": {"fragility_coverage.txt"},
+    "sensitivity": {f"sensitivity.{ending}" for ending in ("png", "txt", "sqlite")},
     "sketch": {"sketch.png"},
     "first_pictures": {"effects.png", "tutorial.png"},
     "speed": {"speed.txt"},
@@ -67,6 +69,8 @@ def main_of(name):
 
 
 LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
+    "sensitivity",
+    "fragility_coverage",
     "agreement",
     "polarity",
     "overturning_spectrum",

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from mjrock.study.fragility import _resampled, fit_fragility
+from mjrock.study.fragility import fit_fragility
+from mjrock.study.probit import resampled
 
 
 def drawn(n, seed=0, median=0.4, dispersion=0.35):
@@ -122,15 +123,19 @@ def test_the_fit_is_the_top_of_the_likelihood():
     np.testing.assert_allclose(-np.linalg.inv(second), fit.covariance, rtol=1e-3)
 
 
-def test_resamples_that_have_no_curve_count_as_what_they_are():
+def test_resamples_that_have_no_curve_take_a_finite_one_and_are_counted():
     x = np.array([0.2, 0.3, 0.4, 0.5, 0.6, 0.7])
     fell = np.array([False, False, True, False, True, True])
     weights = np.array([[1, 1, 0, 0, 1, 1], [1, 1, 0, 1, 0, 0], [0, 0, 1, 0, 1, 1], [0, 0, 3, 3, 0, 0], [1] * 6])
-    found = _resampled(np.log(x), fell, weights)
-    np.testing.assert_allclose(found[0], [math.sqrt(0.3 * 0.6), 0.0])
-    np.testing.assert_array_equal(found[1:4, 0], [np.inf, 0.0, 0.0])
-    assert found[3, 1] == np.inf
-    np.testing.assert_allclose(found[4], [fit_fragility(x, fell).median, fit_fragility(x, fell).dispersion])
+    fits, without = resampled(np.log(x), fell, weights)
+    assert without == 4
+    assert 0.3 < fits[0, 0] < 0.6  # a step between the two
+    assert 0 < fits[0, 1] < 1
+    assert fits[1, 0] > 0.5  # all stood
+    assert fits[2, 0] < 0.4  # all fell
+    assert np.isfinite(fits[:3]).all()
+    assert fits[3, 1] == np.inf  # it falls with the intensity
+    np.testing.assert_allclose(fits[4], [fit_fragility(x, fell).median, fit_fragility(x, fell).dispersion])
 
 
 @pytest.mark.parametrize(

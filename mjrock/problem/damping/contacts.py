@@ -5,16 +5,24 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from ...quantities import require_kind, require_real, require_stiffness, require_text, require_within, shown
+from ...quantities import (
+    Implausible,
+    require_kind,
+    require_real,
+    require_stiffness,
+    require_text,
+    require_within,
+    shown,
+)
 from ..wall.block import Block
 from .interface import Interface, reference_frequency, require_points
 from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
-from .restitution import Restitution
+from .restitution import UNLIKE, Restitution
 
 HOLDS = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
@@ -85,11 +93,13 @@ class Contacts:
         base: the base, over the thickness of the wall.
         side: the side stop over the whole inner face, or None for a wall that never meets one.
         law: name of the damping law, recorded in the generated model.
+        stop_top: height that the side stop reaches for which the damping was chosen [m]; None does not say.
     """
 
     base: Interface
     side: Interface | None = None
     law: str = "given"
+    stop_top: float | None = field(default=None, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         require_kind("base", self.base, Interface)
@@ -117,10 +127,12 @@ class Contacts:
         friction: float | None = None,
         side_friction: float | None = None,
         law: str = "given",
+        stop_top: float | None = None,
     ) -> Contacts:
         """Interfaces of `wall` from stiffnesses [N/m3] and damping ratios [-]; no side stop without `k_side`.
 
-        Friction is that of `Interface`: by default the base holds and the side is smooth.
+        Friction is that of `Interface`: by default the base holds and the side is smooth. `stop_top` is that of
+        `Contacts`.
 
         Raises:
             ValueError: for a value outside its range, or a base too soft for the wall to stand on.
@@ -140,7 +152,7 @@ class Contacts:
                 f"base stiffness k_n = {k_base:g} N/m3 cannot hold the wall upright; "
                 f"the valid range is k_n > {least:.3g} N/m3"
             )
-        return cls(base, side, law)
+        return cls(base, side, law, stop_top=stop_top)
 
     @classmethod
     def from_law(
@@ -189,6 +201,8 @@ class Contacts:
                 warnings.warn(doubt, stacklevel=2)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
+        if unlikely := e.doubt(wall, None):
+            warnings.warn(unlikely, Implausible, stacklevel=2)
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall,
@@ -200,6 +214,7 @@ class Contacts:
             friction=friction,
             side_friction=side_friction,
             law=name,
+            stop_top=e.made_for and 2 * wall.h * e.made_for[1],
         )
 
     def faces(self, *, side_stop: bool) -> list[Interface]:
@@ -211,7 +226,18 @@ class Contacts:
 
         Raises:
             ValueError: if there is no side.
+
+        Warns:
+            Implausible: if the damping was chosen for a stop of another height.
         """
+        if self.stop_top is not None and not math.isclose(top, self.stop_top, rel_tol=UNLIKE):
+            warnings.warn(
+                f"the damping was chosen for a side stop up to {self.stop_top:.4g} m, and that of the case reaches "
+                f"{top:.4g} m; take Restitution.from_geometry(wall, stop_top={top:.4g}) and "
+                f"matched_contacts(..., side_stop=SideStop({top:.4g}))",
+                Implausible,
+                stacklevel=3,
+            )
         return self._stopping if top == self._stopping.face else replace(self._stopping, face=top)
 
     @property

@@ -9,8 +9,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ...quantities import Array, keep, require_kind, require_stiffness, require_whole, require_within
+from ...quantities import Array, Implausible, keep, require_kind, require_stiffness, require_whole, require_within
 from ..wall.block import Block
+
+LAWS_END = 0.3
+"""Highest damping ratio that the laws predict and searches try [-], see `mjrock.problem.damping.law`."""
 
 
 def require_points(points: object) -> int:
@@ -89,8 +92,13 @@ class Interface:
         )
         if self.friction is not None:
             keep(self, friction=require_within("friction", self.friction, 0.0, 10.0))
-        if self.xi > 1:
-            warnings.warn(f"xi = {self.xi:g} is {self.xi:.0%} of critical; damping ratios are fractions", stacklevel=3)
+        if self.xi > LAWS_END * (1 + 1e-9):
+            warnings.warn(
+                f"xi = {self.xi:g} is {self.xi:.0%} of critical, and the laws end at {LAWS_END:.0%}; "
+                "damping ratios are fractions",
+                Implausible,
+                stacklevel=3,
+            )
 
     def __repr__(self) -> str:
         held = "" if self.friction is None else f", friction {self.friction:.3g}"

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, field
 
-from ...quantities import keep, require_real, require_within
+from ...quantities import Implausible, keep, require_real, require_within
 from ..wall.block import Block
+
+UNLIKE = 1e-2
+"""Relative difference of alpha, and of the share of the height, from which a restitution is that of another wall [-].
+Masses that a case adds, or a small inset, change alpha by less or are worth a word."""
+LARGEST_ANGLE = 0.4
+"""Angle given for alpha above which it is taken for one in degrees [rad]; b/h is then above 0.42."""
 
 
 @dataclass(frozen=True)
@@ -16,6 +23,8 @@ class Restitution:
     Args:
         base: e_2s, one impact on the base, two-sided rocking [-], in (0, 1].
         side: e_side, the impact on the side stop [-], in [-1, 1]; negative where the wall rebounds.
+        made_for: alpha of the wall [rad] and the share of its height that the side stop reaches [-], where the values
+            come from the geometry; None does not say.
 
     Raises:
         ValueError: for a value outside its range.
@@ -23,6 +32,7 @@ class Restitution:
 
     base: float
     side: float
+    made_for: tuple[float, float] | None = field(default=None, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         keep(self, base=require_real("base restitution", self.base), side=require_real("side restitution", self.side))
@@ -35,6 +45,28 @@ class Restitution:
     def lumped(self) -> float:
         """e_1s = e_2s e_side e_2s: base, side, base in quick succession (Eq. 4) [-]."""
         return self.base**2 * self.side
+
+    def doubt(self, wall: Block, stop_top: float | None) -> str | None:
+        """How a wall and its side stop differ from those that the values were made for, in words; None if they do not.
+
+        Args:
+            wall: the wall.
+            stop_top: height that its side stop reaches [m], or None without one.
+        """
+        if self.made_for is None:
+            return None
+        alpha, share = self.made_for
+        if not math.isclose(alpha, wall.alpha, rel_tol=UNLIKE):
+            return (
+                f"the restitution is that of a wall of alpha = {alpha:.4g} rad, and this one has {wall.alpha:.4g} rad"
+            )
+        asked = share if stop_top is None else min(stop_top / (2 * wall.h), 1.0)
+        if abs(asked - share) > UNLIKE:
+            return (
+                f"the restitution is that of a side stop up to {share * 2 * wall.h:.4g} m, and this one reaches "
+                f"{asked * 2 * wall.h:.4g} m; take Restitution.from_geometry(wall, stop_top={asked * 2 * wall.h:.4g})"
+            )
+        return None
 
     def require_rebound(self) -> None:
         """Raise ValueError unless the wall rebounds from the side stop."""
@@ -72,13 +104,20 @@ class Restitution:
                         f"top of the side stop = {top:g} m is so low that the wall turns on over it, e_side = "
                         f"{side:.3g}; it rebounds from about two thirds of its height of {2 * wall.h:g} m on"
                     )
-                return cls(base, side)
+                return cls(base, side, made_for=(wall.alpha, top / (2 * wall.h)))
         elif stop_top is not None:
             raise TypeError("a side stop needs the wall, and not its alpha alone")
         alpha = wall.alpha if isinstance(wall, Block) else require_real("alpha", wall)
         if not 0 < alpha < math.asin(math.sqrt(2 / 3)):
             raise ValueError(f"alpha = {alpha:g} rad is outside the valid range 0 < alpha < 0.9553 rad of Eq. 2")
-        return cls(base=1 - 1.5 * math.sin(alpha) ** 2, side=1 - 1.5 * math.cos(alpha) ** 2)
+        if alpha > LARGEST_ANGLE and not isinstance(wall, Block):
+            warnings.warn(
+                f"alpha = {alpha:g} rad is {math.degrees(alpha):.3g} degrees; angles are radians",
+                Implausible,
+                stacklevel=2,
+            )
+        base, side = 1 - 1.5 * math.sin(alpha) ** 2, 1 - 1.5 * math.cos(alpha) ** 2
+        return cls(base, side, made_for=(alpha, 1.0))
 
     @classmethod
     def from_lumped(cls, lumped: float, wall: Block | float) -> Restitution:

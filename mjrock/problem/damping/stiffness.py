@@ -13,7 +13,7 @@ import math
 
 from ...quantities import require_kind, require_stiffness, require_within
 from ..wall.block import Block
-from .interface import reference_frequency
+from .interface import contact_lines, reference_frequency, require_points
 
 UNIT = 1e8
 """A stiffness whose frequency is scaled [N/m3]."""
@@ -38,22 +38,27 @@ def joint_stiffness(E: float, thickness: float) -> float:
     return require_stiffness("k_n = E / thickness", E / require_within("thickness", thickness, 1e-4, 1.0, "m"))
 
 
-def wall_stiffness(E: float, wall: Block) -> float:
-    """k_n = E / H of a base that stands for the shortening of the wall above it [N/m3].
+def wall_stiffness(E: float, wall: Block, points: int = 2) -> float:
+    """k_n = E / H of a base that stands for the elasticity of the wall above it [N/m3].
 
-    Use it where the wall is taken as rigid and its own elasticity is to be lumped into the base. The vertical stiffness
-    of the base is then that of a column of the height of the wall, E A / H. Masonry of 2 GPa and 4 m gives 5e8 N/m3. It
-    is a lower bound for a wall that presses on one edge: the pressure spreads over less than its height.
+    Use it where the wall is taken as rigid and its own elasticity is to be lumped into the base. Two corner lines of
+    E / H have the rotational stiffness 3 E I / H of a cantilever with a force at its top. On more lines k_n is larger,
+    up to 3 E / H of a bed, so that this rotational stiffness stays. Masonry of 2 GPa and 4 m gives 5e8 N/m3 on two
+    lines. It is a lower bound for a wall that presses on one edge: the pressure spreads over less than its height.
 
     Args:
         E: Young's modulus of the masonry [Pa], 1e5 to 1e12.
         wall: the wall.
+        points: contact lines a face.
 
     Raises:
         ValueError: for a modulus outside its range, or a stiffness outside 1e4 to 1e14 N/m3.
     """
     require_kind("wall", wall, Block)
-    return require_stiffness("k_n = E / H", require_within("modulus E", E, 1e5, 1e12, "Pa") / (2 * wall.h))
+    E = require_within("modulus E", E, 1e5, 1e12, "Pa")
+    x, widths = contact_lines(2 * wall.half_base, require_points(points))
+    fewer = 2 * wall.half_base**3 / float((widths * x**2).sum())
+    return require_stiffness("k_n = E / H", fewer * E / (2 * wall.h))
 
 
 def layered_stiffness(*stiffnesses: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,10 +11,24 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, Real, keep, require_kind, require_real, require_row, require_within, shown
+from ...quantities import (
+    GRAVITY,
+    Array,
+    Implausible,
+    Real,
+    keep,
+    require_kind,
+    require_real,
+    require_row,
+    require_within,
+    shown,
+)
 from .effects import AddedMass
 from .restoring_moment import Restoring, of_force, pose_of
 from .section import Moments, Opening, Profile, moments, require_openings, require_profile
+
+HEAVIEST = 4000.0
+"""Density above which that of a wall is taken for a weight [kg/m3]; basalt and iron ore have 3,000 to 4,000."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +74,12 @@ class Block:
         require_within("slenderness h/b", self.h / self.b, 1.0, 200.0)
         if not 0 <= self.inset < self.b:
             raise ValueError(f"inset = {self.inset:g} m is outside the valid range 0 <= inset < b = {self.b:g} m")
+        if self.density > HEAVIEST:
+            warnings.warn(
+                f"density = {self.density:g} kg/m3, and stone has up to {HEAVIEST:g} kg/m3: is it a weight in N/m3?",
+                Implausible,
+                stacklevel=3,
+            )
         self._require_parts()
         if not abs(self.centroid_offset) < self.half_base:
             raise ValueError(

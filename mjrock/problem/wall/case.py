@@ -11,11 +11,22 @@ from typing import TypeVar
 
 import numpy as np
 
-from ...quantities import ON_ITS_FACE, Array, Flags, keep, require_flag, require_kind, require_within, shown
+from ...quantities import (
+    ON_ITS_FACE,
+    Array,
+    Flags,
+    Implausible,
+    keep,
+    require_flag,
+    require_kind,
+    require_within,
+    shown,
+)
 from ..ground.motion import GroundMotion
 from .block import Block
 from .damper import Damper
 from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
+from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .ties_on_wall import Pull, stored, taken, yielded
 
@@ -41,6 +52,9 @@ class Case:
     Raises:
         ValueError: for a rotation beyond 90 degrees or into the side stop, a duration that is not positive, a motion
             of another type, an effect that is not on the wall, or effects that overturn the wall as it stands.
+
+    Warns:
+        Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
     """
 
     block: Block
@@ -66,17 +80,13 @@ class Case:
             duration=require_within("duration", self.duration, 1e-6, 1e6, "s"),
             omega0=require_within("release velocity omega0", self.omega0, -100.0, 100.0, "rad/s"),
         )
-        if abs(self.theta0) > 2 * self.block.alpha:
-            warnings.warn(
-                f"theta0 = {self.theta0:g} rad is {abs(self.theta0) / self.block.alpha:.3g} alpha: "
-                "the wall overturns from 1 alpha; rotations are radians",
-                stacklevel=3,
-            )
         for name in ("motion", "vertical"):
             value = getattr(self, name)
             if not (value is None or isinstance(value, GroundMotion)):
                 raise TypeError(f"{name} = {shown(value)} is not a GroundMotion")
         self._require_effects()
+        for doubt in doubts(self):
+            warnings.warn(doubt, Implausible, stacklevel=3)
 
     def _require_effects(self) -> None:
         """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""

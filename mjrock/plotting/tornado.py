@@ -1,0 +1,46 @@
+"""Pictures of what an answer depends on."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..study.sensitivity import Sensitivity
+
+BEYOND = 0.12
+"""How far right of the largest finite value an overturned wall is drawn, as a share of the range [-]."""
+
+
+def tornado(ax: Axes, found: Sensitivity) -> Axes:
+    """A bar for each setting, from the lowest to the highest value where it alone changes, the widest on top.
+
+    The bar "together" is the range of all runs. The vertical line is the base. A bar that reaches the dashed line has a
+    run in which the wall overturned.
+    """
+    bars = dict(found.swings)
+    if any(len(names) > 1 for names in found.changed):
+        bars["together"] = found.range
+    finite = found.values[np.isfinite(found.values)]
+    least, most = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    width = most - least or 0.1 * (abs(most) or 1.0)
+    edge = most + BEYOND * width
+    for i, (name, ends) in enumerate(bars.items()):
+        low, high = (edge if end == math.inf else end for end in ends)
+        colour = "0.75" if name == "together" else "#f0a35e" if name == found.governs else "#12406b"
+        ax.barh(i, high - low, left=low, color=colour, height=0.55)
+        for end, x, side, shift in zip(ends, (low, high), ("right", "left"), (-4, 4), strict=True):
+            text = found.written(end)
+            ax.annotate(text, (x, i), (shift, 0), textcoords="offset points", ha=side, va="center", fontsize=8)
+    if math.isfinite(found.base_value):
+        ax.axvline(found.base_value, color="0.15", linewidth=1.0)
+    if not np.isfinite(found.values).all():
+        ax.axvline(edge, color="0.15", linewidth=1.0, linestyle="--")
+    ax.set_yticks(range(len(bars)), list(bars))
+    ax.invert_yaxis()
+    right = 0.12 if np.isfinite(found.values).all() else 0.4  # room for the word at the end of a bar
+    ax.set_xlim(least - 0.2 * width, edge + right * width)
+    ax.set_xlabel(f"{found.measure}{f' [{found.unit}]' if found.unit else ''}")
+    ax.set_title(found.sentence, fontsize=10)
+    return ax

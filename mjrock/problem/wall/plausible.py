@@ -1,0 +1,111 @@
+"""What is odd about a case: values that can be, and that are most often in another unit. One sentence each."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ...quantities import GRAVITY
+from .effects import AddedMass, Load, Thrust, Tie
+from .ties_on_wall import pulled
+
+NEGLIGIBLE = 1e-4
+"""Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
+STIFFEST = 1e10
+"""Stiffness above which that of a tie is taken for a modulus [N/m]; a steel bar of 100 mm and 1 m has 1.6e9."""
+CUT_OFF = 0.2
+"""Share of the Arias intensity of a record that a run may leave out [-]."""
+IN_G = 1.0
+"""Peak up to which a record may be one in g that was read as m/s2 [m/s2]."""
+FAINT = 0.6
+"""Peak of a record over the acceleration at which the wall starts to rock, up to which it is odd to run it [-]."""
+BEYOND = 1.1
+"""Rotation of release over that which overturns the wall, up to which it may be a study of the limit [-]."""
+TOO_FAST = 3.0
+"""The same of the velocity of release [-]."""
+
+
+def doubts(case: Any) -> list[str]:
+    """What is odd about a `mjrock.Case`, in words; empty for a plausible one."""
+    return [*_of_release(case), *_of_motion(case), *_of_effects(case)]
+
+
+def _of_release(case: Any) -> list[str]:
+    limit = case.overturning_rotation
+    if abs(case.theta0) > BEYOND * limit > 0 and (case.theta0 > 0 or not case.lopsided):
+        return [
+            f"theta0 = {case.theta0:g} rad is {abs(case.theta0) / case.wall.alpha:.3g} alpha: the wall overturns from "
+            f"{limit / case.wall.alpha:.3g} alpha; rotations are radians"
+        ]
+    moment = case.restoring.towards(case.direction)
+    if case.released_outwards and not case.pulls and moment.alpha > 0:
+        most = float(moment.energy(moment.alpha))
+        if case.release_energy > TOO_FAST**2 * most:
+            speed = abs(case.omega0) / math.sqrt(case.release_energy / most)
+            return [
+                f"omega0 = {case.omega0:g} rad/s: {speed:.3g} rad/s overturn the wall already; velocities are in rad/s"
+            ]
+    return []
+
+
+def _of_motion(case: Any) -> list[str]:
+    motion = case.motion
+    if motion is None:
+        return []
+    found = []
+    start = max(case.restoring.outer.P, 0.0) / (case.wall.weight * case.wall.centroid_height)
+    peak = motion.peak / GRAVITY
+    at_rest = not case.omega0 and not case.theta0 and case.vertical is None
+    if 0 < peak < FAINT * start and start <= motion.peak <= IN_G and at_rest:
+        found.append(
+            f"the record peaks at {peak:.3g} g; this wall starts to rock at {start:.3g} g: is the record in g? "
+            "Accelerations are in m/s2"
+        )
+    if case.duration < motion.duration:
+        steps = max(round(case.duration / motion.dt), 1)
+        total, kept = float((motion.accel**2).sum()), float((motion.accel[: steps + 1] ** 2).sum())
+        if kept < (1 - CUT_OFF) * total:
+            found.append(
+                f"the run of {case.duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
+                f"{1 - kept / total:.0%} of its Arias intensity"
+            )
+    return found
+
+
+def _of_effects(case: Any) -> list[str]:
+    found = []
+    weight = case.block.weight
+    for i, effect in enumerate(case.effects):
+        name = f"effects[{i}], {type(effect).__name__}"
+        if isinstance(effect, Thrust | Load) and 0 < abs(effect.force) < NEGLIGIBLE * weight:
+            found.append(_too_little(name, "force", effect.force, weight))
+        elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE * case.block.mass:
+            found.append(f"{name}: mass = {effect.mass:g} kg, that of the wall {case.block.mass:.3g} kg: is it in t?")
+        elif isinstance(effect, Tie):
+            found += _of_tie(case, name, effect)
+    return found
+
+
+def _of_tie(case: Any, name: str, tie: Tie) -> list[str]:
+    """At most one doubt about a tie."""
+    if tie.strength < NEGLIGIBLE * case.block.weight:
+        return [_too_little(name, "strength", tie.strength, case.block.weight)]
+    if tie.stiffness > STIFFEST:
+        return [f"{name}: stiffness = {tie.stiffness:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"]
+    if math.isfinite(tie.strength) and tie.stretch > 2 * case.block.b:
+        return [
+            f"{name} yields at an elongation of {tie.stretch:.3g} m, and the wall is {2 * case.block.b:g} m thick: is "
+            "its stiffness in N/m?"
+        ]
+    pull = case.pulls[[effect for effect in case.effects if isinstance(effect, Tie)].index(tie)]
+    opens = float(pulled(pull, max(case.restoring.outer.alpha, case.wall.alpha), 1.0)[0]) + tie.slack
+    if tie.slack > opens > 0:
+        return [
+            f"{name}: slack = {tie.slack:g} m, and where it is held the wall opens by {opens:.3g} m until it "
+            "overturns: is the slack in m?"
+        ]
+    return []
+
+
+def _too_little(name: str, what: str, value: float, weight: float) -> str:
+    return f"{name}: {what} = {value:g} N, and the wall weighs {weight:.3g} N: is it in kN?"

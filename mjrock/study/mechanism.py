@@ -1,0 +1,170 @@
+"""The check of a local mechanism on its push-over curve, after the Italian commentary C8.7.1.2.1, clause by clause.
+
+The clauses are those of Circolare 21 gennaio 2019 n. 7. The single rigid block of a case is the mechanism. It stands at
+ground level and has no vibration of its own before it opens.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..problem.ground.motion import GroundMotion
+from ..problem.ground.spectrum import SHORTEST, response_spectrum
+from ..problem.wall.case import Case
+from ..problem.wall.effects import AddedMass
+from ..quantities import GRAVITY, Array, require_kind, require_real, require_within, shown
+from .pushover import pushover
+
+SHARE = {"SLV": 0.4, "SLC": 0.6}
+"""Displacement capacity over that at which the curve ends [-], C8.7.1.2.1.6."""
+PERIOD = {"SLV": 1.68 * math.pi, "SLC": 1.56 * math.pi}
+"""Factor of the equivalent period [-], equations C8.7.1.10 and C8.7.1.11."""
+DAMPING = {"SLV": 0.08, "SLC": 0.10}
+"""Equivalent damping ratio [-], C8.7.1.2.1.8."""
+BEHAVIOUR = 2.0
+"""Behaviour factor q of the linear check [-], C8.7.1.2.1.7."""
+PERIODS = 60
+"""Periods at which the spectrum of a record is looked at, up to the equivalent period."""
+
+Demand = GroundMotion | Callable[[float, float], float]
+"""A record, or an elastic displacement spectrum S_De(T, xi) [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitState:
+    """One limit state of the non-linear check.
+
+    Args:
+        capacity: spectral displacement that the mechanism may reach [m].
+        period: equivalent period [s].
+        demand: spectral displacement that the ground motion asks for [m].
+    """
+
+    capacity: float
+    period: float
+    demand: float
+
+    @property
+    def ratio(self) -> float:
+        """Capacity over demand [-]: the factor on the ground motion that uses the capacity up."""
+        return self.capacity / self.demand if self.demand > 0 else math.inf
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MechanismCheck:
+    """Every step of the check.
+
+    Args:
+        alpha_0: multiplier that starts the mechanism [-].
+        participation: e*, the participating share of the mass [-].
+        confidence_factor: FC [-].
+        d: spectral displacements of the capacity curve [m], shape (n,).
+        a: spectral accelerations [m/s2], shape (n,).
+        d_0: displacement at which the acceleration falls to zero [m].
+        states: the limit states SLV and SLC.
+    """
+
+    alpha_0: float
+    participation: float
+    confidence_factor: float
+    d: Array
+    a: Array
+    d_0: float
+    states: dict[str, LimitState]
+
+    @property
+    def a_0(self) -> float:
+        """Acceleration that starts the mechanism [m/s2]; the peak ground acceleration of its damage limit state."""
+        return self.alpha_0 * GRAVITY / (self.participation * self.confidence_factor)
+
+    @property
+    def linear(self) -> float:
+        """Peak ground acceleration of the linear check of the SLV with q = 2 [m/s2]."""
+        return BEHAVIOUR * self.a_0
+
+    def table(self) -> str:
+        """The steps with their clauses, as text."""
+        rows = [
+            ("multiplier alpha_0", f"{self.alpha_0:.4f}", "C8.7.1.1"),
+            ("participating mass e*", f"{self.participation:.4f}", "C8.7.1.5"),
+            ("confidence factor FC", f"{self.confidence_factor:.2f}", "C8.7.1.2.1.3"),
+            ("a_0 = alpha_0 g / (e* FC) [g], SLD", f"{self.a_0 / GRAVITY:.4f}", "C8.7.1.8"),
+            ("linear SLV, q a_0 with q = 2 [g]", f"{self.linear / GRAVITY:.4f}", "C8.7.1.2.1.7"),
+            ("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"),
+        ]
+        for name, state in self.states.items():
+            rows += [
+                (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
+                (f"T_{name} [s]", f"{state.period:.3f}", "C8.7.1.10" if name == "SLV" else "C8.7.1.11"),
+                (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
+                (f"capacity over demand {name}", f"{state.ratio:.2f}", ""),
+            ]
+        widths = [max(len(row[i]) for row in rows) for i in range(2)]
+        return "\n".join(f"{what:<{widths[0]}}  {value:>{widths[1]}}  {where}".rstrip() for what, value, where in rows)
+
+    def __repr__(self) -> str:
+        ratios = ", ".join(f"{name} {state.ratio:.2f}" for name, state in self.states.items())
+        return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
+
+
+def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.35) -> MechanismCheck:
+    """The kinematic check of a wall as a local mechanism, linear and non-linear, by Circolare 2019 n. 7, C8.7.1.2.1.
+
+    The push-over curve of the rigid wall becomes the capacity curve a(d) of an equivalent oscillator. Its displacement
+    capacities are shares of the displacement at which it ends. The demand is the elastic displacement at an equivalent
+    period: of a code's spectrum its value there, of a record the largest at any period up to it.
+
+    Loads have no mass here, and give no horizontal force. Ties count along the curve with the strength they have until
+    they break. Of the two conditions of C8.7.1.2.1.6 only the share of d_0 is looked at: whether a beam loses its seat
+    before is for the user. Amplification above the ground (C8.7.1.2.1.4) is not in it.
+
+    Args:
+        case: the wall and its effects; its release and its motion play no part.
+        demand: a record, or a function S_De(T, xi) that gives the elastic displacement [m] of a spectrum.
+        confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
+    """
+    require_kind("case", case, Case)
+    if not isinstance(demand, GroundMotion) and not callable(demand):
+        raise TypeError(f"demand = {shown(demand)} is neither a GroundMotion nor a function S_De(T, xi)")
+    factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
+    curve = pushover(case)
+    if not math.isfinite(curve.end):
+        raise ValueError("case has a push-over curve that does not end: its ties hold the wall; give them a strength")
+    wall = case.wall
+    weights, heights = _masses(case)
+    first, second = float(weights @ heights), float(weights @ heights**2)
+    participation = first**2 / (float(weights.sum()) * second)
+    moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
+    d = moved * second / (wall.centroid_height * first)
+    a = curve.multiplier * GRAVITY / (participation * factor)
+    d_0 = float(d[-1])
+    states = {}
+    for name, share in SHARE.items():
+        capacity = share * d_0
+        period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
+        states[name] = LimitState(capacity, period, _asked(demand, period, DAMPING[name]))
+    return MechanismCheck(float(curve.multiplier[0]), participation, factor, d, a, d_0, states)
+
+
+def _masses(case: Case) -> tuple[Array, Array]:
+    """Weights [N] and heights [m] of the wall and of the masses that the case adds to it."""
+    added = case.each(AddedMass)
+    weights = [case.block.mass, *(mass.mass for mass in added)]
+    heights = [case.block.centroid_height, *(mass.height for mass in added)]
+    return GRAVITY * np.array(weights), np.array(heights)
+
+
+def _asked(demand: Demand, period: float, damping: float) -> float:
+    """The displacement that is asked for at a period [m]."""
+    if isinstance(demand, GroundMotion):
+        periods = np.geomspace(min(0.05, period), max(period, SHORTEST), PERIODS)
+        return float(response_spectrum(demand, periods, damping).Sd.max())
+    asked = require_real("demand(T, xi)", demand(period, damping))
+    return require_within("demand(T, xi)", asked, 0.0, 1e3, "m")

@@ -1,0 +1,59 @@
+"""The check of a local mechanism: every step against its closed form for one block."""
+
+import math
+
+import pytest
+
+import mjrock as mr
+
+WALL = mr.Block.from_size(0.9, 12.0, 10.0, 1900.0)
+CASE = mr.Case(WALL, 0.0, 1.0)
+
+
+def test_the_steps_of_a_plain_wall():
+    found = mr.mechanism_check(CASE, lambda T, xi: 0.1, confidence_factor=1.2)
+    assert found.alpha_0 == pytest.approx(WALL.b / WALL.h)
+    assert found.participation == pytest.approx(1.0)
+    assert found.a_0 == pytest.approx(mr.GRAVITY * WALL.b / WALL.h / 1.2)
+    assert found.linear == pytest.approx(2 * found.a_0)
+    slv, slc = found.states["SLV"], found.states["SLC"]
+    assert found.d_0 == pytest.approx(WALL.b, rel=0.01)  # the centroid stands above the toe
+    assert slv.capacity == pytest.approx(0.4 * found.d_0)
+    assert slc.capacity == pytest.approx(0.6 * found.d_0)
+    # the curve falls nearly linearly, a = a_0 (1 - d / d_0)
+    assert slv.period == pytest.approx(1.68 * math.pi * math.sqrt(0.4 * found.d_0 / (0.6 * found.a_0)), rel=0.01)
+    assert slc.period == pytest.approx(1.56 * math.pi * math.sqrt(0.6 * found.d_0 / (0.4 * found.a_0)), rel=0.01)
+    assert slv.ratio == pytest.approx(slv.capacity / 0.1)
+    assert "C8.7.1.10" in found.table()
+
+
+def test_a_mass_at_the_top_takes_part():
+    added = mr.AddedMass(WALL.mass / 2, 12.0)
+    found = mr.mechanism_check(mr.Case(WALL, 0.0, 1.0, effects=added), lambda T, xi: 0.1)
+    assert found.participation == pytest.approx((6 + 6) ** 2 / (1.5 * (36 + 72)))
+
+
+def test_a_record_asks_for_its_largest_displacement_up_to_the_period():
+    record = mr.GroundMotion.synthetic(3.0, 10.0, seed=1)
+    found = mr.mechanism_check(CASE, record)
+    state = found.states["SLV"]
+    assert state.demand >= mr.response_spectrum(record, state.period, 0.08).Sd[0] * 0.999
+    twice = mr.mechanism_check(CASE, record.scaled(2.0)).states["SLV"]
+    assert twice.demand == pytest.approx(2 * state.demand)
+
+
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (lambda: mr.mechanism_check(CASE, 3), "demand = 3 of type int is neither a GroundMotion nor a function"),
+        (lambda: mr.mechanism_check(CASE, lambda T, xi: "x"), r"demand\(T, xi\) = 'x' of type str is not a real"),
+        (lambda: mr.mechanism_check(CASE, lambda T, xi: 0.1, confidence_factor=2), "confidence_factor = 2 is outside"),
+        (
+            lambda: mr.mechanism_check(mr.Case(WALL, 0.0, 1.0, effects=mr.Tie(8.0, 1e7)), lambda T, xi: 0.1),
+            "case has a push-over curve that does not end",
+        ),
+    ],
+)
+def test_what_cannot_be(call, complaint):
+    with pytest.raises((ValueError, TypeError), match=complaint):
+        call()
