@@ -19,7 +19,8 @@ import mjrock as mr
 
 TASKS = str(Path(__file__).parents[1])
 """Where a process finds `campaign_tasks`."""
-ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [TASKS, os.environ.get("PYTHONPATH")]))}
+HERE = str(Path(__file__).parent)
+ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [TASKS, HERE, os.environ.get("PYTHONPATH")]))}
 
 
 def table(path):
