@@ -8,8 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from mjrock.files import write_text as write_text
-from mjrock.result.table import csv_text as csv_text
+# The package is imported where it is needed: `speed.py` times versions of it that have other modules.
 
 
 class Defaults(argparse.ArgumentDefaultsHelpFormatter):
@@ -27,6 +26,20 @@ def parser(description: str | None, out: str) -> argparse.ArgumentParser:
     made.add_argument("--out", type=Path, default=Path("out") / out, help="folder for the files that are written")
     made.add_argument("--quick", action="store_true", help="a shorter study, to see that it works")
     return made
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a file that is whole or absent."""
+    from mjrock.files import write_text as write
+
+    return write(path, text)
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Rows as CSV."""
+    from mjrock.result.table import csv_text as text
+
+    return text(header, rows)
 
 
 def folder(path: Path) -> Path:
