@@ -82,7 +82,7 @@ def contacts_for(
         timestep: MuJoCo's step [s], positive. None takes the model's.
 
     Returns:
-        The contacts, with `.xml`, `.apply(model)` and `.caveats(model)` of them all.
+        The contacts, with ``.xml``, `.apply(model)` and `.caveats(model)` of them all.
 
     Raises:
         TypeError, ValueError: as `contact_for` does, and for names that nothing has, or two geoms named twice.

@@ -125,7 +125,7 @@ def longest_step(k: float, inverse_weight: float) -> float:
 
 @dataclass(frozen=True)
 class ManyContactParameters:
-    """What MuJoCo's `<pair>`s carry for arrays of contacts, such as one for each environment.
+    """What the `<pair>` elements of MuJoCo carry for arrays of contacts, such as one for each environment.
 
     Args:
         solref: (-stiffness, -damping) [1/s2, 1/s], shape (..., 2).

@@ -92,7 +92,7 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
         spread = share * ndtr(-eta)
         w = weights * density**2 / spread
         information = np.stack([w.sum(axis=1), w @ u, w @ u, w @ (u * u)], axis=1).reshape(-1, 2, 2)
-        inverse = np.linalg.inv(information)
+        inverse = np.linalg.pinv(information, hermitian=True)  # one record drawn again and again says nothing
         leverage = w * np.einsum("ni,mij,nj->mn", design, inverse, design)
         score = weights * (fell - share) * density / spread - 0.5 * leverage * eta
         step = np.einsum("mij,mj->mi", inverse, np.stack([score.sum(axis=1), score @ u], axis=1))

@@ -129,7 +129,7 @@ def test_a_point_that_fails_to_build_is_a_row(tmp_path):
         assert store.rows(n=1)[0]["error"] == "ZeroDivisionError: one divides nothing"
         assert store.rows(n=2)[0]["error"] == "ValueError: two is refused (at n = 2)"
         assert store.rows(n=3)[0]["error"] == "SystemExit: 3"
-        assert store.rows(n=4)[0]["error"].startswith("AttributeError: 'NoneType'")
+        assert store.rows(n=4)[0]["error"].startswith("TypeError: build gives None")
         assert [row["n"] for row in store.rows()] == list(range(7))
         assert store.rows(n=np.float64(6))[0]["square"] == 36
 
