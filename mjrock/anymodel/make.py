@@ -80,8 +80,8 @@ def contact_for(
         newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is average acceleration.
 
     Returns:
-        The contact, with ``.solref .solimp .solreffriction .friction .xml`` and `.apply(model)`. The ``.xml`` of several
-        contacts has an `<option>` each: keep the one with the largest impratio, and let no later `<option>` override
+        The contact, with ``.solref .solimp .solreffriction .friction .xml`` and `.apply(model)`. The ``.xml`` of
+        several contacts has an `<option>` each: keep the one with the largest impratio, and let no later `<option>` override
         it. An impratio of 1e6 to 1e9 is normal here.
 
     Raises:
