@@ -81,8 +81,8 @@ def contact_for(
 
     Returns:
         The contact, with ``.solref .solimp .solreffriction .friction .xml`` and `.apply(model)`. The ``.xml`` of
-        several contacts has an `<option>` each: keep the one with the largest impratio, and let no later `<option>` override
-        it. An impratio of 1e6 to 1e9 is normal here.
+        several contacts has an `<option>` each: keep the one with the largest impratio, and let no later `<option>`
+        override it. An impratio of 1e6 to 1e9 is normal here.
 
     Raises:
         TypeError, ValueError: for a value outside its range, geoms that the model does not have or that cannot meet,
