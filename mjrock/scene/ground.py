@@ -37,15 +37,21 @@ class Shaking(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """The motions of the ground, horizontal away from the side stop, and vertical upwards."""
+    """The motions of the ground: horizontal away from the side stop, vertical upwards, and in space along y."""
 
     x: Shaking
     z: Shaking
+    y: Shaking
 
     @classmethod
-    def of(cls, motion: GroundMotion | None, vertical: GroundMotion | None = None) -> Ground:
-        """The arrays of both motions."""
-        return cls(Shaking.of(motion), Shaking.of(vertical))
+    def of(
+        cls,
+        motion: GroundMotion | None,
+        vertical: GroundMotion | None = None,
+        transverse: GroundMotion | None = None,
+    ) -> Ground:
+        """The arrays of the motions."""
+        return cls(Shaking.of(motion), Shaking.of(vertical), Shaking.of(transverse))
 
 
 @jitable
