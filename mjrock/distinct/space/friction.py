@@ -29,9 +29,7 @@ def across(normal: Vector) -> Vector:
 
 
 @jitable
-def list_rigid(
-    system: System, point: Row, number: int, place: tuple[Vector, Vector, Vector], gap: float
-) -> None:
+def list_rigid(system: System, point: Row, number: int, place: tuple[Vector, Vector, Vector], gap: float) -> None:
     """Prepare the two ways of a point that sticks rigidly.
 
     Args:
