@@ -40,8 +40,10 @@ if TYPE_CHECKING:
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.case import MasonryCase
     from .problem.masonry.joints import Joint
+    from .problem.masonry.joints_in_space import SpaceJoint
     from .problem.masonry.masonry import Masonry
     from .problem.masonry.polygon import Polygon
+    from .problem.masonry.polyhedron import Polyhedron
     from .problem.wall.block import Block
     from .problem.wall.case import Case
     from .problem.wall.damper import Damper
@@ -118,6 +120,7 @@ __all__ = [
     "PairedRatio",
     "Plan",
     "Polygon",
+    "Polyhedron",
     "PowerLaw",
     "Response",
     "ResponseSpectrum",
@@ -128,6 +131,7 @@ __all__ = [
     "Sensitivity",
     "SideStop",
     "SimulationError",
+    "SpaceJoint",
     "StiffnessRange",
     "Store",
     "Thrust",
@@ -205,8 +209,10 @@ HOMES = {
     "problem.ground.spectrum": "ResponseSpectrum response_spectrum scaled_to_sa scaled_to_spectrum",
     "problem.masonry.case": "MasonryCase",
     "problem.masonry.joints": "Joint",
+    "problem.masonry.joints_in_space": "SpaceJoint",
     "problem.masonry.masonry": "Masonry",
     "problem.masonry.polygon": "Polygon",
+    "problem.masonry.polyhedron": "Polyhedron",
     "problem.wall.block": "Block",
     "problem.wall.case": "Case",
     "problem.wall.damper": "Damper",
