@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..compiled import compiled
-from ..geometry.frames import frames_of, swung, take_frames, unswung
+from ..compiled import compiled, jitable
+from ..geometry.frames import frames_of, take_frames, unswung
 from ..geometry.kinematics import Places, meeting
-from ..geometry.vectors import minus, plus, scaled
+from ..geometry.vectors import Vector, minus, plus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers
@@ -44,7 +44,7 @@ def joint_motion_in_space(
     for first in range(0, len(pose), size):
         some = np.ascontiguousarray(pose[first : first + size])
         opened, slid = np.empty((len(some), len(joints))), np.empty((len(some), len(joints), 3))
-        deepest = max(deepest, _look(places, of, at_rest_and_sign, some, frames, opened, slid))
+        deepest = max(deepest, _look(places, of, at_rest_and_sign, some, (frames, np.empty(len(joints))), opened, slid))
         far = np.linalg.norm(slid, axis=2)
         opening, sliding = np.maximum(opening, opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
         gone = opened > LOST * widths
@@ -55,8 +55,43 @@ def joint_motion_in_space(
     return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
 
 
-def _along(places: Places, i: int, frames: Array) -> tuple[float, ...]:
-    """How far point i has moved along its face from where the face has it at rest, in the axes of the face [m]."""
+@jitable
+def _along(places: Places, i: int, frames: Array) -> Vector:
+    """Where point i is along its face, from the origin of the face, in the axes of the face [m]."""
     meets, face = meeting(places, i, frames), places.face_body[i]
     along = minus(meets.across, scaled(meets.gap, meets.normal))
     return along if face < 0 else plus(along, unswung(frames, face, along))
+
+
+@compiled
+def _look(
+    places: Places, joint: Integers, rest: Array, pose: Array, room: tuple[Array, Array], opened: Array, slid: Array
+) -> float:
+    """Write the opening of each joint at its widest point, and how far the block above has slid at its most pressed.
+
+    Args:
+        places: the points.
+        joint: of each point, shape (m,).
+        rest: place of each point along its face at rest, and 1 for a point of the block above, else -1, shape (m, 4).
+        pose: of the steps, shape (steps, 7 n).
+        room: for the frames of a pose, and for the deepest point of each joint, shape (joints,).
+        opened, slid: shape (steps, joints) and (steps, joints, 3).
+
+    Returns:
+        The deepest penetration [m].
+    """
+    deepest, (frames, most) = 0.0, room
+    for n in range(len(pose)):
+        take_frames(pose[n], frames, places.axes)
+        for j in range(opened.shape[1]):
+            opened[n, j], most[j] = 0.0, -np.inf
+        for i in range(len(joint)):
+            gap, j = meeting(places, i, frames).gap, joint[i]
+            opened[n, j] = max(opened[n, j], gap)
+            if -gap > most[j]:
+                most[j] = -gap
+                along = _along(places, i, frames)
+                for axis in range(3):
+                    slid[n, j, axis] = rest[i, 3] * (along[axis] - rest[i, axis])
+                deepest = max(deepest, -gap)
+    return deepest

@@ -14,7 +14,6 @@ from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named, name
 from .system import BODY, EDGE, LINK, POINT, WAY, System
 
 
-
 def masonry_system(masonry: Masonry) -> System:
     """Masonry in space as it is drawn, at rest, without effects."""
     free = list(masonry.free)
