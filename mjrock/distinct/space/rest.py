@@ -19,8 +19,8 @@ from .columns import PLACE, QUATERNION, applied, named, named_vectors, stacked, 
 from .limit import rates_of
 from .system import System
 
-LENT = 1.0
-"""Shear stiffness that is lent to points that stick rigidly, over their normal stiffness [-]."""
+LENT = 1e3
+"""Shear stiffness that points have in the search, over their normal stiffness [-]."""
 ITERATIONS = 300
 """Most iterations of the search."""
 EXACT = 1e-9
@@ -77,14 +77,17 @@ def settle(system: System) -> None:
     place, quaternion = stacked(bodies, PLACE), stacked(bodies, QUATERNION)
     size = np.column_stack([np.ones((len(bodies), 3)), np.repeat(sizes(system)[:, None], 3, axis=1)]).ravel()
     tolerated = EXACT * GRAVITY * float(bodies["mass"].max())
-    stiff = np.concatenate([lines["k"], system.ties["k"]])
+    stiff, shear = np.concatenate([lines["k"], system.ties["k"]]), np.append(shears(system), np.zeros(len(system.ties)))
+    rubs = np.append(lines["friction"] > 0, np.zeros(len(system.ties), dtype=bool))
     springs = springs_at(system, place, quaternion)
     missing = missing_force(system, springs, quaternion) / size
     for iteration in range(ITERATIONS):
         if np.abs(missing).max() < tolerated and iteration:
             break
-        closed = springs.pressed > 0 if iteration else np.arange(len(stiff)) < len(lines)
-        stiffness = stiffness_of(springs, np.where(closed, stiff, LEANING * stiff), len(bodies))
+        first = iteration == 0  # all points hold in all directions
+        acting = springs._replace(grips=np.where(rubs, shear, 0.0)) if first else springs
+        closed = (springs.pressed > 0) | (first & (shear > 0))
+        stiffness = stiffness_of(acting, np.where(closed, stiff, LEANING * stiff), len(bodies))
         lent = LOOSE * float(stiffness.diagonal().max())
         scaled = csc_array(
             diags_array(1 / size) @ stiffness @ diags_array(1 / size) + diags_array(np.full(len(size), lent))
@@ -108,6 +111,11 @@ def settle(system: System) -> None:
     take_grips(system, springs, quaternion)
 
 
+def shears(system: System) -> Array:
+    """Shear stiffness that the points have in the search [N/m], shape (m,)."""
+    return np.asarray(LENT * system.lines["k"])
+
+
 def sizes(system: System) -> Array:
     """A length of each body, by which moments are compared with forces: its radius of gyration [m], shape (n,)."""
     bodies = system.bodies
@@ -123,7 +131,7 @@ def springs_at(system: System, place: Array, quaternion: Array) -> Springs:
     normal = normal + applied(turn, pair[:, 1], normal)
     gap = np.einsum("ij,ij->i", normal, across)
     slid, push = across - gap[:, None] * normal, np.maximum(-lines["k"] * gap, 0.0)
-    k_s = np.where(np.isfinite(lines["k_s"]), lines["k_s"], LENT * lines["k"])
+    k_s = shears(system)
     held, most = k_s * np.linalg.norm(slid, axis=1), lines["friction"] * push
     grips = np.where(held > most, k_s * most / np.where(held > 0, held, 1.0), k_s)
     grips[(lines["friction"] == 0) | (push == 0)] = 0.0
