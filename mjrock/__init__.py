@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .problem.ground.motion import GroundMotion
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.case import MasonryCase
+    from .problem.masonry.collapse import Collapse, collapse_multiplier
     from .problem.masonry.joints import Joint
     from .problem.masonry.joints_in_space import SpaceJoint
     from .problem.masonry.masonry import Masonry
@@ -89,6 +90,7 @@ __all__ = [
     "Block",
     "Capacity",
     "Case",
+    "Collapse",
     "Comparison",
     "ContactParameters",
     "Contacts",
@@ -141,6 +143,7 @@ __all__ = [
     "automatic_timestep",
     "calibrate",
     "campaign",
+    "collapse_multiplier",
     "compare",
     "contact_for",
     "contact_parameters",
@@ -208,6 +211,7 @@ HOMES = {
     "problem.ground.motion": "GroundMotion",
     "problem.ground.spectrum": "ResponseSpectrum response_spectrum scaled_to_sa scaled_to_spectrum",
     "problem.masonry.case": "MasonryCase",
+    "problem.masonry.collapse": "Collapse collapse_multiplier",
     "problem.masonry.joints": "Joint",
     "problem.masonry.joints_in_space": "SpaceJoint",
     "problem.masonry.masonry": "Masonry",
