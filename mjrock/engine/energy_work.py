@@ -22,8 +22,8 @@ from ..result.ledger import Ledger
 from ..scene.course import Course
 from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
-from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
+from ..scene.structure import breaks, spring_energy
 from .points import Points, points_of
 from .record import Kinds, Record, Steps, Windows
 from .rows import Step, impratio_of, row_of
