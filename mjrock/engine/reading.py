@@ -74,8 +74,7 @@ class AskedWall:
         t, theta, omega = steps.t, steps.pose[:, 2], steps.velocity[:, 2]
         times, peaks, impacts = rocking_history(case, t, theta, omega, energy, uplift, released=course.released)
         # up to where the wall can still come back: what a fall releases dwarfs the energy it was released with
-        standing = np.flatnonzero(case.returns_from(theta))
-        count = int(standing[-1]) + 1 if standing.size else 1
+        count = case.returning(theta)
         met = np.searchsorted(steps.windows.t, times[times <= t[count - 1]])
         slip = steps.pose[:, 0] - case.wall.pose(theta)[:, 0]
         deepest, groups = -gaps(scene.places, steps.pose).min(axis=0), np.array(scene.group)
@@ -105,8 +104,7 @@ class AskedMasonry:
         """
         masonry, t = self.case.masonry, steps.t
         motion = joint_motion(masonry, scene.places, scene.group, scene.at_rest.ravel(), steps.pose)
-        sizes = np.array([masonry.blocks[i].size for i in masonry.free])
-        drop = (scene.at_rest[:, 1] - steps.pose[:, 1::3]) / sizes
+        drop = scene.at_rest[:, 1] - steps.pose[:, 1::3]
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
         quiet = bool(abs(energy[-1]) < scene.rest_energies[2])
