@@ -95,7 +95,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
     for name in POSITIVE:
         if not (arrays[name] > 0).all():
             raise ValueError(f"{name} = {arrays[name].min():g} is outside the valid range {name} > 0")
-    require_inertia(arrays["inertia"])
+    require_inertia(np.asarray(arrays["inertia"], dtype=float))
     for name in NOT_NEGATIVE:
         if not (arrays[name] >= 0).all():
             raise ValueError(f"{name} = {arrays[name].min():g} is outside the valid range, which starts at 0")

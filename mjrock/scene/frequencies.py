@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from scipy.sparse import csr_array
 
 from ..geometry.frames import SPACE

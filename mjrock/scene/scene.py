@@ -268,7 +268,7 @@ class Scene:
     def highest_frequency(self) -> float:
         """The highest natural frequency with every contact closed and free to slide [rad/s].
 
-        No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
+        No contact state of a run vibrates faster: opening a contact or holding it sideways only lowers it.
         """
         return highest_frequency(self.potential, self.principal)
 
