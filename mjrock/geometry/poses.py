@@ -10,6 +10,7 @@ import numpy as np
 
 from ..quantities import Array
 from .frames import PLANE, Freedom
+from .rotations import angle_of
 
 
 def at_rest(bodies: int, freedom: Freedom) -> Array:
@@ -41,8 +42,16 @@ def turned(pose: Array, freedom: Freedom) -> Array:
     """Angle by which each body is turned from rest [rad], shape (..., bodies)."""
     if freedom == PLANE:
         return np.abs(pose[..., 2::3])
-    turn = _by_body(pose, 7)[..., 3:]
-    return 2 * np.arctan2(np.linalg.norm(turn[..., 1:], axis=-1), np.abs(turn[..., 0]))
+    return angle_of(_by_body(pose, 7))
+
+
+def angles(pose: Array, start: Array, freedom: Freedom) -> Array:
+    """Angle by which each body is turned from a start to a pose [rad], shape (..., bodies)."""
+    if freedom == PLANE:
+        return np.abs(pose[..., 2::3] - start[..., 2::3])
+    turn = _by_body(pose, 7).copy()
+    turn[..., 3:] = _product(_by_body(start, 7)[..., 3:] * (1.0, -1.0, -1.0, -1.0), turn[..., 3:])
+    return angle_of(turn)
 
 
 def coordinate_rates(pose: Array, velocity: Array, freedom: Freedom) -> Array:

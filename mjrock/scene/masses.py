@@ -14,6 +14,9 @@ from ..compiled import inlined, jitable
 from ..geometry.vectors import Vector, spun
 from ..quantities import Array
 
+DIAGONAL = 1e-12
+"""Product of inertia that is put down to rounding, over the sum of the moments [-]."""
+
 
 def mass_diagonals(mass: Array, inertia: Array) -> Array:
     """The diagonals of the mass matrices of all bodies, shape (n nv,), for inertia of shape (n,) or (n, 3, 3)."""
@@ -23,10 +26,12 @@ def mass_diagonals(mass: Array, inertia: Array) -> Array:
 
 
 def products_of(inertia: Array) -> Array:
-    """Ixy, Ixz and Iyz of tensors of inertia [kg m2], shape (n, 3), and (0, 3) in the plane."""
+    """Ixy, Ixz and Iyz of tensors of inertia [kg m2], shape (n, 3), zero where they are rounding; else (0, 3)."""
     if inertia.ndim == 1:
         return np.empty((0, 3))
-    return np.column_stack([inertia[:, 0, 1], inertia[:, 0, 2], inertia[:, 1, 2]])
+    products = np.column_stack([inertia[:, 0, 1], inertia[:, 0, 2], inertia[:, 1, 2]])
+    rounding = DIAGONAL * np.trace(inertia, axis1=1, axis2=2)
+    return np.where(np.abs(products) > rounding[:, None], products, 0.0)
 
 
 def principal(mass: Array, inertia: Array) -> tuple[csr_array, Array]:
