@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from numbers import Real as RealNumber
 from os import PathLike
 from pathlib import Path
@@ -112,6 +112,13 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
+
+
+def is_iterable(values: object) -> bool:
+    """Whether values can be gone through one by one. A text is one value, and so is an array without dimensions."""
+    if isinstance(values, str | bytes) or (isinstance(values, np.ndarray) and values.ndim == 0):
+        return False
+    return isinstance(values, Iterable) or hasattr(type(values), "__getitem__")
 
 
 def require_flag(name: str, value: object) -> bool:

@@ -11,6 +11,7 @@ from ..problem.masonry.lines import edge_ends
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import GRAVITY, Array, Flags, Integers
+from ..result.joints import joint_numbers
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .contact import OVERHANG
@@ -94,8 +95,7 @@ def links_of(body: Integers, at: Array, between: Array, **given: Array) -> Rows:
 
 def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> None:
     """Give lines the shear stiffness of their joint, the ends of its face and edge, and the support that moves it."""
-    number = {joint.name: i for i, joint in enumerate(masonry.joints)}
-    of = np.array([number[name] for name in scene.group])
+    of = joint_numbers(masonry, scene.group)
     ends = np.array(
         [[edge_ends(masonry.blocks[block], joint) for block in (joint.below, joint.above)] for joint in masonry.joints]
     )  # (joints, below and above, 2)

@@ -10,6 +10,7 @@ blocks meet no edge.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ import numpy as np
 from ..compiled import compiled, jitable
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
+from ..result.joints import joint_numbers
 from .system import LINE, Rows, System, rows
 
 NEAR = 2.0
@@ -37,7 +39,8 @@ class Look(NamedTuple):
     Args:
         places: corners of all blocks [m], shape (corners, 2).
         first: where those of each block begin, and where those of the last end, shape (blocks + 1,).
-        order: the blocks by their lowest x, shape (blocks,).
+        order: the blocks by their left ends, shape (blocks,).
+        left, right: lowest and highest x of each block [m], shape (blocks,).
         loose, fixed: which blocks have left their places, and which are fixed, shape (blocks,).
         held: pairs of blocks that have a joint, increasing, see `pair_number`.
     """
@@ -45,6 +48,8 @@ class Look(NamedTuple):
     places: Array
     first: Integers
     order: Integers
+    left: Array
+    right: Array
     loose: Flags
     fixed: Flags
     held: Integers
@@ -56,12 +61,12 @@ class Encounters:
     Args:
         masonry: the masonry.
         system: its bodies, and the lines of its joints.
-        group: number of the account of the encounters.
+        group: name of the joint of each line. The account of the encounters comes after those of the joints.
     """
 
-    def __init__(self, masonry: Masonry, system: System, group: int) -> None:
+    def __init__(self, masonry: Masonry, system: System, group: Sequence[str]) -> None:
         blocks = masonry.blocks
-        self.joints, self.group = system.lines, group
+        self.joints, self.group = system.lines, len(set(group))
         number = np.full(len(blocks), -1)
         number[list(masonry.free)] = np.arange(len(masonry.free))
         self.body = number.astype(np.int64)
@@ -72,7 +77,7 @@ class Encounters:
         self.widths = narrowest(masonry)
         self.sizes = np.array([blocks[i].size for i in masonry.free])
         self.softest = softest(self.joints, len(masonry.free))
-        self.pairs = pairs_of(masonry, number)
+        self.pairs = pairs_of(masonry, joint_numbers(masonry, group))
         self.keys = np.empty(0, dtype=np.int64)
         self.overlaps = np.empty(0)
         self.room = np.zeros((MOST * len(blocks) + 64, 5))
@@ -91,9 +96,9 @@ class Encounters:
         held = self._held(system, loose)
         places = self._places(bodies)
         polygon_loose = np.append(loose, False)[self.body]
-        low = np.minimum.reduceat(places[:, 0], self.first[:-1]) - near
-        order = np.argsort(low, kind="stable")
-        looks = Look(places, self.first, order.astype(np.int64), polygon_loose, self.body < 0, held)
+        left, right = (ends.reduceat(places[:, 0], self.first[:-1]) for ends in (np.minimum, np.maximum))
+        order = np.argsort(left, kind="stable").astype(np.int64)
+        looks = Look(places, self.first, order, left, right, polygon_loose, self.body < 0, held)
         count = near_corners(looks, near, self.room)
         met = self.room[:count]
         lines = self._lines(met[:, :4].astype(np.int64), met[:, 4], system.lines[len(self.joints) :])
@@ -158,19 +163,17 @@ def softest(lines: Rows, bodies: int) -> Rows:
     """The softest line of each body, or of all where it has none."""
     chosen = np.full(bodies, int(np.argmin(lines["k"])))
     for name in ("face", "body"):
-        for p in np.argsort(-lines["k"], kind="stable"):
-            if lines[name][p] >= 0:
-                chosen[lines[name][p]] = p
+        stiffest_first = np.argsort(-lines["k"], kind="stable")
+        stiffest_first = stiffest_first[lines[name][stiffest_first] >= 0]
+        chosen[lines[name][stiffest_first]] = stiffest_first  # the last of a body stays
     chosen_lines: Rows = lines[chosen]
     return chosen_lines
 
 
-def pairs_of(masonry: Masonry, number: Integers) -> Integers:
-    """One number for the pair of blocks of each line, in the order of the lines of the scene."""
-    lines = masonry.lines
-    pair = np.sort(number[np.array([lines.body, lines.face])], axis=0)
-    order = np.lexsort((pair[1], pair[0]))
-    return pair_number(lines.body[order], lines.face[order], len(masonry.blocks))
+def pairs_of(masonry: Masonry, joint: Integers) -> Integers:
+    """One number for the pair of blocks of each line, from the number of its joint."""
+    below, above = np.array([(joint.below, joint.above) for joint in masonry.joints])[joint].T
+    return pair_number(below, above, len(masonry.blocks))
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -231,19 +234,13 @@ def near_corners(look: Look, near: float, met: Array) -> int:
     Returns:
         How many there are, at most as many as there is room for.
     """
-    places, first, order, loose, held = look.places, look.first, look.order, look.loose, look.held
+    first, order, loose, held = look.first, look.order, look.loose, look.held
     count, blocks = 0, len(first) - 1
     for turn in range(blocks):
         a = order[turn]
-        right = -np.inf
-        for i in range(first[a], first[a + 1]):
-            right = max(right, places[i, 0])
         for other in range(turn + 1, blocks):
             b = order[other]
-            left = np.inf
-            for i in range(first[b], first[b + 1]):
-                left = min(left, places[i, 0])
-            if left > right + near:
+            if look.left[b] > look.right[a] + near:
                 break
             if not (loose[a] or loose[b]) or among(held, min(a, b) * blocks + max(a, b)):
                 continue

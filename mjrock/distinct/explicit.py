@@ -106,7 +106,7 @@ def setup_in_plane(case: Case | MasonryCase, contacts: Contacts | None, state: S
         assert isinstance(case, Case)
         # peaks and impacts are read off the samples
         return Setup(scene, course, system, advance, limit, SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
-    encounters = Encounters(masonry, system, len(dict.fromkeys(scene.group)))
+    encounters = Encounters(masonry, system, scene.group)
     return Setup(scene, course, system, advance, limit, SHARE, encounters=encounters)
 
 

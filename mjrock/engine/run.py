@@ -10,19 +10,16 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers
+from ..result.ledger import ENERGY_GAIN, from_nowhere
 from ..result.response import Response
 from ..result.ties import Plastic, told_of_ties
 from ..scene.course import Course
-from ..scene.potential import breaks
 from ..scene.scene import Scene
+from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
 from .model import SimulationError
 from .reading import Asked, Reading
 from .record import StepError, Steps
-
-ENERGY_GAIN = 1e-3
-"""Most energy that may appear from nowhere, as a share of the energy of release [-]."""
-
 
 SLIDING = 4.0
 """omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
@@ -42,7 +39,7 @@ class Run:
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
-        broken: the step from which each tie no longer acts, see `mjrock.scene.potential.breaks`.
+        broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, and of what the ground put in or took [J].
     """
@@ -143,13 +140,9 @@ def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, sc
     stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
     balance = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
     balance = balance[marks] if yields else balance
-    gains = balance - np.minimum.accumulate(balance)
-    worst = int(gains.argmax())
-    if not gains[worst] <= ENERGY_GAIN * scale:
-        raise StepError(
-            f"{gains[worst]:.3g} J, {gains[worst] / scale:.2%} of the energy there was, appeared from nowhere",
-            float(windows.t[marks[worst]]),
-        )
+    gain = from_nowhere(balance, scale)
+    if gain is not None:
+        raise StepError(gain[1], float(windows.t[marks[gain[0]]]))
 
 
 def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) -> SimulationError:

@@ -12,7 +12,7 @@ from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import Places, along, depth
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from .joints import LOST
+from .joints import LOST, joint_numbers
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
@@ -43,8 +43,7 @@ def joint_motion(masonry: Masonry, places: Places, group: Sequence[str], start: 
         pose: of the steps or samples, shape (steps, n nq).
     """
     joints = masonry.joints
-    number = {joint.name: i for i, joint in enumerate(joints)}
-    of, widths = np.array([number[name] for name in group]), np.array([joint.width for joint in joints])
+    of, widths = joint_numbers(masonry, group), np.array([joint.width for joint in joints])
     opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
     lost, (back, forth) = np.zeros((len(pose), len(joints)), dtype=bool), np.array([j.travel for j in joints]).T
     frames = frames_of(start, places.freedom)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problem.masonry.joints import Joint
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Flags
+from ..quantities import Array, Flags, Integers
 
 LOST = 0.7
 """Opening of a joint, over its width, beyond which it holds no longer [-]: the blocks have turned by 45 degrees."""
@@ -42,6 +42,12 @@ class JointMotion:
     __hash__ = None  # type: ignore[assignment]
 
 
+def joint_numbers(masonry: Masonry, group: Sequence[str]) -> Integers:
+    """Number of the joint of each contact line, from its name, shape (m,)."""
+    number = {joint.name: i for i, joint in enumerate(masonry.joints)}
+    return np.array([number[name] for name in group], dtype=np.int64)
+
+
 def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[str, float]:
     """When each block that fell did [s], by its name, the first first.
 
@@ -49,11 +55,11 @@ def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[
         masonry: the masonry.
         t: times [s], shape (n,).
         lost: whether each joint has ceased to hold by then, shape (n, joints).
-        drop: how far each free block has dropped from rest, over its size [-], shape (n, bodies).
+        drop: how far the centroid of each free block has dropped from rest [m], shape (n, bodies).
     """
     gone: dict[int, float] = {}
     for body, block in enumerate(masonry.free):
-        late = np.flatnonzero(drop[:, body] > DROPPED)
+        late = np.flatnonzero(drop[:, body] / masonry.blocks[block].size > DROPPED)
         if late.size:
             gone[block] = float(t[late[0]])
     for step in np.flatnonzero(np.diff(lost.sum(axis=1), prepend=0)):

@@ -9,6 +9,24 @@ import numpy as np
 
 from ..quantities import Array
 
+ENERGY_GAIN = 1e-3
+"""Most energy that may appear from nowhere, over the energy there was [-]."""
+
+
+def from_nowhere(balance: Array, scale: float) -> tuple[int, str] | None:
+    """Where most energy has appeared from nowhere, and the same in words; None where it is at most ENERGY_GAIN.
+
+    Args:
+        balance: energy that is there and was taken, less what was put in [J], shape (n,). It may only fall.
+        scale: the energy there was [J].
+    """
+    gains = balance - np.minimum.accumulate(balance)
+    worst = int(gains.argmax())
+    if gains[worst] <= ENERGY_GAIN * scale:
+        return None
+    share = gains[worst] / scale
+    return worst, f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ledger:

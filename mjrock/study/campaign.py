@@ -9,7 +9,7 @@ from multiprocessing import current_process
 from pathlib import Path
 from typing import Any, cast
 
-from ..quantities import require_flag, require_path, require_real, require_whole, shown
+from ..quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
 from .campaign_pool import Dispatch
 from .campaign_run import Runner
 from .campaign_task import Row, Task, column_names, keyed
@@ -105,8 +105,7 @@ def _required_limit(limit: float, executor: Executor | None) -> float:
 
 def required_tasks(tasks: object) -> Iterable[Task]:
     """Tasks as something that can be gone through; TypeError unless they are, and for a text."""
-    gone_through = isinstance(tasks, Iterable) or hasattr(type(tasks), "__getitem__")
-    if isinstance(tasks, str | bytes) or not gone_through:
+    if not is_iterable(tasks):
         raise TypeError(f"tasks = {shown(tasks)} are no tasks that can be gone through")
     return cast(Iterable[Task], tasks)
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import stdtrit
 
-from ..quantities import Array, Flags, require_row, require_whole, require_within, shown
+from ..quantities import Array, Flags, is_iterable, require_row, require_whole, require_within, shown
 from ..result.response import Outcome
 from .fragility import FEWEST_GROUPS, Fragility, labels_of
 
@@ -28,7 +28,7 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
     Raises:
         ValueError: for a row without a result, or one that is none of a wall.
     """
-    if isinstance(rows, Mapping | str) or not isinstance(rows, Iterable):
+    if isinstance(rows, Mapping) or not is_iterable(rows):
         raise TypeError(f"rows = {shown(rows)} are no rows of a campaign")
     found = []
     for i, row in enumerate(rows):

@@ -353,4 +353,4 @@ def test_a_script_without_its_guard_is_told_so(tmp_path):
         [sys.executable, str(script)], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False
     )
     assert run.returncode == 1
-    assert 'below `if __name__ == "__main__":`' in run.stderr.splitlines()[-1]
+    assert 'below `if __name__ == "__main__":`' in run.stderr, run.stderr

@@ -219,6 +219,11 @@ class Case:
         returns: Flags = (theta <= self.overturning_rotation) & (theta >= -inwards)
         return returns
 
+    def returning(self, theta: Array) -> int:
+        """How many samples of a motion come before the wall can no longer come back, one at least."""
+        standing = np.flatnonzero(self.returns_from(theta))
+        return int(standing[-1]) + 1 if standing.size else 1
+
     def energy(self, theta: Array, omega: Array) -> Array:
         """Kinetic and potential energy of the rigid wall, above the wall at rest [J], without ties; shape (n,)."""
         outwards = np.where(theta == 0, omega, theta) >= 0
