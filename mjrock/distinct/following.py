@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from ..geometry.frames import PLANE, Freedom
 from ..scene.course import Course
+from ..scene.scene import Scene
 from .encounters import Encounters
 from .loop import Clock
 from .system import Books, Samples
@@ -26,7 +27,7 @@ class Setup:
     """A system at its start, and how it is followed.
 
     Args:
-        scene: what stands: names of bodies, groups of contacts, ties and dampers, and the energies at rest.
+        scene: what stands.
         course: what happens to it.
         system: its rows.
         advance: the compiled steps.
@@ -38,7 +39,7 @@ class Setup:
         encounters: where blocks that fall meet others, or None where that is not followed.
     """
 
-    scene: Any
+    scene: Scene
     course: Course
     system: Any
     advance: Callable[..., tuple[int, int, bool]]

@@ -23,6 +23,7 @@ from ..result.response import Response, ending, masonry_ending
 from ..result.rocking import Rocking
 from ..result.ties import Plastic
 from ..scene.course import Course
+from ..scene.scene import Scene
 from .system import Books, Samples
 
 
@@ -32,7 +33,7 @@ class Run:
 
     case: Case | MasonryCase
     contacts: Contacts | None
-    scene: Any  # Scene, or Stand in space
+    scene: Scene
     course: Course
     system: Any
     books: Books
@@ -42,7 +43,7 @@ class Run:
     @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
-        return self.samples.pose.shape[2] == SPACE.nq
+        return bool(self.samples.pose.shape[2] == SPACE.nq)
 
     @cached_property
     def t(self) -> Array:
@@ -60,9 +61,7 @@ class Run:
 
     @property
     def _preloaded(self) -> float:
-        """Energy in the shear springs that carry masonry at rest [J], which in space is among the energies at rest."""
-        if self.in_space:
-            return 0.0
+        """Energy in the shear springs that carry masonry at rest [J]."""
         return float(self.samples.energy[0].sum() - self.scene.rest_energies.sum() - self.course.energy(self.scene))
 
 

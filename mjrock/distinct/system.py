@@ -85,9 +85,9 @@ class Supports(NamedTuple):
 
     Args:
         t: times of the samples of all supports, one support after the other [s], shape (samples,).
-        displacement: x and z [m], shape (samples, 2), linear in between.
+        displacement: x and z [m], shape (samples, 2), in space (samples, 3), linear in between.
         first: where the samples of each support begin, and where those of the last end, shape (s + 1,).
-        moved, moving: displacement and velocity at the pose [m, m/s], shape (s, 2).
+        moved, moving: displacement and velocity at the pose [m, m/s], shape (s, 2), in space (s, 3).
     """
 
     t: Array

@@ -89,7 +89,7 @@ class Response:
     @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
-        return self.pose.shape[2] == SPACE.nq
+        return bool(self.pose.shape[2] == SPACE.nq)
 
     @property
     def tilt(self) -> Array:

@@ -1,68 +1,90 @@
-"""The rows of a system in space from masonry, its effects and what happens to it."""
+"""The rows of a system in space from the scene of masonry, its faces, and what happens to it."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from ...problem.masonry.effects_in_space import anchored_at
 from ...problem.masonry.faces_of_joints import faces_of_joints
 from ...problem.masonry.masonry import Masonry
+from ...problem.masonry.support import Support
+from ...problem.wall.damper import Damper
+from ...problem.wall.effects import Effect
 from ...quantities import Array, Integers
 from ...scene.ground import Ground
+from ...scene.scene import Scene
+from ..assembly import moving
 from ..contact import OVERHANG
-from ..system import Rows, Supports, rows
+from ..system import Rows, rows
 from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named, named_vectors, turns, vectors
 from .system import BODY, EDGE, LINK, POINT, WAY, System
 
 
-def masonry_system(masonry: Masonry) -> System:
-    """Masonry in space as it is drawn, at rest, without effects."""
-    free = list(masonry.free)
-    blocks = [masonry.blocks[i] for i in free]
-    bodies = bodies_of(
-        np.array([block.mass for block in blocks]),
-        np.array([block.inertia for block in blocks]),
-        masonry.centroids[free],
+def masonry_system(scene: Scene, masonry: Masonry, effects: Sequence[Effect] = ()) -> System:
+    """Masonry in space as it is drawn, at rest on ground that does not move."""
+    bodies = rows(
+        BODY, len(scene.mass), mass=scene.mass, qw=1.0, **ease_columns(scene.inertia), **named(REST, scene.rest)
     )
-    lines, edges = points_of(masonry)
+    lines, edges = points_of(scene, masonry)
     ways = rows(WAY, 2 * len(lines) if np.isinf(lines["k_s"]).any() else 0)
-    none = [rows(LINK, 0) for _ in range(3)]
-    return System(bodies, lines, edges, ways, *none, Ground.of(None), resting())
+    ties = rows(
+        LINK,
+        len(scene.tie_k),
+        body=scene.tie_body,
+        anchor=scene.anchor_body,
+        **named_vectors(at=scene.tie_point, origin=scene.anchor, between=scene.ties.between),
+        k=scene.tie_k,
+        reach=scene.tie_length,
+        strength=scene.tie_strength,
+        ultimate=scene.tie_ultimate,
+        broken=np.inf,
+    )
+    forces = rows(
+        LINK,
+        len(scene.force_names),
+        body=scene.force_body,
+        anchor=-1,
+        **named_vectors(at=scene.force_point, between=scene.force),
+    )
+    dampers = dampers_of(scene, masonry, effects)
+    return System(bodies, lines, edges, ways, ties, dampers, forces, Ground.of(None), moving((), axes=3))
 
 
-def bodies_of(mass: Array, inertia: Array, centroids: Array) -> Rows:
-    """Bodies at rest with masses [kg], tensors of inertia [kg m2] and centroids [m], shapes (n,), (n, 3, 3), (n, 3)."""
-    return rows(BODY, len(mass), mass=mass, qw=1.0, **ease_columns(inertia), **named(REST, centroids))
+def dampers_of(scene: Scene, masonry: Masonry, effects: Sequence[Effect]) -> Rows:
+    """The dampers, between a body and the ground or between two bodies."""
+    dampers, number = [effect for effect in effects if isinstance(effect, Damper)], numbers_of(masonry)
+    anchor = np.array([-1 if d.anchor_block is None else number[d.anchor_block] for d in dampers], dtype=np.int64)
+    ends = np.reshape([anchored_at(damper) for damper in dampers], (-1, 3))
+    origin = ends - np.where(anchor[:, None] < 0, 0.0, scene.rest[anchor])
+    places = named_vectors(at=scene.damper_point, origin=origin, between=scene.dampers.between)
+    return rows(LINK, len(dampers), body=scene.damper_body, anchor=anchor, **places, c=scene.damper_c)
 
 
-def resting() -> Supports:
-    """No support that moves."""
-    none = np.empty((0, 3))
-    return Supports(np.empty(0), none, np.zeros(1, dtype=np.int64), none.copy(), none.copy())
-
-
-def points_of(masonry: Masonry) -> tuple[Rows, Rows]:
+def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
     """The contact points of masonry, and the edges of the faces of its joints."""
-    lines, joints, number = masonry.lines, masonry.joints, numbers_of(masonry)
-    origins = np.where(number[:, None] < 0, 0.0, masonry.centroids)
-    edges, ends = edges_of(masonry, origins)
-    of, body, face = lines.joint, number[lines.body], number[lines.face]
-    above = np.array([joint.above for joint in joints])[of] == lines.body
+    number, places = {joint.name: i for i, joint in enumerate(masonry.joints)}, scene.places
+    of = np.array([number[name] for name in scene.group])
+    groups = {name: i for i, name in enumerate(dict.fromkeys(scene.group))}
+    edges, ends = edges_of(scene, masonry)
+    above = numbers_of(masonry)[[joint.above for joint in masonry.joints]][of] == places.body
     of_face, of_body = np.where(above, 0, 1), np.where(above, 1, 0)
-    k_s = masonry.joint_shear[of] * lines.k / masonry.joint_stiffness[of]
-    c = masonry.retardation[of] * lines.k
+    k_s = masonry.joint_shear[of] * scene.k / masonry.joint_stiffness[of]
+    sprung = np.isfinite(k_s)
     points = rows(
         POINT,
         len(of),
-        body=body,
-        face=face,
+        body=places.body,
+        face=places.face_body,
         support=-1,
-        group=of,
-        **named_vectors(at=lines.at - origins[lines.body], origin=lines.at - origins[lines.face], normal=lines.normal),
-        k=lines.k,
-        c=c,
+        group=np.array([groups[name] for name in scene.group]),
+        **named_vectors(at=places.at, origin=places.face_at + places.between, normal=places.normal),
+        k=scene.k,
+        c=scene.c,
         k_s=k_s,
-        c_s=np.where(np.isfinite(k_s), masonry.retardation[of] * np.where(np.isfinite(k_s), k_s, 0.0), 0.0),
-        friction=masonry.joint_friction[of],
+        c_s=np.where(sprung, scene.c * np.where(sprung, k_s, 0.0) / scene.k, 0.0),
+        friction=scene.friction,
         first=ends[of, of_face, 0],
         last=ends[of, of_face, 1],
         own_first=ends[of, of_body, 0],
@@ -79,8 +101,8 @@ def numbers_of(masonry: Masonry) -> Integers:
     return number
 
 
-def edges_of(masonry: Masonry, origins: Array) -> tuple[Rows, Integers]:
-    """The edges of the two faces of each joint, from an origin of each block, and which are those of each face.
+def edges_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Integers]:
+    """The edges of the two faces of each joint, from the centroids of their bodies, and which are those of each face.
 
     A face is taken to be longer by `OVERHANG` at either end, as in the plane.
 
@@ -88,6 +110,8 @@ def edges_of(masonry: Masonry, origins: Array) -> tuple[Rows, Integers]:
         The edges, and the numbers of the first and of the one after the last, of the faces of the block below and of
         the one above of each joint, shape (joints, 2, 2).
     """
+    number = numbers_of(masonry)
+    origins = np.where(number[:, None] < 0, 0.0, scene.rest[number])
     table: list[list[float]] = []
     ends = []
     for joint, faces in zip(masonry.joints, faces_of_joints(masonry), strict=True):
@@ -114,25 +138,26 @@ def margins(points: Rows, edges: Rows) -> Array:
     return square
 
 
-def links_of(body: Integers, at: Array, anchor: Integers, origin: Array, between: Array, **given: Array) -> Rows:
-    """Ties or dampers, or forces as `between`, as rows."""
-    if not len(body):
-        return rows(LINK, 0)
-    places = named_vectors(at=at, origin=origin, between=between)
-    return rows(LINK, len(body), body=body, anchor=anchor, **places, **given)
-
-
 def started(system: System, pose: Array, velocity: Array) -> None:
     """Give the bodies of a system a pose and velocities, shapes (n, 7) and (n, 6)."""
     bodies, turn = system.bodies, turns(pose[:, 3:])
-    spin = velocity[:, 3:]
-    momentum = np.linalg.solve(ease_of(bodies), spin[:, :, None])[:, :, 0]
+    momentum = np.linalg.solve(ease_of(bodies), velocity[:, 3:, None])[:, :, 0]
     momentum = momentum + np.einsum("nij,nj->ni", turn, momentum)
     columns = named((*PLACE, *QUATERNION), pose) | named(("vx", "vy", "vz"), velocity[:, :3])
     for name, values in (columns | named_vectors(momentum=momentum)).items():
         bodies[name] = values
 
 
+def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
+    """The system with supports that move fixed blocks."""
+    numbers = {support.block: i for i, support in enumerate(supports)}
+    below = {joint.name: numbers.get(joint.below, -1) for joint in masonry.joints}
+    support = np.array([below[name] for name in scene.group])
+    system.lines["support"] = np.where(system.lines["face"] < 0, support, -1)
+    return system._replace(supports=moving(supports, axes=3))
+
+
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    return System(*(part.copy() if isinstance(part, np.ndarray) else part for part in system))
+    tables = ("bodies", "lines", "edges", "ways", "ties", "dampers", "forces")
+    return system._replace(**{name: getattr(system, name).copy() for name in tables})

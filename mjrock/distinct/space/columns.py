@@ -43,7 +43,7 @@ def named_vectors(**given: Array) -> dict[str, Array]:
 def ease_columns(inertia: Array) -> dict[str, Array]:
     """The columns of the inverse inertia of bodies, from their tensors [kg m2], shape (n, 3, 3)."""
     ease = np.linalg.inv(inertia)
-    return {f"ease_{pair}": ease[:, i, j] for i, j, pair in EASE}
+    return {f"ease_{pair}": np.asarray(ease[:, i, j], dtype=float) for i, j, pair in EASE}
 
 
 def ease_of(bodies: Rows) -> Array:

@@ -180,7 +180,8 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
         push = max(0.0, sprung - point.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[point.group] -= 0.5 * h * (point.pressed + push - sprung) * rate
         books.friction[1] += 0.5 * h * (point.push + push) * carried(point, supports, meet.normal)
-        last, drag = (point.dragged_x, point.dragged_y, point.dragged_z), (0.0, 0.0, 0.0)
+        last: Vector = (point.dragged_x, point.dragged_y, point.dragged_z)
+        drag: Vector = (0.0, 0.0, 0.0)
         point.push, point.pressed = push, push - sprung
         if push == 0:
             keep_grip(point, (0.0, 0.0, 0.0))

@@ -107,7 +107,8 @@ def strike_both(system: System, point: Row, row: Row, impulse: float) -> None:
 def begin(system: System, point: Row, number: int, kick: float) -> float:
     """Start with the friction of the last step. Returns the most that friction can do [N s]."""
     a, b = system.ways[2 * number], system.ways[2 * number + 1]
-    most, grip = kick * point.friction * point.push, scaled(kick, grip_of(point))
+    most: float = kick * point.friction * point.push
+    grip = scaled(kick, grip_of(point))
     if point.face >= 0:
         grip = in_world(system.bodies[point.face], grip)
     a.impulse, b.impulse = dot(way_of(a), grip), dot(way_of(b), grip)
@@ -134,7 +135,8 @@ def stop(system: System, point: Row, number: int, most: float) -> float:
     strike_both(system, point, a, change_a)
     strike_both(system, point, b, change_b)
     a.impulse, b.impulse = impulse_a, impulse_b
-    return max(abs(change_a), abs(change_b))
+    changed: float = max(abs(change_a), abs(change_b))
+    return changed
 
 
 @jitable

@@ -23,11 +23,13 @@ def longest_step(system: System) -> float:
     rates = [rates_of(pair, arms, way, bodies) for way in (normal, first, second)]
     links = [link_rates(links, bodies) for links in (system.ties, system.dampers)]
     sprung = np.isfinite(lines["k_s"])
-    weights = []
-    for along, across in (("k", "k_s"), ("c", "c_s")):
+
+    def weights(along: str, across: str) -> Array:
         shear = np.where(sprung, lines[across], 0.0)
-        weights.append(np.concatenate([lines[along], shear, shear, system.ties[along], system.dampers[along]]))
-    return stable_step(csr_array(vstack([*rates, *links])), *weights, root_of_masses(system.bodies))
+        return np.concatenate([lines[along], shear, shear, system.ties[along], system.dampers[along]])
+
+    masses = root_of_masses(system.bodies)
+    return stable_step(csr_array(vstack([*rates, *links])), weights("k", "k_s"), weights("c", "c_s"), masses)
 
 
 def link_rates(links: Rows, bodies: int) -> csr_array:
