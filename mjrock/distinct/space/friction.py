@@ -1,8 +1,9 @@
 """Rigid friction in space: impulses along the faces that stop the slip, as far as Coulomb's circular cone lets them.
 
 They are found by projected Gauss-Seidel, as in the plane: one point after the other gets the impulse along its two ways
-that stops its slip, shortened to mu times its pressure, until the impulses no longer change. They start from those of
-the last step.
+that stops its slip, until the impulses no longer change. They start from those of the last step. Where this impulse is
+more than mu times the pressure, the point gets one against its slip instead, shortened to what friction can do. In the
+end the friction of a point that slips is against its slip.
 """
 
 from __future__ import annotations
@@ -128,9 +129,12 @@ def stop(system: System, point: Row, number: int, most: float) -> float:
     area = a.light * b.light - a.cross * a.cross
     impulse_a = a.impulse - (b.light * slip_a - a.cross * slip_b) / area
     impulse_b = b.impulse - (a.light * slip_b - a.cross * slip_a) / area
-    size = math.sqrt(impulse_a * impulse_a + impulse_b * impulse_b)
-    if size > most:
-        impulse_a, impulse_b = impulse_a * most / size, impulse_b * most / size
+    if impulse_a * impulse_a + impulse_b * impulse_b > most * most:  # it slips, and friction is against the slip
+        half = 0.5 * (a.light - b.light)
+        loosest = 0.5 * (a.light + b.light) + math.sqrt(half * half + a.cross * a.cross)
+        impulse_a, impulse_b = a.impulse - slip_a / loosest, b.impulse - slip_b / loosest
+        shorter = min(1.0, most / math.sqrt(impulse_a * impulse_a + impulse_b * impulse_b))
+        impulse_a, impulse_b = shorter * impulse_a, shorter * impulse_b
     change_a, change_b = impulse_a - a.impulse, impulse_b - b.impulse
     strike_both(system, point, a, change_a)
     strike_both(system, point, b, change_b)
