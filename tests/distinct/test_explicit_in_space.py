@@ -52,7 +52,7 @@ def test_a_body_without_moments_precesses_as_jacobi_found(turned):
     assert errors[0] / errors[1] == pytest.approx(100, rel=0.02)
     body = system.bodies[0]
     momentum = np.array([body.momentum_x, body.momentum_y, body.momentum_z])
-    np.testing.assert_array_equal(momentum, axes @ np.diag(moments) @ axes.T @ axes @ spin)
+    np.testing.assert_allclose(momentum, axes @ np.diag(moments) @ axes.T @ axes @ spin, rtol=1e-14)
 
 
 @pytest.mark.parametrize("k_s", [None, 1e9])
@@ -85,12 +85,13 @@ def test_a_block_spins_to_rest_on_its_four_corners(k_s):
 @pytest.mark.parametrize("angle", [0.0, 0.4, math.pi / 4, 1.2])
 def test_first_uplift_and_tipping_at_an_angle_in_plan(angle):
     """A slow ramp: four points leave the ground as those of a rigid body on springs, and it tips about an edge."""
-    b, t, h = size = (0.6, 0.4, 2.0)
-    lifts = 1 / (h * math.cos(angle) / b + h * math.sin(angle) / t)
-    tips = min(side / (h * way) for side, way in ((b, math.cos(angle)), (t, math.sin(angle))) if way > 1e-9)
-    masonry, last = block(size, -angle, friction=2.0), 1.2 * tips * G
-    run = solve(masonry, 60.0, steady(-last, 60.0, rise=60.0), output_step=1e-2)
-    multiplier = last * run.t / 60.0 / G
+    b, d, h = size = (0.6, 0.4, 2.0)
+    lifts = 1 / (h * math.cos(angle) / b + h * math.sin(angle) / d)
+    tips = min(side / (h * way) for side, way in ((b, math.cos(angle)), (d, math.sin(angle))) if way > 1e-9)
+    t, ramp = 0.1 * np.arange(801), tips * np.interp(0.1 * np.arange(801), [0, 20, 80], [0, 0.95, 1.05])
+    masonry = block(size, -angle, friction=2.0, k_n=1e9, frequency=200.0)
+    run = solve(masonry, 80.0, mr.GroundMotion(-G * ramp, 0.1), output_step=1e-2)
+    multiplier = np.interp(run.t, t, ramp)
     corners = about_vertical([mr.Polyhedron.box(size)], -angle)[0].corners
     low = corners[corners[:, 2] < 0]
     w, x, y, z = run.pose[:, 0, 3:].T
@@ -149,7 +150,7 @@ def test_the_plane_inside_space_a_rocking_block_with_effects():
             mr.AddedMass(80.0, at=(-0.1, 0, 1.9), block=1))  # fmt: skip
     run, spatial = both(plane, 1.0, PULSE, effects=(flat, deep), vertical=mr.GroundMotion.sine(1.0, 0.3))
     assert run.plastic["tie_0"].broken < 1.0
-    assert_same(run, spatial, 1e-11)
+    assert_same(run, spatial, 1e-6)  # the search for the pose of rest ends at a tolerance
     assert spatial.plastic["tie_0"] == pytest.approx(run.plastic["tie_0"])
     assert np.abs(spatial.energy_residual).max() < 2 * np.abs(run.energy_residual).max()
 
@@ -193,19 +194,21 @@ def bonded(angle=0.0):
 def test_a_scene_turned_with_its_motion_moves_alike(k_s):
     angle = math.radians(37)
     c, s = math.cos(angle), math.sin(angle)
-    answers = []
+    answers, shaking = [], mr.GroundMotion.sine(9.0, 0.3)
     for turned in (0.0, angle):
         masonry = mr.Masonry(bonded(turned), k_n=1e9, k_s=k_s, friction=0.5, frequency=200.0)
         ways = (c, s) if turned else (1.0, 0.0)
-        x, y = (mr.GroundMotion(way * PULSE.accel, PULSE.dt) if way else None for way in ways)
-        answers.append(solve(masonry, 0.15, x, transverse=y, timestep=5e-5))
+        x, y = (mr.GroundMotion(way * shaking.accel, shaking.dt) if way else None for way in ways)
+        answers.append(solve(masonry, 0.2, x, transverse=y, timestep=5e-5))
     straight, askew = answers
-    assert straight.opening.max() > 1e-5
-    within = 1e-10 if k_s else 1e-5  # rigid friction ends its search at a tolerance
-    for a, b in ((0, 0), (3, 0)):
-        pose = straight.pose[:, :, [a + 1 * bool(a), a + 1 + bool(a)]] @ np.array([[c, s], [-s, c]]).T.T
-        np.testing.assert_allclose(askew.pose[:, :, [a + bool(a), a + 1 + bool(a)]], pose, atol=within + b)
-    np.testing.assert_allclose(askew.pose[:, :, [2, 6]], straight.pose[:, :, [2, 6]], atol=within)
+    assert straight.opening.max() > 5e-5
+    assert straight.sliding.max() > 1e-2
+    within = 1e-10 if k_s else 1e-4  # rigid friction ends its search at a tolerance
+    to_turned = np.array([[c, s], [-s, c]])
+    for first in (0, 4):  # displacements, and the vectors of the quaternions
+        level = slice(first, first + 2)
+        np.testing.assert_allclose(askew.pose[:, :, level], straight.pose[:, :, level] @ to_turned, atol=within)
+    np.testing.assert_allclose(askew.pose[:, :, [2, 3, 6]], straight.pose[:, :, [2, 3, 6]], atol=within)
 
 
 @pytest.mark.parametrize("k_s", [None, 1e9])
