@@ -18,13 +18,13 @@ WHOLE = 1e-6
 """How far a length may be from a whole number of units, over the unit [-]."""
 
 
-def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
-    """Fixed ground with its surface at z = 0, twice as wide as what stands on it between two corners x, y [m]."""
+def ground_below(low: ArrayLike, high: ArrayLike, surface: float = 0.0) -> Polyhedron:
+    """Fixed ground with its surface at a z [m], twice as wide as what stands on it between two corners x, y [m]."""
     low, high = np.asarray(low, dtype=float)[:2], np.asarray(high, dtype=float)[:2]
     deep = DEEP * float((high - low).max())
     middle = 0.5 * (low + high)
     size = (*(2 * (high - low)), deep)
-    return Polyhedron.box(size, (*middle, -0.5 * deep), fixed=True, name="ground")
+    return Polyhedron.box(size, (*middle, surface - 0.5 * deep), fixed=True, name="ground")
 
 
 def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:

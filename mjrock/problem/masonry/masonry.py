@@ -17,6 +17,7 @@ from ..damping.law import law_named
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
+from .exchange import Exchange
 from .forms_in_space import FormsInSpace
 from .joints import find_joints, names_of
 from .joints_in_space import joints_in_space
@@ -31,7 +32,7 @@ MOST_POINTS = 50
 
 
 @dataclass(frozen=True)
-class Masonry(FormsInSpace):
+class Masonry(FormsInSpace, Exchange):
     """Rigid convex blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
