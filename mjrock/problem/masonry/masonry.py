@@ -41,6 +41,9 @@ class Masonry(FormsInSpace, Exchange):
     opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
     `points` and `k_n`, and a structure near its limit can depend on that.
 
+    Blocks in space, of the kind `Polyhedron`, have their joints where two faces cover a common area, with contact
+    points in place of the lines.
+
     In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
     does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the
     motion the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block
@@ -230,6 +233,11 @@ class Masonry(FormsInSpace, Exchange):
     def in_space(self) -> bool:
         """Whether the blocks are bodies in space."""
         return isinstance(self.blocks[0], Polyhedron)
+
+    def require_plane(self, what: str) -> None:
+        """Raise a ValueError that says what takes blocks in the plane alone, if these are in space."""
+        if self.in_space:
+            raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
 
     @cached_property
     def names(self) -> tuple[str, ...]:
