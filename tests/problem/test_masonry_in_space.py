@@ -171,3 +171,11 @@ def test_what_masonry_in_space_refuses():
     with pytest.raises(ValueError, match="no two of them touch along a face"):
         mr.Masonry([GROUND, box((1, 1, 1), (0, 0, 3))])
     assert mr.Masonry(blocks).in_space
+
+
+def test_what_is_of_the_plane_alone_says_so():
+    masonry = mr.Masonry([GROUND, box((1, 1, 1), (0, 0, 0.5))])
+    with pytest.raises(ValueError, match="masonry in space: rigid_impact takes blocks in the plane"):
+        mr.rigid_impact(masonry, np.ones((1, 6)))
+    with pytest.raises(ValueError, match="masonry in space: matched_masonry takes blocks in the plane"):
+        mr.matched_masonry(masonry)

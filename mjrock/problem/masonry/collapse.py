@@ -13,7 +13,7 @@ from scipy.sparse import hstack
 from ...quantities import Array, named, require_kind, require_reals, require_within, shown
 from .joints_in_space import axes_across
 from .masonry import Masonry
-from .statics import cones, falling, moving, sizes_of, weight_of
+from .statics import cones, falling, method, moving, sizes_of, weight_of
 
 UNBOUNDED = 3
 """What linprog answers where nothing limits the multiplier."""
@@ -73,7 +73,7 @@ def collapse_multiplier(masonry: Masonry, direction: float | ArrayLike = 1, *, a
     raised = (sideways.ravel() / total / sizes)[:, None]
     prices = np.zeros(pressed.shape[1] + 1)
     prices[-1] = -1.0
-    answer = linprog(prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method="highs")
+    answer = linprog(prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry))
     if answer.status == UNBOUNDED or (answer.status == 0 and answer.x[-1] > LARGEST):
         return Collapse(math.inf, push, (), np.zeros_like(sideways))
     if answer.status != 0:

@@ -17,6 +17,8 @@ from ..damping.law import law_named
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
+from .exchange import Exchange
+from .forms_in_space import FormsInSpace
 from .joints import find_joints, names_of
 from .joints_in_space import joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
@@ -30,7 +32,7 @@ MOST_POINTS = 50
 
 
 @dataclass(frozen=True)
-class Masonry:
+class Masonry(FormsInSpace, Exchange):
     """Rigid convex blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
@@ -38,6 +40,9 @@ class Masonry:
     a dashpot that push only, with Coulomb friction. Lines lie at the ends of the joint and evenly between. A joint that
     opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
     `points` and `k_n`, and a structure near its limit can depend on that.
+
+    Blocks in space, of the kind `Polyhedron`, have their joints where two faces cover a common area, with contact
+    points in place of the lines.
 
     In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
     does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the
@@ -228,6 +233,11 @@ class Masonry:
     def in_space(self) -> bool:
         """Whether the blocks are bodies in space."""
         return isinstance(self.blocks[0], Polyhedron)
+
+    def require_plane(self, what: str) -> None:
+        """Raise a ValueError that says what takes blocks in the plane alone, if these are in space."""
+        if self.in_space:
+            raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
 
     @cached_property
     def names(self) -> tuple[str, ...]:

@@ -45,6 +45,7 @@ class Polyhedron:
     fixed: bool = False
     name: str | None = field(default=None)
     hull: Hull = field(init=False, repr=False, compare=False)
+    """Faces and their normals, found from the vertices."""
 
     def __init__(
         self,

@@ -110,6 +110,11 @@ def sizes_of(masonry: Masonry) -> Array:
     return np.array([(*[1.0] * forces, *[masonry.blocks[i].size] * parts) for i in masonry.free]).ravel()
 
 
+def method(masonry: Masonry) -> str:
+    """How linear programmes are solved: in space by an interior point method, which is several times faster there."""
+    return "highs-ipm" if masonry.in_space else "highs"
+
+
 def edges_of_cone(masonry: Masonry) -> int:
     """How many forces span the cone of friction of a contact line."""
     return EDGES if masonry.in_space else 2
@@ -153,7 +158,7 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     missing = eye_array(len(weight))
     columns = hstack([*edges, missing, -missing])
     prices = np.concatenate([*cost, np.ones(2 * len(weight))])
-    return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method="highs")
+    return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry))
 
 
 def _stands(answer: Any) -> bool:
