@@ -46,9 +46,7 @@ def course(scene, duration, *, pose=None, velocity=None, **motions):
     """The course of a scene of one body from a pose (7,) and with a velocity (6,), at rest where they are None."""
     pose = scene.at_rest if pose is None else np.reshape(pose, (-1, 7))
     velocity = np.zeros((len(scene.names), 6)) if velocity is None else np.reshape(velocity, (-1, 6))
-    return Course(
-        pose, velocity, duration, motions.get("motion"), motions.get("vertical"), True, motions.get("transverse")
-    )
+    return Course(pose, velocity, duration, **motions)
 
 
 def fixed(scene, what, timestep, *, beta=0.25, coulomb=False):

@@ -59,7 +59,7 @@ def attachments_in_space(effects: Sequence[Effect], number: Integers, centroids:
         parts["damper_anchor"] = np.array([anchored_at(damper) for damper in dampers])
         parts["damper_c"] = np.array([damper.c for damper in dampers])
     if loads or thrusts:
-        forces = [*loads, *thrusts]
+        forces: list[Effect] = [*loads, *thrusts]
         names = (*(f"load_{i}" for i in range(len(loads))), *(f"thrust_{i}" for i in range(len(thrusts))))
         parts["force_names"] = names
         parts["force_body"], parts["force_point"] = on(forces)

@@ -114,9 +114,9 @@ def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array
     rates = potential.slip_rates(pose)
     if len(rates) == 1:
         return averaged(rates[0], group, len(pairs))
-    arms, count = potential.spots(pose), np.maximum(np.bincount(group[holds], minlength=len(pairs)), 1)
-    for j in range(2):
-        arms[:, j] -= (np.bincount(group[holds], arms[holds, j], minlength=len(pairs)) / count)[group]
+    arms, grouped, middles = potential.spots(pose), group[holds], np.zeros((len(pairs), 2))
+    np.add.at(middles, grouped, arms[np.flatnonzero(holds)] / np.bincount(grouped)[grouped, None])
+    arms[np.flatnonzero(holds)] -= middles[grouped]
     spins = csr_array(diags_array(arms[:, 0]) @ rates[1] - diags_array(arms[:, 1]) @ rates[0])
     return csr_array(vstack([averaged(rows, group, len(pairs)) for rows in (*rates, spins)]))
 
