@@ -199,10 +199,10 @@ def test_a_scene_turned_with_its_motion_moves_alike(k_s):
         masonry = mr.Masonry(bonded(turned), k_n=1e9, k_s=k_s, friction=0.5, frequency=200.0)
         ways = (c, s) if turned else (1.0, 0.0)
         x, y = (mr.GroundMotion(way * shaking.accel, shaking.dt) if way else None for way in ways)
-        answers.append(solve(masonry, 0.2, x, transverse=y, timestep=5e-5))
+        answers.append(solve(masonry, 0.15, x, transverse=y, timestep=5e-5))
     straight, askew = answers
     assert straight.opening.max() > 5e-5
-    assert straight.sliding.max() > 1e-2
+    assert straight.sliding.max() > 1e-3
     within = 1e-10 if k_s else 1e-4  # rigid friction ends its search at a tolerance
     to_turned = np.array([[c, s], [-s, c]])
     for first in (0, 4):  # displacements, and the vectors of the quaternions
