@@ -165,6 +165,7 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
         How many points stick rigidly.
     """
     bodies, lines, supports, active = system.bodies, system.lines, system.supports, 0
+    rubbed, put_in = 0.0, 0.0
     for p in range(len(lines)):
         point = lines[p]
         meet = meeting(system, point)
@@ -179,7 +180,7 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
         sprung = -point.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - point.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[point.group] -= 0.5 * h * (point.pressed + push - sprung) * rate
-        books.friction[1] += 0.5 * h * (point.push + push) * carried(point, supports, meet.normal)
+        put_in += 0.5 * h * (point.push + push) * carried(point, supports, meet.normal)
         last: Vector = (point.dragged_x, point.dragged_y, point.dragged_z)
         drag: Vector = (0.0, 0.0, 0.0)
         point.push, point.pressed = push, push - sprung
@@ -192,13 +193,15 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
             list_rigid(system, point, active, (meet.normal, meet.arm, meet.face_arm), meet.gap)
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))
-        books.friction[0] -= dot(mean, slip)
-        books.friction[1] += carried(point, supports, mean)
+        rubbed -= dot(mean, slip)
+        put_in += carried(point, supports, mean)
         point.dragged_x, point.dragged_y, point.dragged_z = drag
         force = plus(scaled(push, meet.normal), drag)
         # friction rubs halfway into the overlap
         turning = spun(scaled(-0.5 * min(meet.gap, 0.0), meet.normal), drag)
         push_apart(bodies, point, meet, force, turning)
+    books.friction[0] += rubbed
+    books.friction[1] += put_in
     return active
 
 

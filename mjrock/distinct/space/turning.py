@@ -17,6 +17,8 @@ from .system import momentum_of
 
 PASSES = 3
 """Passes of the search for the angular velocity in the middle of a step. Each gains the order of h w."""
+SLOW, PASSES_OF_SLOW = 1e-3, 2
+"""Rotation in a step below which fewer passes are enough [rad]: they leave less than its third power."""
 SMALL = 1e-4
 """Angle below which sines and cosines are taken from their series [rad]. The first term left out is below rounding."""
 
@@ -97,7 +99,7 @@ def middle_spin(body: Row, h: float) -> Vector:
     """Angular velocity in the middle of a step of length h, in the axes of the body [rad/s]."""
     start = in_body(body, momentum_of(body))
     spin = eased(body, start)
-    for _ in range(PASSES):
+    for _ in range(PASSES_OF_SLOW if h * h * dot(spin, spin) < SLOW * SLOW else PASSES):
         spin = eased(body, rotated(scaled(-0.5 * h, spin), start))
     return spin
 
@@ -108,8 +110,11 @@ def turn_body(body: Row, h: float) -> None:
     spin = middle_spin(body, h)
     size = math.sqrt(dot(spin, spin))
     half = 0.5 * h * size
-    share = 0.5 * h * (1 - half * half / 6) if half < SMALL else math.sin(half) / size
-    c, (x, y, z) = math.cos(half), scaled(share, spin)
+    if half < SMALL:
+        c, share = 1 - 0.5 * half * half, 0.5 * h * (1 - half * half / 6)
+    else:
+        c, share = math.cos(half), math.sin(half) / size
+    x, y, z = scaled(share, spin)
     qw, qx, qy, qz = body.qw, body.qx, body.qy, body.qz
     w = qw * c - qx * x - qy * y - qz * z
     i = qw * x + qx * c + qy * z - qz * y
