@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 from scipy.linalg import null_space
+from scipy.spatial import ConvexHull
 
 import mjrock as mr
+from mjrock.geometry import convex
 from mjrock.problem.masonry.lines import masses_of, rates, slips
 
 GROUND = mr.Polyhedron.box((8, 8, 1), (0, 0, -0.5), fixed=True, name="ground")
@@ -179,3 +181,42 @@ def test_what_is_of_the_plane_alone_says_so():
         mr.rigid_impact(masonry, np.ones((1, 6)))
     with pytest.raises(ValueError, match="masonry in space: matched_masonry takes blocks in the plane"):
         mr.matched_masonry(masonry)
+
+
+def cut(block, normal, middle):
+    """The two parts of a block on either side of a plane through a point, and the corners of the section."""
+    heights = (block.corners - middle) @ normal
+    section = []
+    for face in block.faces:
+        for i, j in zip(face, face[1:] + face[:1], strict=True):
+            if i < j and heights[i] * heights[j] < 0:
+                share = heights[i] / (heights[i] - heights[j])
+                section.append(block.corners[i] + share * (block.corners[j] - block.corners[i]))
+    section = np.array(section)
+    sides = [np.vstack([block.corners[sign * heights > 0], section]) for sign in (-1, 1)]
+    return [mr.Polyhedron(side) for side in sides], section
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rubble_cut_from_a_cube_has_joints_of_the_area_of_all_cuts(seed):
+    """Each cut adds a section whose area stays that of the joints in it, however often they are divided."""
+    rng = np.random.default_rng(seed)
+    stones, area = [box((1, 1, 1), (0, 0, 0.5))], 1.0  # that on the ground
+    for _ in range(12):
+        stone = stones.pop(int(np.argmax([stone.volume for stone in stones])))
+        normal = rng.standard_normal(3)
+        normal /= np.linalg.norm(normal)
+        parts, section = cut(stone, normal, stone.centroid)
+        across = np.linalg.svd(normal[None])[2][1:]
+        area += convex.area(section_hull(section @ across.T))
+        stones += parts
+    masonry = mr.Masonry([GROUND, *stones], xi=0)
+    assert sum(block.volume for block in masonry.blocks[1:]) == pytest.approx(1.0)
+    assert sum(joint.area for joint in masonry.joints) == pytest.approx(area, rel=1e-3)
+    pairs = [(joint.below, joint.above) for joint in masonry.joints]
+    assert len(set(pairs)) == len(pairs)
+
+
+def section_hull(points):
+    """Corners of the convex hull of points in a plane, counterclockwise."""
+    return points[ConvexHull(points).vertices]
