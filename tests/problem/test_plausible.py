@@ -77,6 +77,14 @@ MISUSE = {
         lambda: mr.Analysis(case(), "analytical", e=mr.Restitution.from_geometry(SMALL)),
         r"of a wall of alpha = 0.2213 rad, and this one has 0.07486 rad",
     ),
+    "e of another wall in a call": (
+        lambda: mr.solve_analytical(mr.Case(SMALL, 0.01, 0.5), E),
+        r"of a wall of alpha = 0.07486 rad, and this one has 0.2213 rad",
+    ),
+    "e of another wall in an analysis that runs": (
+        lambda: mr.Analysis(mr.Case(SMALL, 0.01, 0.5), "analytical", e=E).solve(),
+        r"of a wall of alpha = 0.07486 rad",
+    ),
     "e of another wall in the law": (
         lambda: mr.Contacts.from_law(WALL, mr.Restitution.from_geometry(mr.Block.from_size(1.0, 12.0)), 1e9, 1e9),
         r"of a wall of alpha = 0.08314 rad",

@@ -23,7 +23,7 @@ def test_a_wall_that_leans_on_its_ties_is_lost():
         mr.lost([{"status": "failed", "outcome": None}])
     with pytest.raises(TypeError, match="rows = 3 of type int are no rows of a campaign"):
         mr.lost(3)
-    with pytest.raises(TypeError, match="rows = array.* are no rows of a campaign"):
+    with pytest.raises(TypeError, match=r"rows = array.* are no rows of a campaign"):
         mr.lost(np.array(0.3))
     with pytest.raises(TypeError, match=r"lost\(rows\) makes it of the rows of a campaign"):
         mr.fit_fragility([1.0, 2.0], ["overturned", "time ended"])
