@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.study import ida
 
 WALL = mr.Block.from_size(0.9, 12.0, 10.0, 1900.0)
 E = mr.Restitution.from_geometry(WALL)
@@ -107,7 +108,7 @@ def test_low_scales_of_a_study_are_meant():
 
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert mr.study.ida.built(build, 0.3, "build").case.motion.peak == pytest.approx(0.3)
+        assert ida.built(build, 0.3, "build").case.motion.peak == pytest.approx(0.3)
         mr.Capacity(mr.Analysis(case(), "analytical", e=E)).scaled(0.1)
 
 
