@@ -39,9 +39,12 @@ if TYPE_CHECKING:
     from .problem.ground.motion import GroundMotion
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.case import MasonryCase
+    from .problem.masonry.collapse import Collapse, collapse_multiplier
     from .problem.masonry.joints import Joint
+    from .problem.masonry.joints_in_space import SpaceJoint
     from .problem.masonry.masonry import Masonry
     from .problem.masonry.polygon import Polygon
+    from .problem.masonry.polyhedron import Polyhedron
     from .problem.wall.block import Block
     from .problem.wall.case import Case
     from .problem.wall.damper import Damper
@@ -87,6 +90,7 @@ __all__ = [
     "Block",
     "Capacity",
     "Case",
+    "Collapse",
     "Comparison",
     "ContactParameters",
     "Contacts",
@@ -118,6 +122,7 @@ __all__ = [
     "PairedRatio",
     "Plan",
     "Polygon",
+    "Polyhedron",
     "PowerLaw",
     "Response",
     "ResponseSpectrum",
@@ -128,6 +133,7 @@ __all__ = [
     "Sensitivity",
     "SideStop",
     "SimulationError",
+    "SpaceJoint",
     "StiffnessRange",
     "Store",
     "Thrust",
@@ -137,6 +143,7 @@ __all__ = [
     "automatic_timestep",
     "calibrate",
     "campaign",
+    "collapse_multiplier",
     "compare",
     "contact_for",
     "contact_parameters",
@@ -204,9 +211,12 @@ HOMES = {
     "problem.ground.motion": "GroundMotion",
     "problem.ground.spectrum": "ResponseSpectrum response_spectrum scaled_to_sa scaled_to_spectrum",
     "problem.masonry.case": "MasonryCase",
+    "problem.masonry.collapse": "Collapse collapse_multiplier",
     "problem.masonry.joints": "Joint",
+    "problem.masonry.joints_in_space": "SpaceJoint",
     "problem.masonry.masonry": "Masonry",
     "problem.masonry.polygon": "Polygon",
+    "problem.masonry.polyhedron": "Polyhedron",
     "problem.wall.block": "Block",
     "problem.wall.case": "Case",
     "problem.wall.damper": "Damper",

@@ -71,6 +71,7 @@ def matched_masonry(
             message says what it gives.
     """
     require_kind("masonry", masonry, Masonry)
+    masonry.require_plane("matched_masonry")
     require_kind("e", e, Restitution, type(None))
     amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
     accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)

@@ -75,10 +75,12 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
 
     Raises:
         TypeError: unless the masonry is a `Masonry` and the velocity an array of numbers.
-        ValueError: if the velocity has another shape, a value that is not finite, or is zero everywhere.
+        ValueError: if the velocity has another shape, a value that is not finite, or is zero everywhere, or for masonry
+            in space.
         RuntimeError: if no impulses are found.
     """
     require_kind("masonry", masonry, Masonry)
+    masonry.require_plane("rigid_impact")
     before = require_array("velocity", velocity, (len(masonry.free), 3)).ravel()
     if not before.any():
         raise ValueError("velocity is zero everywhere; an impact needs a block that moves")

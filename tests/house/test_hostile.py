@@ -32,6 +32,8 @@ PAIRED = mujoco.MjModel.from_xml_string(
 )
 PLAN = mr.Plan(base_count=2, side_count=2)
 COLUMN = mr.Masonry.stack([WALL], 5e8)
+GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True)
+BOX = mr.Masonry([GROUND, mr.Polyhedron.box((0.6, 0.4, 2.0), (0, 0, 1))], k_n=5e8)
 
 
 def pushed(scale):
@@ -171,6 +173,53 @@ CALLS = OF_NUMBERS | {
         mr.Polygon,
         {"vertices": [(0, 0), (1, 0), (0, 1)], "density": 2e3, "length": 1.0, "fixed": False, "name": None},
     ),
+    "Polyhedron": (
+        mr.Polyhedron,
+        {
+            "vertices": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], "density": 2e3, "fixed": False, "name": None,
+        },
+    ),
+    "Polyhedron.box": (
+        mr.Polyhedron.box,
+        {"size": (1, 1, 1), "centre": (0, 0, 0), "density": 2e3, "fixed": False, "name": None},
+    ),
+    "Masonry.box": (mr.Masonry.box, {"size": (0.6, 0.4, 2.0), "density": 2e3, "k_n": 1e9}),
+    "Masonry.column": (mr.Masonry.column, {"width": 1.0, "height": 4.0, "drums": 2, "sides": 4, "density": 2e3}),
+    "Masonry.dome": (
+        mr.Masonry.dome,
+        {"radius": 5.0, "thickness": 0.5, "lunes": 4, "hoops": 2, "oculus": 0.1, "density": 2e3, "friction": 0.7},
+    ),
+    "Masonry.facade": (
+        mr.Masonry.facade,
+        {
+            "length": 0.8, "height": 0.4, "depth": 0.4, "unit": (0.4, 0.2), "openings": (), "gable": 0, "density": 2e3,
+        },
+    ),
+    "Polyhedron.prism": (mr.Polyhedron.prism, {"polygon": COLUMN.blocks[1], "middle": 0.0}),
+    "collapse_multiplier": (mr.collapse_multiplier, {"masonry": COLUMN, "direction": 1, "angle": None}),
+    "collapse_multiplier, space": (mr.collapse_multiplier, {"masonry": BOX, "direction": (1.0, 0.3), "angle": None}),
+    "Masonry, space": (
+        mr.Masonry,
+        {
+            "blocks": BOX.blocks, "k_n": 5e8, "friction": 0.7, "xi": 0.05, "frequency": None, "points": 2,
+            "tolerance": 1e-5, "law": None,
+        },
+    ),
+    "MasonryCase, space": (
+        mr.MasonryCase,
+        {
+            "masonry": BOX, "duration": 1.0, "motion": None, "vertical": None, "transverse": None,
+            "velocity": [6 * [0.0]], "effects": (), "supports": (),
+        },
+    ),
+    "Tie, space": (
+        mr.Tie,
+        {"at": (0, 0, 1), "stiffness": 1e6, "anchor": (1, 0, 1), "anchor_block": None, "height": None, "slack": 0.0},
+    ),
+    "Damper, space": (
+        mr.Damper, {"at": (0, 0, 1), "c": 1e6, "anchor": (1, 0, 1), "anchor_block": None, "height": None},
+    ),
+    "Thrust, space": (mr.Thrust, {"at": (0, 0, 1), "force": 1e3, "direction": (0, 1, 0), "height": None}),
     "Masonry": (
         mr.Masonry,
         {
@@ -222,7 +271,7 @@ HOSTILE = st.one_of(
             None, True, False, "", "0.3", b"1", [], [1.0], (), {}, 1j, 10**400, -(10**400), math.nan, math.inf,
             -math.inf, 0, -1, 1e-300, 1e300, np.nan, np.float32(2.0), np.int64(3), np.array(0.3), np.array([0.1, 0.2]),
             object(),
-            WALL, E, SHORT, COLUMN, CONTACTS, CONTACTS.base, MOTION,
+            WALL, E, SHORT, COLUMN, BOX, CONTACTS, CONTACTS.base, MOTION,
             mr.Load(1e3, 2.0), mr.SideStop(2.0), [mr.Opening(0.2, 1.0)], RESPONSE, mr.CALIBRATED, print, "no", 2.5,
         ]
     ),
@@ -310,7 +359,7 @@ def test_every_public_entry_is_tried():
         "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
-        "MeasuredContact",
+        "MeasuredContact", "SpaceJoint", "Collapse",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,15 @@ from numpy.typing import ArrayLike
 from ...quantities import Array, keep, require_array, require_kind, require_whole, require_within, shown
 from ..ground.motion import GroundMotion
 from ..wall.effects import KINDS, Effect, Load
+from ..wall.in_space import LATER, require_in_plane
+from .effects_in_space import require_in_space
 from .masonry import Masonry
+from .polygon import Polygon
 from .support import supports_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-COMPARED = ("masonry", "duration", "motion", "vertical", "effects", "supports")
+COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports")
 """What two equal cases share, beside the velocity."""
 
 
@@ -31,14 +34,16 @@ class MasonryCase:
         motion: horizontal acceleration of the ground and of all fixed blocks, or None. A positive one pushes the blocks
             to the left. Responses are motions as seen from the ground.
         vertical: the same, vertical. A positive one is upwards and presses the blocks on their joints.
-        effects: ties, loads, thrusts and added masses. Each says which `block` it belongs to, by its number in
+        effects: ties, loads, thrusts, added masses and dampers. Each says which `block` it belongs to, by its number in
             `masonry.blocks`. Heights are z; offsets are measured from the centroid of the block. A tie holds the left
-            end of its block at its height.
+            end of its block at its height. In space each acts at a point, `at`.
         velocity: velocity of each block that is not fixed at the release: x, z and rotation [m/s, m/s, rad/s], shape
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
-            turns to the right.
+            turns to the right. In space x, y, z and the angular velocity about the three axes, shape (bodies, 6).
 
-        supports: displacement histories of fixed blocks, by name, (t, dx, dz) in s and m, for `solve_explicit`.
+        supports: displacement histories of fixed blocks, by name, (t, dx, dz) in s and m, in space (t, dx, dy, dz), for
+            `solve_explicit`.
+        transverse: in space, the acceleration of the ground along y, or None; `motion` is that along x.
 
     Raises:
         ValueError: for a value outside its range, velocities of another shape, or an effect that is not on its block.
@@ -51,14 +56,20 @@ class MasonryCase:
     velocity: Array | ArrayLike | None = None
     effects: tuple[Effect, ...] = ()
     supports: Any = ()
+    transverse: GroundMotion | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
         keep(self, duration=require_within("duration", self.duration, 1e-6, 1e6, "s"))
-        for name in ("motion", "vertical"):
+        for name in ("motion", "vertical", "transverse"):
             require_kind(name, getattr(self, name), GroundMotion, type(None))
+        if self.transverse is not None and not self.masonry.in_space:
+            raise ValueError(
+                "transverse is for masonry in space; blocks in the plane are shaken by motion and vertical"
+            )
         if self.velocity is not None:
-            velocity = require_array("velocity", self.velocity, (len(self.masonry.free), 3))
+            unknowns = 6 if self.masonry.in_space else 3
+            velocity = require_array("velocity", self.velocity, (len(self.masonry.free), unknowns))
             for value in velocity[np.abs(velocity) > FASTEST].tolist():
                 require_within("velocity", value, -FASTEST, FASTEST, "m/s or rad/s")
             velocity.setflags(write=False)
@@ -72,18 +83,26 @@ class MasonryCase:
         if not isinstance(given, Sequence) or isinstance(given, str):
             raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
         keep(self, effects=tuple(given))
-        for i, one in enumerate(self.effects):
-            require_kind(f"effects[{i}]", one, *KINDS)
-            require_whole(f"effects[{i}], block", one.block, 0, len(self.masonry.blocks) - 1)
-            block = self.masonry.blocks[one.block]
-            name = f"effects[{i}] on {self.masonry.names[one.block]}"
+        for i, effect in enumerate(self.effects):
+            require_kind(f"effects[{i}]", effect, *KINDS)
+            require_whole(f"effects[{i}], block", effect.block, 0, len(self.masonry.blocks) - 1)
+            block = self.masonry.blocks[effect.block]
+            name = f"effects[{i}] on {self.masonry.names[effect.block]}"
             if block.fixed:
                 raise ValueError(f"{name}: this block is fixed; the valid ones are {list(self.masonry.free)}")
-            low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
-            require_within(f"{name}, height", one.height, float(low[1]), float(high[1]), "m")
-            if isinstance(one, Load):
-                middle = float(block.centroid[0])
-                require_within(f"{name}, offset", one.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
+            if self.masonry.in_space:
+                require_in_space(name, effect, self.masonry)
+            else:
+                self._require_in_plane(name, effect, block)
+
+    def _require_in_plane(self, name: str, effect: Effect, block: Polygon) -> None:
+        """Check that an effect is on its block of the plane."""
+        require_in_plane(name, effect)
+        low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
+        require_within(f"{name}, height", effect.height, float(low[1]), float(high[1]), "m")
+        if isinstance(effect, Load):
+            middle = float(block.centroid[0])
+            require_within(f"{name}, offset", effect.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
 
     def __eq__(self, other: object) -> bool:
         return (
@@ -94,4 +113,4 @@ class MasonryCase:
         )
 
     def __hash__(self) -> int:
-        return hash((self.masonry, self.duration, self.motion, self.vertical, self.effects, self.supports))
+        return hash(tuple(getattr(self, name) for name in COMPARED))

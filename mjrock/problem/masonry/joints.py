@@ -11,6 +11,7 @@ import numpy as np
 
 from ...quantities import Array
 from .polygon import Polygon
+from .polyhedron import Polyhedron
 
 SHORTEST = 10.0
 """Length of the shortest joint, over the tolerance [-]. Blocks that share less than this touch at a corner only."""
@@ -84,7 +85,7 @@ class Outline(NamedTuple):
     normals: Array
 
 
-def names_of(blocks: Sequence[Polygon]) -> tuple[str, ...]:
+def names_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[str, ...]:
     """Names of the blocks: their own, or `block_` and their number."""
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
 
@@ -104,7 +105,7 @@ def find_joints(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...
     """
     names, found = names_of(blocks), []
     outlines = [Outline(block.corners, np.roll(block.corners, -1, axis=0), _normals(block.corners)) for block in blocks]
-    for i, j in _neighbours(blocks, tolerance):
+    for i, j in neighbours(blocks, tolerance):
         deep = _overlap(outlines[i], outlines[j])
         if deep > tolerance:
             raise ValueError(
@@ -115,7 +116,7 @@ def find_joints(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...
     return tuple(found)
 
 
-def _neighbours(blocks: Sequence[Polygon], tolerance: float) -> list[tuple[int, int]]:
+def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list[tuple[int, int]]:
     """Pairs of blocks, not both fixed, whose bounding boxes touch."""
     low = np.array([block.corners.min(axis=0) for block in blocks]) - tolerance
     high = np.array([block.corners.max(axis=0) for block in blocks]) + tolerance

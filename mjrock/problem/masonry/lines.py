@@ -1,33 +1,36 @@
-"""Contact lines of the joints of masonry, and the lowest frequency of masonry whose joints are all closed."""
+"""Contact lines of the joints of masonry, points in space, and the lowest frequency of masonry with closed joints."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import block_diag, csr_array, vstack
 
+from ...geometry.convex import spread
 from ...linear import averaged, entries, lowest_square, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
+from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
+from .polyhedron import Polyhedron
 
 RIGID = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""
 
 
 class Lines(NamedTuple):
-    """Contact lines: points on one block that meet the face of another.
+    """Contact lines, in space contact points: points on one block that meet the face of another.
 
     Args:
         joint: number of the joint that each belongs to, shape (m,).
         body: number of the block that carries the point, which is never fixed, shape (m,).
         face: number of the block whose face it meets, shape (m,).
-        at: where, at rest [m], shape (m, 2).
-        normal: unit vector out of the face, shape (m, 2).
+        at: where, at rest [m], shape (m, 2), in space (m, 3).
+        normal: unit vector out of the face, shape (m, 2), in space (m, 3).
         k: stiffness [N/m], shape (m,).
     """
 
@@ -40,17 +43,41 @@ class Lines(NamedTuple):
 
     @property
     def along(self) -> Array:
-        """Unit vectors along the faces, a quarter turn from the normals, shape (m, 2)."""
+        """In the plane, unit vectors along the faces, a quarter turn from the normals, shape (m, 2)."""
         return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
 
+    @property
+    def across(self) -> tuple[Array, ...]:
+        """Unit vectors along the faces: in the plane `along`; in space two, across one another, shape (m, 3) each.
 
-def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int) -> Lines:
+        Opposite normals have opposite vectors, so that all points of a joint count its slip in the same directions.
+        """
+        if self.normal.shape[1] == 2:
+            return (self.along,)
+        leading = np.abs(self.normal).argmax(axis=1)
+        signs = np.sign(self.normal[np.arange(len(leading)), leading])[:, None]
+        pairs = signs[:, None] * axes_across(signs * self.normal)
+        return pairs[:, 0], pairs[:, 1]
+
+
+def lines_of(blocks: Sequence[Any], joints: Sequence[Any], k_n: Array, points: int) -> Lines:
+    """The contact lines of all joints, or in space their contact points.
+
+    Args:
+        blocks: the blocks.
+        joints: their joints.
+        k_n: stiffness of each joint [N/m3], shape (joints,).
+        points: how many lines a joint has. In space, see `geometry.convex.spread`.
+    """
+    in_space = isinstance(joints[0], SpaceJoint)
+    return (_points_of if in_space else _lines_of)(blocks, joints, k_n, points)
+
+
+def _lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int) -> Lines:
     """The lines of all joints, evenly spaced from end to end of each, the outer two with half the tributary width.
 
     The point is on the block above. At an end where the block above overhangs, the corner is that of the block below,
     and the point is on the block below, unless that one is fixed.
-
-    Each joint has its own k_n [N/m3], and all have the same number of points.
     """
     rows: list[tuple[int, int, int]] = []
     at, normal, k = [], [], []
@@ -67,6 +94,27 @@ def lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, poi
     return Lines(joint_of, body, face, np.reshape(at, (-1, 2)), np.reshape(normal, (-1, 2)), np.array(k))
 
 
+def _points_of(blocks: Sequence[Polyhedron], joints: Sequence[SpaceJoint], k_n: Array, points: int) -> Lines:
+    """The points of all joints in space.
+
+    The point is on the block above. A corner of the joint that is a corner of the block below alone is on that block,
+    unless it is fixed.
+    """
+    rows, at, normal, k = [], [], [], []
+    for number, joint in enumerate(joints):
+        flat, areas = spread(joint.flat, points)
+        places = joint.outline[0] + flat @ joint.axes
+        for place, area in zip(places, areas, strict=True):
+            apart = np.abs(joint.outline - place).max(axis=1)
+            turned = bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())] and not blocks[joint.below].fixed)
+            rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
+            at.append(place)
+            normal.append(-joint.normal if turned else joint.normal)
+            k.append(k_n[number] * area)
+    joint_of, body, face = np.array(rows, dtype=np.int64).T
+    return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
+
+
 def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
     """Where the edge of a block that makes a joint ends, from the middle of the joint along it [m]."""
     corners = block.corners - joint.middle
@@ -79,41 +127,79 @@ def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
     return float(low[edge]), float(high[edge])
 
 
-def rates(blocks: Sequence[Polygon], lines: Lines, directions: Array) -> csr_array:
+def rates(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, directions: Array) -> csr_array:
     """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
 
     They are the generalised forces of unit forces that press the two blocks of a line apart.
 
-    Directions are unit vectors, shape (m, 2). Along the normals the rates are those of the gaps.
+    Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps.
 
     Returns:
-        Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies).
+        Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies). In space for x, y,
+        z and the rotations about the three axes, shape (m, 6 bodies).
     """
-    free = np.array([not block.fixed for block in blocks])
-    number = np.where(free, np.cumsum(free) - 1, -1)
     carriers = np.column_stack([lines.body, lines.face])
     arms = lines.at[:, None] - np.array([block.centroid for block in blocks])[carriers]
-    x, z = directions.T[:, :, None] * np.array([1.0, -1.0])
-    values = np.stack([x, z, arms[..., 1] * x - arms[..., 0] * z], axis=-1)
-    return entries(values, number[carriers], 3 * int(free.sum()))
+    if directions.shape[1] == 2:
+        x, z = directions.T[:, :, None] * np.array([1.0, -1.0])
+        values = np.stack([x, z, arms[..., 1] * x - arms[..., 0] * z], axis=-1)
+    else:
+        forces = directions[:, None] * np.array([[1.0], [-1.0]])
+        values = np.concatenate([forces, np.cross(arms, forces)], axis=-1)
+    number, bodies = _free_numbers(blocks)
+    return entries(values, number[carriers], values.shape[2] * bodies)
 
 
-def slips(blocks: Sequence[Polygon], lines: Lines, joints: int) -> csr_array:
-    """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies)."""
-    return averaged(rates(blocks, lines, lines.along), lines.joint, joints)
+def _free_numbers(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Integers, int]:
+    """Number of each block among those that are not fixed, -1 for one that is, and how many are not."""
+    free = np.array([not block.fixed for block in blocks])
+    return np.where(free, np.cumsum(free) - 1, -1), int(free.sum())
 
 
-def lowest_frequency(blocks: Sequence[Polygon], lines: Lines, friction: Array) -> float:
+def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints: int) -> csr_array:
+    """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies).
+
+    In space a joint has three: along the two directions of `Lines.across`, and the rate at which it twists about its
+    normal [rad/s]. The shape is (3 joints, 6 bodies), the first of all joints before the second.
+    """
+    parts = [averaged(rates(blocks, lines, direction), lines.joint, joints) for direction in lines.across]
+    if lines.normal.shape[1] == 3:
+        number, bodies = _free_numbers(blocks)
+        spins = lines.normal[:, None] * np.array([[1.0], [-1.0]])
+        values = np.concatenate([np.zeros_like(spins), spins], axis=-1)
+        twists = entries(values, number[np.column_stack([lines.body, lines.face])], 6 * bodies)
+        parts.append(averaged(twists, lines.joint, joints))
+    return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
+
+
+def lowest_frequency(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, friction: Array) -> float:
     """The lowest natural frequency of masonry whose joints are all closed and do not slide [rad/s].
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
     weight's own part of the stiffness is left out, as in `reference_frequency`, which is the case of one block.
     """
-    free = [block for block in blocks if not block.fixed]
-    masses = np.array([(block.mass, block.mass, block.inertia) for block in free]).ravel()
-    opening = rates(blocks, lines, lines.normal)
+    masses, axes = masses_of(blocks)
+    opening, sliding = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
+    if axes is not None:
+        opening, sliding = csr_array(opening @ axes), csr_array(sliding @ axes)
     held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    square = lowest_square(sprung(opening, lines.k), masses, slips(blocks, lines, len(friction))[held], RIGID)
+    grip = sliding[np.tile(held, sliding.shape[0] // len(held))]
+    square = lowest_square(sprung(opening, lines.k), masses, grip, RIGID)
     if square == 0:
         raise ValueError("the blocks have no joint that a motion could compress, and xi refers to no frequency")
     return math.sqrt(square)
+
+
+def masses_of(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Array, csr_array | None]:
+    """Mass or moment of inertia of each unknown of the blocks that are not fixed [kg, kg m2], shape (unknowns,).
+
+    In space they are those of rotations about the principal axes. The second value then holds the unknowns of `rates`
+    for unit ones about these axes, in its columns, shape (unknowns, unknowns).
+    """
+    solids = [block for block in blocks if isinstance(block, Polyhedron) and not block.fixed]
+    if solids:
+        turns = [part for block in solids for part in (np.eye(3), block.principal[1])]
+        return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), csr_array(
+            block_diag(turns)
+        )
+    return np.array([(block.mass, block.mass, block.inertia) for block in blocks if not block.fixed]).ravel(), None

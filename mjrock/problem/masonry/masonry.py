@@ -11,36 +11,28 @@ from typing import Any, Self
 
 import numpy as np
 
-from ...quantities import Array, keep, require_kind, require_stiffness, require_whole, require_within, shown
+from ...quantities import Array, keep, require_stiffness, require_whole, require_within, shown
 from ..damping.contacts import Law
 from ..damping.law import law_named
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
-from .joints import Joint, find_joints, names_of
+from .exchange import Exchange
+from .forms_in_space import FormsInSpace
+from .joints import find_joints, names_of
+from .joints_in_space import joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
-from .of_joint import ByKind, OfJoint
+from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
+from .polyhedron import Polyhedron
 from .stack_law import retardations
 
-OF_JOINTS = {
-    "k_n": (1e4, 1e14, "N/m3"),
-    "friction": (0.0, 10.0, ""),
-    "xi": (0.0, 100.0, ""),
-    "k_s": (1e4, 1e16, "N/m3"),
-}
-"""Lowest and highest value of the properties of a joint, and their unit."""
-
-
-def required(name: str, given: OfJoint) -> OfJoint:
-    """A property of joints, a number as a float within its range, or a function as it is; k_s may be None."""
-    if callable(given) or (name == "k_s" and given is None):
-        return given
-    return require_within(name, given, *OF_JOINTS[name])
+MOST_POINTS = 50
+"""Largest `points` of blocks in space."""
 
 
 @dataclass(frozen=True)
-class Masonry:
+class Masonry(FormsInSpace, Exchange):
     """Rigid convex blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
@@ -48,6 +40,9 @@ class Masonry:
     a dashpot that push only, with Coulomb friction. Lines lie at the ends of the joint and evenly between. A joint that
     opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
     `points` and `k_n`, and a structure near its limit can depend on that.
+
+    Blocks in space, of the kind `Polyhedron`, have their joints where two faces cover a common area, with contact
+    points in place of the lines.
 
     In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
     does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the
@@ -59,16 +54,18 @@ class Masonry:
     stands on one joint alone, as in a stack, is put back to where it stuck.
 
     Args:
-        blocks: the blocks, at least one fixed and one that is not, at most 5000.
+        blocks: the blocks, all `Polygon` or all `Polyhedron`, at least one fixed and one that is not, at most 5000.
         k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint.
         friction: coefficient of friction [-], 0 to 10, or a function of the joint.
         xi: damping ratio [-], 0 to 100, or a function of the joint. The dashpot of a line is c = (2 xi / omega) k, the
             stiffness-proportional damping of distinct-element codes.
         frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed. It is
             `reference_frequency` for one block on the ground.
-        points: contact lines of each joint, 2 to 1000.
-        tolerance: largest distance between edges that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A joint is
-            longer than ten times that. The joint lies halfway between the edges, and is closed and unloaded as drawn.
+        points: contact lines of each joint, 2 to 1000. In space 2 to 50: two put a contact point on each corner of the
+            joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each of their
+            corners, and other joints alike. Each point has the stiffness of its tributary area.
+        tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
+            joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
             the rigid wall above it, and a fixed block beside the stack as the side stop of the whole, see
             `Contacts.from_law`. A stack of 2 to 7 blocks that rocks as one then loses more than its wall at an impact:
@@ -81,7 +78,7 @@ class Masonry:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
     """
 
-    blocks: tuple[Polygon, ...]
+    blocks: tuple[Any, ...]
     k_n: OfJoint = 1e10
     friction: OfJoint = 0.7
     xi: OfJoint = 0.05
@@ -96,7 +93,12 @@ class Masonry:
             raise TypeError(f"blocks = {shown(self.blocks)} is not a list of blocks")
         keep(self, blocks=tuple(self.blocks))
         for i, block in enumerate(self.blocks):
-            require_kind(f"blocks[{i}]", block, Polygon)
+            if not isinstance(block, Polygon | Polyhedron):
+                raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon or Polyhedron")
+            if type(block) is not type(self.blocks[0]):
+                raise TypeError(
+                    f"blocks[{i}] is a {type(block).__name__}, and blocks[0] is none; give blocks of one kind"
+                )
         if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
             raise ValueError(
                 f"blocks = {len(self.free)} free and {len(self.blocks) - len(self.free)} fixed; at least one of each "
@@ -107,7 +109,7 @@ class Masonry:
                 raise ValueError(f"blocks: {number} of them have the name {name}")
         keep(
             self,
-            points=require_whole("points", self.points, 2, 1000),
+            points=require_whole("points", self.points, 2, MOST_POINTS if self.in_space else 1000),
             tolerance=require_within("tolerance", self.tolerance, 1e-9, 0.1, "m"),
         )
         if self.frequency is not None:
@@ -119,10 +121,12 @@ class Masonry:
             raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
         if self.law is not None and self.frequency is not None:
             raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
+        if self.law is not None and self.in_space:
+            raise ValueError("law = is for stacks in the plane; give xi to blocks in space")
         if not self.joints:
-            raise ValueError("blocks: no two of them touch along an edge")
+            raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
         for name in OF_JOINTS:
-            self._of_joints(name)
+            values_of(name, getattr(self, name), self.joints)
         if self.law is not None:
             _ = self.retardation
 
@@ -225,6 +229,16 @@ class Masonry:
         """
         return cls(tuple(bonded(length, height, unit, thickness, density)), **options)
 
+    @property
+    def in_space(self) -> bool:
+        """Whether the blocks are bodies in space."""
+        return isinstance(self.blocks[0], Polyhedron)
+
+    def require_plane(self, what: str) -> None:
+        """Raise a ValueError that says what takes blocks in the plane alone, if these are in space."""
+        if self.in_space:
+            raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
+
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Name of each block: its own, or `block_` and its number."""
@@ -237,44 +251,30 @@ class Masonry:
 
     @cached_property
     def centroids(self) -> Array:
-        """Centroid of each block at rest, fixed ones too [m], shape (blocks, 2)."""
+        """Centroid of each block at rest, fixed ones too [m], shape (blocks, 2), in space (blocks, 3)."""
         made = np.array([block.centroid for block in self.blocks])
         made.setflags(write=False)
         return made
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
-        """The joints, in the order of the blocks."""
-        return find_joints(self.blocks, self.tolerance)
-
-    def _of_joints(self, name: str) -> Array:
-        """A property of each joint, shape (joints,)."""
-        given = getattr(self, name)
-        if not callable(given):
-            return np.full(len(self.joints), np.inf if given is None else given)
-        found = []
-        for joint in self.joints:
-            try:
-                found.append(given(joint))
-            except TypeError as error:
-                raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
-        pairs = zip(self.joints, found, strict=True)
-        return np.array([require_within(f"{name} of {joint.name}", one, *OF_JOINTS[name]) for joint, one in pairs])
+    def joints(self) -> tuple[Any, ...]:
+        """The joints, in the order of the blocks: `Joint`, or `SpaceJoint` of blocks in space."""
+        return (joints_in_space if self.in_space else find_joints)(self.blocks, self.tolerance)
 
     @cached_property
     def joint_stiffness(self) -> Array:
         """k_n of each joint [N/m3], shape (joints,)."""
-        return self._of_joints("k_n")
+        return values_of("k_n", self.k_n, self.joints)
 
     @cached_property
     def joint_friction(self) -> Array:
         """Coefficient of friction of each joint [-], shape (joints,)."""
-        return self._of_joints("friction")
+        return values_of("friction", self.friction, self.joints)
 
     @cached_property
     def joint_shear(self) -> Array:
         """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
-        return self._of_joints("k_s")
+        return values_of("k_s", self.k_s, self.joints)
 
     @cached_property
     def lines(self) -> Lines:
@@ -286,7 +286,7 @@ class Masonry:
         """c/k of each joint [s], shape (joints,)."""
         if self.law is not None:
             return retardations(self.blocks, self.joints, self.joint_stiffness, self.points, self.law)
-        xi = self._of_joints("xi")
+        xi = values_of("xi", self.xi, self.joints)
         if not xi.any():
             return np.zeros(len(xi))
         omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)

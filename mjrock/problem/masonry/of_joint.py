@@ -2,16 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from .joints import Joint
+import numpy as np
 
-OfJoint = float | Callable[[Joint], float]
+from ...quantities import Array, require_within, shown
+
+OfJoint = float | Callable[[Any], float]
 """A number, or a function of the joint that gives one."""
+OF_JOINTS = {
+    "k_n": (1e4, 1e14, "N/m3"),
+    "friction": (0.0, 10.0, ""),
+    "xi": (0.0, 100.0, ""),
+    "k_s": (1e4, 1e16, "N/m3"),
+}
+"""Lowest and highest value of the properties of a joint, and their unit."""
 
 
-def value_of(given: OfJoint, joint: Joint) -> float:
+def required(name: str, given: OfJoint) -> OfJoint:
+    """A property of joints, a number as a float within its range, or a function as it is; k_s may be None."""
+    if callable(given) or (name == "k_s" and given is None):
+        return given
+    return require_within(name, given, *OF_JOINTS[name])
+
+
+def values_of(name: str, given: OfJoint | None, joints: Sequence[Any]) -> Array:
+    """A property of each joint, infinite where None is given, shape (joints,)."""
+    if not callable(given):
+        return np.full(len(joints), np.inf if given is None else given)
+    values = []
+    for joint in joints:
+        try:
+            values.append(given(joint))
+        except TypeError as error:
+            raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
+    pairs = zip(joints, values, strict=True)
+    return np.array([require_within(f"{name} of {joint.name}", value, *OF_JOINTS[name]) for joint, value in pairs])
+
+
+def value_of(given: OfJoint, joint: Any) -> float:
     """The value that a joint has."""
     return given(joint) if callable(given) else given
 
@@ -27,7 +58,7 @@ class ByKind:
     beds: OfJoint
     others: OfJoint
 
-    def __call__(self, joint: Joint) -> float:
+    def __call__(self, joint: Any) -> float:
         """The value of a joint."""
         return value_of(self.beds if joint.is_bed else self.others, joint)
 
@@ -44,7 +75,7 @@ class ByName:
 
     values: tuple[tuple[str, float], ...]
 
-    def __call__(self, joint: Joint) -> float:
+    def __call__(self, joint: Any) -> float:
         """The value of a joint.
 
         Raises:

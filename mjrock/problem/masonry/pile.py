@@ -97,11 +97,11 @@ class Pile:
     def inertia(self) -> float:
         """Moment of inertia of the whole about its centroid [kg m2]."""
         central = sum(self.masonry.blocks[i].inertia for i in self.masonry.free)
-        return central + float(self.masses @ ((self._arms - self.centroid) ** 2).sum(axis=1))
+        return float(central) + float(self.masses @ ((self._arms - self.centroid) ** 2).sum(axis=1))
 
     def lever(self, side: float) -> float:
         """Distance of the centroid from the edge of the base at a side, 1 right or -1 left, along the base [m]."""
-        return 0.5 * self.masonry.joints[self.base].width - side * float(self.centroid[0])
+        return 0.5 * float(self.masonry.joints[self.base].width) - side * float(self.centroid[0])
 
     def alpha(self, side: float) -> float:
         """Rotation about the edge at a side, 1 right or -1 left, from which the stack overturns [rad]."""

@@ -53,11 +53,9 @@ class Polygon:
         fixed: bool = False,
         name: str | None = None,
     ) -> None:
-        if name is not None and (not require_text("name", name) or "|" in name or name == "world"):
-            raise ValueError(f"name = {shown(name)} is empty, is world, or holds a |")
         keep(
             self,
-            name=name,
+            name=checked_name(name),
             vertices=checked_corners(vertices),
             density=require_within("density", density, 100.0, 3e4, "kg/m3"),
             length=require_within("length", length, 1e-3, 1e3, "m"),
@@ -120,6 +118,13 @@ class Polygon:
     def size(self) -> float:
         """Largest distance of a vertex from the centroid [m]."""
         return float(np.hypot(*(self.corners - self.centroid).T).max())
+
+
+def checked_name(name: str | None) -> str | None:
+    """The name of a block, or None; a TypeError or ValueError says what is wrong with it."""
+    if name is not None and (not require_text("name", name) or "|" in name or name == "world"):
+        raise ValueError(f"name = {shown(name)} is empty, is world, or holds a |")
+    return name
 
 
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:

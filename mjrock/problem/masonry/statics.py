@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import linprog
-from scipy.sparse import csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
 from ...linear import loose
 from ...quantities import GRAVITY, Array
@@ -25,6 +25,9 @@ ROUNDED = 1e-3
 """To how much a coefficient of friction that is lacking is rounded up [-]."""
 DEAR = 1e-3
 """Price of a force beyond the friction that a joint has, over that of one that is missing [-]."""
+EDGES = 8
+"""Edges of the pyramid that stands for the cone of friction in space. They lie on the cone. Halfway between two of them
+the pyramid has cos(pi/8) = 0.924 of the friction."""
 
 
 def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
@@ -33,18 +36,18 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
     A linear programme looks for forces at the contact lines, pressing and within the cone of friction, that leave the
     least of the weight unbalanced. Where some is left, the multipliers of the equations of equilibrium are the
     velocities of a mechanism, and the blocks that move in it fall. Limit analysis takes friction as associated. Where
-    the joints slide, it can find equilibrium where Coulomb friction has none.
+    the joints slide, it can find equilibrium where Coulomb friction has none. In space the cones are pyramids of eight
+    edges within them.
 
     Args:
         masonry: the masonry.
         applied: further forces on each free block and their moment about its centroid, positive where it turns the top
-            to the right [N, N, N m], shape (free, 3).
+            to the right [N, N, N m], shape (free, 3). In space three forces and three moments, shape (free, 6).
     """
     answer = _balanced(masonry, applied, masonry.joint_friction)
     if _stands(answer):
         return ()
-    moving = np.abs(answer.eqlin.marginals).reshape(-1, 3).max(axis=1)
-    return tuple(masonry.names[i] for i, v in zip(masonry.free, moving, strict=True) if v > MOVES * moving.max())
+    return moving(masonry, answer.eqlin.marginals)
 
 
 def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[float, tuple[str, ...]] | None:
@@ -65,8 +68,8 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
         )
     enough = math.ceil(high / ROUNDED) * ROUNDED
     answer = _balanced(masonry, applied, friction, np.maximum(friction, enough))
-    m = len(masonry.lines.k)
-    beyond = np.reshape(answer.x[2 * m : 4 * m], (2, m)).sum(axis=0)
+    m, edges = len(masonry.lines.k), edges_of_cone(masonry)
+    beyond = np.reshape(answer.x[edges * m : 2 * edges * m], (edges, m)).sum(axis=0)
     short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
 
@@ -76,37 +79,86 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     slide on. No stiffness holds them."""
     blocks, lines, friction = masonry.blocks, masonry.lines, masonry.joint_friction
     sliding = slips(blocks, lines, len(friction))
-    free = loose(csr_array(vstack([rates(blocks, lines, lines.normal), sliding[friction > 0]])))
-    moving = np.abs(free).max(axis=1, initial=0.0).reshape(-1, 3).max(axis=1)
-    slides = np.abs(sliding @ free).max(axis=1, initial=0.0)
+    parts = sliding.shape[0] // len(friction)
+    free = loose(csr_array(vstack([rates(blocks, lines, lines.normal), sliding[np.tile(friction > 0, parts)]])))
+    moved = np.abs(free).max(axis=1, initial=0.0).reshape(len(masonry.free), -1).max(axis=1)
+    slides = np.abs(sliding @ free).max(axis=1, initial=0.0).reshape(parts, -1).max(axis=0)
     return (
-        tuple(masonry.names[i] for i, v in zip(masonry.free, moving, strict=True) if v > MOVES),
+        tuple(masonry.names[i] for i, v in zip(masonry.free, moved, strict=True) if v > MOVES),
         tuple(joint.name for joint, v in zip(masonry.joints, slides, strict=True) if v > MOVES),
     )
+
+
+def moving(masonry: Masonry, velocities: Array) -> tuple[str, ...]:
+    """Names of the blocks that move in a mechanism, of velocities of all unknowns over the size of their block."""
+    speeds = np.abs(velocities).reshape(len(masonry.free), -1).max(axis=1)
+    return tuple(masonry.names[i] for i, v in zip(masonry.free, speeds, strict=True) if v > MOVES * speeds.max())
+
+
+def weight_of(masonry: Masonry) -> Array:
+    """The weight of each free block as a generalised force, shape (unknowns,) [N, N m]."""
+    across = 3 if masonry.in_space else 2
+    down = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
+    down[:, across - 1] = [-GRAVITY * masonry.blocks[i].mass for i in masonry.free]
+    return down.ravel()
+
+
+def sizes_of(masonry: Masonry) -> Array:
+    """What moments of each unknown are divided by to compare with forces: 1, and the size of the block [m]."""
+    parts = 3 if masonry.in_space else 1
+    forces = 3 if masonry.in_space else 2
+    return np.array([(*[1.0] * forces, *[masonry.blocks[i].size] * parts) for i in masonry.free]).ravel()
+
+
+def method(masonry: Masonry) -> str:
+    """How linear programmes are solved: in space by an interior point method, which is several times faster there."""
+    return "highs-ipm" if masonry.in_space else "highs"
+
+
+def edges_of_cone(masonry: Masonry) -> int:
+    """How many forces span the cone of friction of a contact line."""
+    return EDGES if masonry.in_space else 2
+
+
+def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = None) -> csc_array:
+    """Generalised forces of unit pressures along the edges of the cones, moments over the size of the block.
+
+    Args:
+        masonry: the masonry.
+        friction: coefficient of each joint [-], shape (joints,).
+        across: directions along the face of each line, as of `Lines.across`, the first of which the edges begin at.
+
+    Returns:
+        One column for each edge and line, the first edges of all lines before the second, shape (unknowns, edges m).
+    """
+    lines, count = masonry.lines, edges_of_cone(masonry)
+    pressing = rates(masonry.blocks, lines, lines.normal)
+    rubbing = [rates(masonry.blocks, lines, along) for along in across or lines.across]
+    turns = 2 * math.pi * np.arange(count) / count
+    spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(rubbing)]
+    rubbed = diags_array(friction[lines.joint])
+    rows = [pressing + rubbed @ sum(share * along for share, along in zip(e, rubbing, strict=True)) for e in spread]
+    return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
 def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None) -> Any:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
-    The unknowns are the forces along both edges of the cone of each line, then what is missing. With `dear`, a wider
+    The unknowns are the forces along the edges of the cone of each line, then what is missing. With `dear`, a wider
     cone, forces along its edges come second and are used as little as possible.
     """
-    lines, free = masonry.lines, [masonry.blocks[i] for i in masonry.free]
-    pressing, rubbing = rates(masonry.blocks, lines, lines.normal), rates(masonry.blocks, lines, lines.along)
-    weight = (np.array([(0.0, -GRAVITY * block.mass, 0.0) for block in free]) + applied).ravel()
+    weight = weight_of(masonry) + np.ravel(applied)
     total = float(np.abs(weight).sum())
-    sizes = np.array([(1.0, 1.0, block.size) for block in free]).ravel()
     # the edges of the cone of each line carry its force; what is missing pushes either way
     edges, cost = [], []
     for cone, price in ((friction, 0.0), (dear, DEAR)):
         if cone is not None:
-            rubbed = diags_array(cone[lines.joint]) @ rubbing
-            edges.append(diags_array(1 / sizes) @ vstack([pressing + rubbed, pressing - rubbed]).T)
-            cost.append(np.full(2 * len(lines.k), price))
+            edges.append(cones(masonry, cone))
+            cost.append(np.full(edges[-1].shape[1], price))
     missing = eye_array(len(weight))
     columns = hstack([*edges, missing, -missing])
     prices = np.concatenate([*cost, np.ones(2 * len(weight))])
-    return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes, method="highs")
+    return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry))
 
 
 def _stands(answer: Any) -> bool:

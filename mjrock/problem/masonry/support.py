@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ...quantities import Array, require_kind, require_row, shown
+from ..wall.in_space import LATER
 from .masonry import Masonry
 
 FARTHEST = 100.0
@@ -23,21 +24,23 @@ class Support:
         block: its number in the masonry.
         t: times [s], increasing. Before the first and after the last the block rests.
         dx, dz: displacements from where it is drawn, linear in between [m].
+        dy: the same along y, in space; None in the plane.
     """
 
     block: int
     t: tuple[float, ...]
     dx: tuple[float, ...]
     dz: tuple[float, ...]
+    dy: tuple[float, ...] | None = field(default=None, kw_only=True, metadata=LATER)
 
     @property
     def displacement(self) -> Array:
-        """Displacements [m], shape (samples, 2)."""
-        return np.column_stack([self.dx, self.dz])
+        """Displacements [m], shape (samples, 2), in space (samples, 3)."""
+        return np.column_stack([self.dx, self.dz] if self.dy is None else [self.dx, self.dy, self.dz])
 
 
 def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
-    """The supports, from a mapping of names of fixed blocks to (t, dx, dz).
+    """The supports, from a mapping of names of fixed blocks to (t, dx, dz), in space to (t, dx, dy, dz).
 
     Raises:
         TypeError: for what is no such mapping.
@@ -47,24 +50,28 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
         return given
     require_kind("supports", given, Mapping)
     fixed = [masonry.names[i] for i, block in enumerate(masonry.blocks) if block.fixed]
-    supports = []
+    labels = ("t", "dx", "dy", "dz") if masonry.in_space else ("t", "dx", "dz")
+    wanted, supports = ", ".join(labels), []
     for name, histories in given.items():
         if name not in fixed:
             raise ValueError(f"supports: {shown(name)} is no fixed block; the valid ones are {', '.join(fixed)}")
-        if not isinstance(histories, list | tuple) or len(histories) != 3:
-            raise TypeError(f"supports, {name} = {shown(histories)} is not (t, dx, dz)")
-        t, dx, dz = (
-            require_row(f"supports, {name}, {label}", values, "number")
-            for label, values in zip(("t", "dx", "dz"), histories, strict=True)
-        )
-        if not len(t) == len(dx) == len(dz):
-            raise ValueError(f"supports, {name}: t, dx, dz have {len(t)}, {len(dx)} and {len(dz)} values; give as many")
-        if not (np.diff(t) > 0).all():
+        if not isinstance(histories, list | tuple) or len(histories) != len(labels):
+            raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted})")
+        rows = {
+            label: require_row(f"supports, {name}, {label}", values, "number")
+            for label, values in zip(labels, histories, strict=True)
+        }
+        lengths = [len(row) for row in rows.values()]
+        if len(set(lengths)) > 1:
+            counts = f"{', '.join(map(str, lengths[:-1]))} and {lengths[-1]}"
+            raise ValueError(f"supports, {name}: {wanted} have {counts} values; give as many")
+        if not (np.diff(rows["t"]) > 0).all():
             raise ValueError(f"supports, {name}: t does not increase")
-        far = max(float(np.abs(dx).max()), float(np.abs(dz).max()))
+        far = max(float(np.abs(rows[label]).max()) for label in labels[1:])
         if far > FARTHEST:
             raise ValueError(
                 f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m"
             )
-        supports.append(Support(masonry.names.index(name), *(tuple(row.tolist()) for row in (t, dx, dz))))
+        histories_of = {label: tuple(row.tolist()) for label, row in rows.items()}
+        supports.append(Support(masonry.names.index(name), **histories_of))
     return tuple(supports)

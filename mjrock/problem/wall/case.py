@@ -26,6 +26,7 @@ from ..ground.motion import GroundMotion
 from .block import Block
 from .damper import Damper
 from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
+from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .ties_on_wall import Pull, stored, taken, yielded
@@ -105,6 +106,7 @@ class Case:
                 raise ValueError(
                     f"effects[{i}], block = {effect.block}, is outside the valid range: a wall has block 0"
                 )
+            require_in_plane(f"effects[{i}]", effect)
             require_within(f"effects[{i}], height of the {type(effect).__name__}", effect.height, 0.0, top, "m")
             if isinstance(effect, Load):
                 require_within(f"effects[{i}], offset of the Load", effect.offset, -b, b, "m")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ...quantities import keep, require_whole, require_within
-from .limits import BLOCKS, HIGHEST
+from .in_space import LATER, Point, height_of, point_or_none
+from .limits import BLOCKS
 
 
 @dataclass(frozen=True)
@@ -19,20 +20,30 @@ class Damper:
         c: damping coefficient [N s/m], 0 to 1e9.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
         block: the block that it holds.
+        at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
+        anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
+        anchor_block: in space, the block that the other end is fixed to and moves with; None is the ground.
 
     Raises:
         ValueError: for a value outside its range.
     """
 
-    height: float
-    c: float
+    height: float = None  # type: ignore[assignment]
+    c: float = None  # type: ignore[assignment]
     length: float = 5.0
     block: int = 0
+    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
+        at, anchor = point_or_none("at of the damper", self.at), point_or_none("anchor of the damper", self.anchor)
+        keep(self, at=at, anchor=anchor)
+        if self.anchor_block is not None:
+            keep(self, anchor_block=require_whole("anchor_block of the damper", self.anchor_block, 0, BLOCKS))
         keep(
             self,
-            height=require_within("height of the damper", self.height, 0.0, HIGHEST, "m"),
+            height=height_of("damper", self.height, self.at),
             c=require_within("coefficient c of the damper", self.c, 0.0, 1e9, "N s/m"),
             length=require_within("length of the damper", self.length, 0.01, 1000.0, "m"),
             block=require_whole("block of the damper", self.block, 0, BLOCKS),

@@ -1,16 +1,18 @@
 """Effects that a case may carry: ties, thrusts, loads, added masses, and a side stop that reaches only so high.
 
 Heights are measured from the base. Offsets are measured from the middle of the base, positive outwards, away from the
-side stop. A wall of many blocks names the block that an effect belongs to; a single wall is block 0.
+side stop. A wall of many blocks names the block that an effect belongs to; a single wall is block 0. On masonry in
+space an effect acts at a point, `at`, in place of a height.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ...quantities import keep, require_real, require_whole, require_within
 from .damper import Damper
+from .in_space import LATER, Point, direction_or_none, height_of, point_or_none
 from .limits import BLOCKS, HIGHEST
 
 
@@ -32,24 +34,33 @@ class Tie:
         block: the block that it holds.
         ultimate: plastic elongation at which it breaks [m], 0 to 10, such as the slip at which an anchor plate is
             pulled through; 0 for one that breaks as it begins to yield. None never breaks.
+        at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
+        anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
+        anchor_block: in space, the block that the other end is fixed to and moves with; None is the ground.
 
     Raises:
         ValueError: for a value outside its range, or an `ultimate` without a finite strength.
     """
 
-    height: float
-    stiffness: float
+    height: float = None  # type: ignore[assignment]
+    stiffness: float = None  # type: ignore[assignment]
     slack: float = 0.0
     strength: float = math.inf
     length: float = 5.0
     anchor_height: float | None = None
     block: int = 0
     ultimate: float | None = None
+    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
+        keep(self, at=point_or_none("at of the tie", self.at), anchor=point_or_none("anchor of the tie", self.anchor))
+        if self.anchor_block is not None:
+            keep(self, anchor_block=require_whole("anchor_block of the tie", self.anchor_block, 0, BLOCKS))
         keep(
             self,
-            height=require_within("height of the tie", self.height, 0.0, HIGHEST, "m"),
+            height=height_of("tie", self.height, self.at),
             stiffness=require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m"),
             slack=require_within("slack of the tie", self.slack, 0.0, 10.0, "m"),
             strength=require_real("strength of the tie", self.strength),
@@ -79,6 +90,8 @@ class Tie:
     @property
     def reach(self) -> float:
         """Length up to which the tie is slack [m]."""
+        if self.at is not None and self.anchor is not None:
+            return math.dist(self.at, self.anchor) + self.slack
         return math.hypot(self.length, self.rise) + self.slack
 
     @property
@@ -100,19 +113,25 @@ class Thrust:
         height: where it acts, on the middle of the wall [m].
         force: its size on the whole length of the wall, positive outwards [N], -1e9 to 1e9.
         block: the block that it pushes.
+        at: in space, the point where it acts, x, y, z at rest [m]; it takes the place of the height.
+        direction: in space, the direction of the force, a vector of any length; None is x, out of the facade.
 
     Raises:
         ValueError: for a value outside its range.
     """
 
-    height: float
-    force: float
+    height: float = None  # type: ignore[assignment]
+    force: float = None  # type: ignore[assignment]
     block: int = 0
+    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    direction: Point | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
+        direction = direction_or_none("direction of the thrust", self.direction)
+        keep(self, at=point_or_none("at of the thrust", self.at), direction=direction)
         keep(
             self,
-            height=require_within("height of the thrust", self.height, 0.0, HIGHEST, "m"),
+            height=height_of("thrust", self.height, self.at),
             force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"),
             block=require_whole("block of the thrust", self.block, 0, BLOCKS),
         )
@@ -127,21 +146,24 @@ class Load:
         height: where it acts [m].
         offset: from the middle of the base, outwards [m], -10 to 10.
         block: the block that it rests on.
+        at: in space, the point where it acts, x, y, z at rest [m]; it takes the place of height and offset.
 
     Raises:
         ValueError: for a value outside its range.
     """
 
     force: float
-    height: float
+    height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
+    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
+        keep(self, at=point_or_none("at of the load", self.at))
         keep(
             self,
             force=require_within("force of the load", self.force, 0.0, 1e9, "N"),
-            height=require_within("height of the load", self.height, 0.0, HIGHEST, "m"),
+            height=height_of("load", self.height, self.at),
             offset=require_within("offset of the load", self.offset, -10.0, 10.0, "m"),
             block=require_whole("block of the load", self.block, 0, BLOCKS),
         )
@@ -156,21 +178,24 @@ class AddedMass:
         height: where it is [m].
         offset: from the middle of the base, outwards [m], -13 to 13.
         block: the block that it moves with.
+        at: in space, where it is, x, y, z at rest [m]; it takes the place of height and offset.
 
     Raises:
         ValueError: for a value outside its range.
     """
 
     mass: float
-    height: float
+    height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
+    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
+        keep(self, at=point_or_none("at of the added mass", self.at))
         keep(
             self,
             mass=require_within("added mass", self.mass, 0.0, 1e8, "kg"),
-            height=require_within("height of the added mass", self.height, 0.0, HIGHEST, "m"),
+            height=height_of("added mass", self.height, self.at),
             offset=require_within("offset of the added mass", self.offset, -13.0, 13.0, "m"),
             block=require_whole("block of the added mass", self.block, 0, BLOCKS),
         )

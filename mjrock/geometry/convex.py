@@ -1,0 +1,138 @@
+"""Convex polygons in a plane: clipping, cleaning, area, width, and weights of their corners.
+
+A polygon is an array of its corners counterclockwise, shape (n, 2) [m].
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..quantities import Array
+
+
+def turned(a: Array, b: Array) -> Array:
+    """The product a_x b_y - a_y b_x, of vectors with shape (..., 2)."""
+    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
+
+
+def clipped(polygon: Array, window: Array) -> Array:
+    """The part of a convex polygon within another, by Sutherland and Hodgman (1974); no corners where there is none."""
+    for start, way in zip(window, np.roll(window, -1, axis=0) - window, strict=True):
+        inwards = turned(way, polygon - start)
+        if (inwards >= 0).all():
+            continue
+        kept = []
+        for i in range(len(polygon)):
+            j = (i + 1) % len(polygon)
+            if inwards[i] >= 0:
+                kept.append(polygon[i])
+            if (inwards[i] >= 0) != (inwards[j] >= 0):
+                share = inwards[i] / (inwards[i] - inwards[j])
+                kept.append(polygon[i] + share * (polygon[j] - polygon[i]))
+        if len(kept) < 3:
+            return np.zeros((0, 2))
+        polygon = np.array(kept)
+    return polygon
+
+
+def cleaned(polygon: Array, tolerance: float) -> Array:
+    """A polygon without corners that lie within a distance of the line between their neighbours [m].
+
+    The flattest corner goes first, and the next is judged without it. No corners are left of a polygon that is nowhere
+    wider.
+    """
+    while len(polygon):
+        before, after = np.roll(polygon, 1, axis=0), np.roll(polygon, -1, axis=0)
+        chord = np.hypot(*(after - before).T)
+        height = np.hypot(*(polygon - before).T)
+        np.divide(turned(polygon - before, after - before), chord, out=height, where=chord > 0)
+        height = np.minimum(np.abs(height), np.hypot(*(polygon - before).T))
+        flattest = int(height.argmin())
+        if height[flattest] > tolerance:
+            return polygon
+        polygon = np.delete(polygon, flattest, axis=0) if len(polygon) > 3 else np.zeros((0, 2))
+    return polygon
+
+
+def area(polygon: Array) -> float:
+    """Area of a polygon [m2]."""
+    about = polygon - polygon[0]
+    return 0.5 * float(turned(about, np.roll(about, -1, axis=0)).sum())
+
+
+def centroid(polygon: Array) -> Array:
+    """Centroid of the area of a polygon [m], shape (2,)."""
+    about = polygon - polygon[0]
+    after = np.roll(about, -1, axis=0)
+    twice = turned(about, after)
+    middle: Array = polygon[0] + (twice[:, None] * (about + after)).sum(axis=0) / (3 * twice.sum())
+    return middle
+
+
+def width(polygon: Array) -> float:
+    """The smallest extent of a convex polygon in any direction of its plane [m]."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    across = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
+    return float(np.ptp(polygon @ across.T, axis=0).min())
+
+
+def shares(polygon: Array, point: Array) -> Array:
+    """Weights of the corners of a convex polygon, all positive, whose sum is 1 and whose mean is a point inside, (n,).
+
+    They are the mean value coordinates of Floater (2003).
+    """
+    spokes = polygon - point
+    lengths = np.hypot(*spokes.T)
+    after = np.roll(spokes, -1, axis=0)
+    # tan of half the angle between a spoke and the next
+    halves = turned(spokes, after) / (lengths * np.roll(lengths, -1) + (spokes * after).sum(axis=1))
+    weights = (halves + np.roll(halves, 1)) / lengths
+    normed: Array = weights / weights.sum()
+    return normed
+
+
+def spread(polygon: Array, points: int) -> tuple[Array, Array]:
+    """Points that stand for the area of a convex polygon: where [m], shape (p, 2), and how much of it [m2], shape (p,).
+
+    Two are its corners. With more, a polygon of four corners is divided into (points - 1)^2 cells by lines between
+    opposite edges, which makes points x points points. Any other polygon is divided into one quadrilateral per corner,
+    between that corner, the middles of its edges and the centroid, and each of them into m^2 cells, with m the half of
+    points - 1, rounded up. Each cell gives its area to its corners. All areas are positive. Their sum is the area of
+    the polygon, and their mean is its centroid.
+    """
+    if points == 2:
+        return polygon, area(polygon) * shares(polygon, centroid(polygon))
+    if len(polygon) == 4:
+        quads, divisions = [polygon], points - 1
+    else:
+        middle, halves = centroid(polygon), 0.5 * (polygon + np.roll(polygon, -1, axis=0))
+        quads = [np.array([polygon[i], halves[i], middle, halves[i - 1]]) for i in range(len(polygon))]
+        divisions = points // 2
+    places, areas = [], []
+    steps = np.linspace(0.0, 1.0, divisions + 1)
+    for a, b, c, d in quads:
+        s, t = np.meshgrid(steps, steps, indexing="ij")
+        grid = (
+            ((1 - s) * (1 - t))[..., None] * a
+            + (s * (1 - t))[..., None] * b
+            + (s * t)[..., None] * c
+            + ((1 - s) * t)[..., None] * d
+        )
+        for i in range(divisions):
+            for j in range(divisions):
+                cell = np.array([grid[i, j], grid[i + 1, j], grid[i + 1, j + 1], grid[i, j + 1]])
+                places.append(cell)
+                areas.append(area(cell) * shares(cell, centroid(cell)))
+    return _gathered(np.concatenate(places), np.concatenate(areas))
+
+
+def _gathered(places: Array, areas: Array) -> tuple[Array, Array]:
+    """Places that coincide as one, with the sum of their areas."""
+    extent = float(np.ptp(places, axis=0).max())
+    keys = np.round((places - places[0]) / (1.3e-9 * extent))  # no fraction of an edge lies between two keys
+    _, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    total = np.zeros(len(first))
+    np.add.at(total, number.ravel(), areas)
+    order = np.argsort(first)
+    return places[first][order], total[order]

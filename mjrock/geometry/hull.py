@@ -1,0 +1,138 @@
+"""The convex hull of points in space: its faces, and the volume, centroid and inertia of the body that it bounds."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from ..quantities import Array
+
+FLAT = 1e-5
+"""Distance from the plane of a face up to which a vertex belongs to it, over the extent of the points [-]."""
+THINNEST = 1e-4
+"""Smallest thickness of points that bound a body, over their extent [-]."""
+
+
+class Hull(NamedTuple):
+    """The convex hull of points.
+
+    Args:
+        corners: numbers of the points that are its corners, in ascending order.
+        faces: of each face, the numbers of its corners in `corners`, counterclockwise as seen from outside.
+        normals: unit normals out of the faces, shape (faces, 3).
+        depth: how deep each of the points lies inside [m], shape (points,); about zero on the surface.
+    """
+
+    corners: tuple[int, ...]
+    faces: tuple[tuple[int, ...], ...]
+    normals: Array
+    depth: Array
+
+
+class Bulk(NamedTuple):
+    """Volume [m3], centroid [m], shape (3,), and volume integral of x x^T about the centroid [m5], shape (3, 3)."""
+
+    volume: float
+    centroid: Array
+    second: Array
+
+
+def hull_of(points: Array) -> Hull:
+    """The convex hull of points, shape (n, 3). Facets of one plane are one face.
+
+    A point in the middle of a face or on an edge is no corner.
+
+    Raises:
+        ValueError: for points that lie in a plane, with the thickness that they have.
+    """
+    extent = float(np.ptp(points, axis=0).max())
+    centred = (points - points.mean(axis=0)) / extent
+    thickness = float(np.ptp(centred @ np.linalg.svd(centred, full_matrices=False)[2][-1]))
+    if not thickness > THINNEST:
+        raise ValueError(f"lie in a plane: they are {thickness * extent:.3g} m thick")
+    try:
+        facets = ConvexHull(centred)
+    except QhullError:
+        raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick") from None
+    sets = _coplanar(centred, facets)
+    number_of_faces = np.zeros(len(points), dtype=int)
+    for members in sets:
+        number_of_faces[members] += 1
+    corners = np.flatnonzero(number_of_faces >= 3)  # a point on an edge belongs to two faces
+    number = np.full(len(points), -1)
+    number[corners] = np.arange(len(corners))
+    faces, normals = [], []
+    for members in sets:
+        ring = [i for i in members if number[i] >= 0]
+        if len(ring) >= 3:
+            order, normal = _around(centred[ring], centred[members].mean(axis=0))
+            faces.append(tuple(int(number[ring[i]]) for i in order))
+            normals.append(normal)
+    if len(faces) < 4:
+        raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick")
+    outwards = np.array(normals) + 0.0  # no negative zeros
+    offsets = np.array([centred[corners[list(face)]].mean(axis=0) for face in faces])
+    depth = (np.einsum("fi,fi->f", outwards, offsets) - centred @ outwards.T).min(axis=1)
+    return Hull(tuple(corners.tolist()), tuple(faces), outwards, depth * extent)
+
+
+def _coplanar(points: Array, facets: ConvexHull) -> list[list[int]]:
+    """Corners of the facets of each plane, the planes of the largest facets first. Points have an extent of 1."""
+    a, b, c = points[facets.simplices].transpose(1, 0, 2)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    left = np.ones(len(areas), dtype=bool)
+    planes = []
+    for seed in np.argsort(-areas, kind="stable"):
+        if left[seed]:
+            normal, offset = facets.equations[seed, :3], facets.equations[seed, 3]
+            near = np.abs(points @ normal + offset) <= FLAT
+            same = left & near[facets.simplices].all(axis=1) & (facets.equations[:, :3] @ normal > 0)
+            same[seed] = True
+            left &= ~same
+            planes.append(np.unique(facets.simplices[same]).tolist())
+    return planes
+
+
+def _around(ring: Array, middle: Array) -> tuple[list[int], Array]:
+    """The order of corners of a face around it, and its unit normal, which points away from the origin."""
+    about = ring - ring.mean(axis=0)
+    plane = np.linalg.svd(about, full_matrices=False)[2]
+    order = np.argsort(np.arctan2(about @ plane[1], about @ plane[0]), kind="stable")
+    normal = area_vector(about[order])
+    if normal @ middle < 0:
+        order, normal = order[::-1], -normal
+    first = int(np.argmin(order))  # each face starts at its lowest number
+    return np.roll(order, -first).tolist(), normal / np.linalg.norm(normal)
+
+
+def area_vector(ring: Array) -> Array:
+    """The normal of a plane polygon, as long as its area, shape (3,); the ring is counterclockwise about it, (n, 3)."""
+    about = ring - ring[0]
+    summed: Array = 0.5 * np.cross(about, np.roll(about, -1, axis=0)).sum(axis=0)
+    return summed
+
+
+def bulk_of(corners: Array, faces: tuple[tuple[int, ...], ...]) -> Bulk:
+    """Volume, centroid and second moments of a closed body of plane faces.
+
+    They are sums over the tetrahedra between the triangles of the faces and the mean of the corners. A tetrahedron
+    whose triangle is clockwise counts negative.
+
+    Args:
+        corners: [m], shape (n, 3).
+        faces: numbers of the corners of each face, counterclockwise as seen from outside.
+    """
+    origin = corners.mean(axis=0)
+    triangles = np.array([(face[0], i, j) for face in faces for i, j in pairwise(face[1:])])
+    edges = corners[triangles] - origin  # one tetrahedron each: three edges from the origin
+    determinants = np.linalg.det(edges)
+    volume = float(determinants.sum()) / 6
+    sums = edges.sum(axis=1)
+    middle = determinants @ sums / (24 * volume)
+    # integral of x x^T over a tetrahedron: determinant/120 (s s^T + sum of e e^T)
+    weighted = determinants[:, None, None] / 120
+    second = (weighted * (sums[:, :, None] * sums[:, None, :] + edges.transpose(0, 2, 1) @ edges)).sum(axis=0)
+    return Bulk(volume, origin + middle, second - volume * np.outer(middle, middle))

@@ -1,0 +1,209 @@
+"""Joints of masonry in space: where faces of two blocks lie on one another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ...geometry import convex
+from ...quantities import Array
+from .joints import LEVEL, SHORTEST, names_of, neighbours
+from .polyhedron import Polyhedron, Vertices
+
+OPPOSITE = -1 + 1e-3
+"""Largest cosine of the angle between the normals of two faces that make a joint [-]."""
+
+
+@dataclass(frozen=True)
+class SpaceJoint:
+    """Where two blocks in space meet along a plane.
+
+    Args:
+        below, above: numbers of the two blocks. The normal points from `below` to `above`, upwards unless the joint is
+            vertical, and then out of the facade or, across it, along it. A fixed block is always `below`.
+        vertices: corners of the polygon that both faces cover, counterclockwise as seen from above [m].
+        direction: the normal.
+        corners: of each vertex, whether it is a corner of the block below and none of the block above.
+        name: names of the two blocks with a | between them, the one below first.
+    """
+
+    below: int
+    above: int
+    vertices: Vertices
+    direction: tuple[float, float, float]
+    corners: tuple[bool, ...]
+    name: str
+
+    @cached_property
+    def outline(self) -> Array:
+        """Corners of the joint, counterclockwise about the normal [m], shape (n, 3)."""
+        outline = np.array(self.vertices)
+        outline.setflags(write=False)
+        return outline
+
+    @property
+    def normal(self) -> Array:
+        """Unit vector from the block below to the block above, shape (3,)."""
+        return np.array(self.direction)
+
+    @cached_property
+    def axes(self) -> Array:
+        """Two unit vectors in the plane of the joint, right-handed with the normal, shape (2, 3)."""
+        axes: Array = axes_across(self.normal[None])[0]
+        return axes
+
+    @cached_property
+    def flat(self) -> Array:
+        """The outline along `axes`, from its first corner [m], shape (n, 2)."""
+        flat: Array = (self.outline - self.outline[0]) @ self.axes.T
+        return flat
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the joint [m2]."""
+        return convex.area(self.flat)
+
+    @cached_property
+    def width(self) -> float:
+        """The smallest extent of the joint in any direction of its plane [m]."""
+        return convex.width(self.flat)
+
+    @cached_property
+    def middle(self) -> Array:
+        """Centroid of the area of the joint [m], shape (3,)."""
+        middle: Array = self.outline[0] + convex.centroid(self.flat) @ self.axes
+        return middle
+
+    @property
+    def is_bed(self) -> bool:
+        """Whether the joint is horizontal."""
+        return bool(np.abs(self.normal[:2]).max() < LEVEL)
+
+
+class Face(NamedTuple):
+    """A face of a block: corners counterclockwise from outside [m], (n, 3), normal out of it, n.x on it, two axes."""
+
+    corners: Array
+    normal: Array
+    offset: float
+    axes: Array
+
+
+def axes_across(normals: Array) -> Array:
+    """Two unit vectors across each of some normals, shape (m, 3), right-handed with it, shape (m, 2, 3)."""
+    first = np.cross(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    axes: Array = np.stack([first, np.cross(normals, first)], axis=1) + 0.0
+    return axes
+
+
+def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[SpaceJoint, ...]:
+    """The joints between blocks, in the order of the blocks.
+
+    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance. The
+    joint lies halfway between them. Two fixed blocks make none.
+
+    Args:
+        blocks: the blocks.
+        tolerance: largest distance between faces that touch, and largest overlap of blocks [m].
+
+    Raises:
+        ValueError: if two blocks overlap by more than the tolerance. The message names both.
+    """
+    names = names_of(blocks)
+    faces = [faces_of(block) for block in blocks]
+    normals = [block.normals for block in blocks]
+    offsets = [np.array([face.offset for face in sides]) for sides in faces]
+    joints: list[SpaceJoint] = []
+    for i, j in neighbours(blocks, tolerance):
+        deep = min(
+            float((offsets[i] - (blocks[j].corners @ normals[i].T).min(axis=0)).min()),
+            float((offsets[j] - (blocks[i].corners @ normals[j].T).min(axis=0)).min()),
+        )
+        if deep < -tolerance:
+            continue
+        if deep > tolerance:
+            deep = min(deep, _depth_across_edges(blocks[i], blocks[j]))
+            if deep > tolerance:
+                raise ValueError(
+                    f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the "
+                    f"tolerance, {tolerance:g} m"
+                )
+        for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
+            joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), names, tolerance)
+    return tuple(joints)
+
+
+def faces_of(block: Polyhedron) -> list[Face]:
+    """The faces of a block."""
+    rings = [block.corners[list(face)] for face in block.faces]
+    sides = zip(rings, block.normals, axes_across(block.normals), strict=True)
+    return [Face(ring, normal, float((ring @ normal).mean()), axes) for ring, normal, axes in sides]
+
+
+def _depth_across_edges(block: Polyhedron, neighbour: Polyhedron) -> float:
+    """The least depth by which two blocks overlap along the products of an edge of each [m], see Gottschalk (1996)."""
+    across = np.cross(block.edges[:, None], neighbour.edges[None]).reshape(-1, 3)
+    lengths = np.linalg.norm(across, axis=1)
+    across = across[lengths > 1e-6] / lengths[lengths > 1e-6, None]
+    if not len(across):
+        return np.inf
+    along, beside = block.corners @ across.T, neighbour.corners @ across.T
+    ahead, behind = along.max(axis=0) - beside.min(axis=0), beside.max(axis=0) - along.min(axis=0)
+    return float(np.minimum(ahead, behind).min())
+
+
+def _between(
+    blocks: Sequence[Polyhedron],
+    pair: tuple[int, int],
+    faces: tuple[Face, Face],
+    names: Sequence[str],
+    tolerance: float,
+) -> Iterator[SpaceJoint]:
+    """The joint between two faces that look at each other, if they touch."""
+    face, other = faces
+    heights = other.corners @ face.normal - face.offset
+    if heights.min() > tolerance or heights.max() < -tolerance:
+        return
+    normal, origin = face.normal, face.corners[0]
+    axes = face.axes
+    outline = convex.clipped((face.corners - origin) @ axes.T, ((other.corners - origin) @ axes.T)[::-1])
+    outline = convex.cleaned(outline, tolerance)
+    if not len(outline) or convex.width(outline) <= SHORTEST * tolerance:
+        return
+    places = origin + outline @ axes
+    gaps = (other.offset - places @ other.normal) / float(normal @ other.normal)
+    if np.abs(gaps).max() > tolerance:
+        return
+    yield _joint(blocks, pair, places + 0.5 * gaps[:, None] * normal, normal, names, SHORTEST * tolerance)
+
+
+def _joint(
+    blocks: Sequence[Polyhedron],
+    pair: tuple[int, int],
+    places: Array,
+    normal: Array,
+    names: Sequence[str],
+    near: float,
+) -> SpaceJoint:
+    """The joint between two blocks with these corners, counterclockwise about the normal out of the first block."""
+    (below, above), upwards = pair, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
+    turned = blocks[above].fixed or (upwards < 0 and not blocks[below].fixed)
+    if turned:
+        below, above, normal, places = above, below, -normal, places[::-1]
+
+    def is_corner(block: Polyhedron, place: Array) -> bool:
+        return bool(np.linalg.norm(block.corners - place, axis=1).min() < near)
+
+    return SpaceJoint(
+        below=below,
+        above=above,
+        vertices=tuple((float(x), float(y), float(z)) for x, y, z in places),
+        direction=(float(normal[0]), float(normal[1]), float(normal[2])),
+        corners=tuple(is_corner(blocks[below], p) and not is_corner(blocks[above], p) for p in places),
+        name=f"{names[below]}|{names[above]}",
+    )

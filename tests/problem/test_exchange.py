@@ -1,0 +1,186 @@
+"""Masonry from files of other programs and back; what is no masonry is refused with the file and the body."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+UNIT = (0.4, 0.2)
+FACADE = mr.Masonry.facade(0.8, 0.4, 0.4, UNIT, xi=0)
+CUBE_FACES = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+
+
+def cube(low=(0.0, 0.0, 0.0), edge=1.0):
+    """Corners with z fastest, of the faces above."""
+    return [tuple(low[i] + edge * bit[i] for i in range(3)) for bit in np.ndindex(2, 2, 2)]
+
+
+def obj(*bodies, kind="o"):
+    text, before = "", 1
+    for name, corners, faces in bodies:
+        text += f"{kind} {name}\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        text += "".join("f " + " ".join(f"{before + i}//1" for i in face) + "\n" for face in faces)
+        before += len(corners)
+    return text
+
+
+def triangles(masonry):
+    """Each body as triangles, one after the other."""
+    for name, block in zip(masonry.names, masonry.blocks, strict=True):
+        yield name, [block.corners[[f[0], f[i], f[i + 1]]] for f in block.faces for i in range(1, len(f) - 1)]
+
+
+def binary_stl(masonry):
+    facets = [facet for _, body in triangles(masonry) for facet in body]
+    rows = [struct.pack("<12fH", 0, 0, 0, *facet.ravel(), 0) for facet in facets]
+    return bytes(80) + struct.pack("<I", len(rows)) + b"".join(rows)
+
+
+def text_stl(masonry):
+    lines = []
+    for name, body in triangles(masonry):
+        lines.append(f"solid {name}")
+        for facet in body:
+            corners = [f"vertex {x!r} {y!r} {z!r}" for x, y, z in facet.tolist()]
+            lines += ["facet normal 0 0 0", "outer loop", *corners, "endloop", "endfacet"]
+        lines.append(f"endsolid {name}")
+    return "\n".join(lines).encode()
+
+
+def written(path, content):
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def same(masonry, other):
+    """Whether masonry has the same blocks; the order of vertices does not count."""
+    shapes = [[(b.fixed, sorted(b.vertices)) for b in each.blocks] for each in (masonry, other)]
+    return masonry.names == other.names and shapes[0] == shapes[1]
+
+
+def test_an_obj_file_and_back(tmp_path):
+    path = FACADE.to_obj(tmp_path / "wall.obj")
+    masonry = mr.Masonry.from_obj(path, fixed=["ground"], density=1800.0, k_n=1e9, xi=0)
+    assert same(masonry, FACADE)
+    assert masonry.blocks[1].density == 1800.0
+    assert [joint.name for joint in masonry.joints] == [joint.name for joint in FACADE.joints]
+
+
+def test_a_compas_model_and_back(tmp_path):
+    blocks = [*FACADE.blocks[:-1], mr.Polyhedron(FACADE.blocks[-1].vertices, 2400.0, name="dense")]
+    path = mr.Masonry(blocks, xi=0).to_compas(tmp_path / "wall.json")
+    masonry = mr.Masonry.from_compas(path, xi=0)
+    assert masonry == mr.Masonry.from_compas(path, xi=0)
+    assert same(masonry, mr.Masonry(blocks, xi=0))
+    assert masonry.blocks[-1].density == 2400.0
+
+
+@pytest.mark.parametrize("content", [binary_stl, text_stl])
+def test_stl_files(tmp_path, content):
+    """Bodies that touch are told apart where they come one after the other."""
+    path = written(tmp_path / "wall.stl", content(FACADE))
+    name = "ground" if content is text_stl else "body_0"
+    masonry = mr.Masonry.from_stl(path, fixed=[name], xi=0)
+    assert len(masonry.blocks) == len(FACADE.blocks)
+    assert len(masonry.joints) == len(FACADE.joints)
+    assert [b.mass for b in masonry.blocks] == pytest.approx([b.mass for b in FACADE.blocks], rel=1e-5)
+
+
+def test_groups_negative_numbers_millimetres_and_ground(tmp_path):
+    corners = np.array(cube(edge=1000.0)) + np.array([0, 0, 500.0])
+    text = obj(("one|half", corners, CUBE_FACES), kind="g")
+    text += "g other\n" + "".join(f"v {x + 1000} {y} {z}\n" for x, y, z in corners)
+    text += "".join("f " + " ".join(str(i - 8) for i in face) + "\n" for face in CUBE_FACES)
+    masonry = mr.Masonry.from_obj(written(tmp_path / "a.obj", text), ground=True, scale=0.001, xi=0)
+    assert masonry.names == ("ground", "one_half", "other")
+    assert [joint.name for joint in masonry.joints] == ["ground|one_half", "ground|other", "one_half|other"]
+    assert masonry.centroids[1] == pytest.approx([0.5, 0.5, 1.0])
+
+
+def test_bodies_of_one_object_are_numbered_also_when_their_faces_alternate(tmp_path):
+    corners = cube() + cube((2.0, 0, 0))
+    faces = [tuple(i + 8 * k for i in face) for face in CUBE_FACES for k in (0, 1)]
+    path = written(tmp_path / "a.obj", obj(("pair", corners, faces)))
+    assert mr.Masonry.from_obj(path, ground=True, xi=0).names == ("ground", "pair_0", "pair_1")
+
+
+def test_a_model_of_compas_that_is_moved(tmp_path):
+    model = json.loads(FACADE.to_compas(tmp_path / "a.json").read_text())
+    matrix = np.eye(4)
+    matrix[:3, 3] = [1.0, 2.0, 3.0]
+    for element in model["data"]["elements"].values():
+        element["data"]["transformation"] = {"data": {"matrix": matrix.tolist()}}
+        element["data"]["name"] = "Block"
+    masonry = mr.Masonry.from_compas(written(tmp_path / "b.json", json.dumps(model)), xi=0)
+    assert masonry.names[:2] == ("Block_0", "Block_1")
+    assert masonry.centroids - FACADE.centroids == pytest.approx(np.tile([1.0, 2, 3], (len(masonry.blocks), 1)))
+
+
+NOTCHED = [(0, 0, 0), (2, 0, 0), (2, 0, 2), (1, 0, 1), (0, 0, 2)]
+NOTCH = [*NOTCHED, *((x, 1, z) for x, _, z in NOTCHED)]
+NOTCH_FACES = [(0, 1, 2, 3, 4), (5, 6, 7, 8, 9)] + [(i, (i + 1) % 5, (i + 1) % 5 + 5, i + 5) for i in range(5)]
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        (obj(("a", cube(), CUBE_FACES[:-1])), "body a is open: 4 of its edges belong to one face alone"),
+        (obj(("a", NOTCH, NOTCH_FACES)), "body a is not convex: its faces enclose 3 m3, and their hull 4 m3"),
+        (obj(("a", [*cube()[:7], (0.3, 0.3, 0.3)], CUBE_FACES)), "body a: vertices: . at .* m inside the hull"),
+        (obj(("a", cube(), CUBE_FACES), ("b", cube((0, 0, 1.01)), CUBE_FACES)), "b touch no other block .* 0.01 m"),
+        (obj(("a", cube(), CUBE_FACES), ("b", cube((0, 0, 0.9)), CUBE_FACES)), "blocks a and b overlap by 0.1 m"),
+        (obj(("a", cube(), CUBE_FACES)).replace("f 2", "f 99"), "line 11: 'f 99//1 .* is no vertex or face"),
+        (obj(("a", cube(), CUBE_FACES)) + "f 1 2", "line 16: 'f 1 2' is no vertex or face"),
+        (obj(("a", cube(), CUBE_FACES)) + "v 1 nan", "line 16"),
+        (obj(("a", cube(), CUBE_FACES)).replace("v 0.0 0.0 0.0", "v nan 0 0"), "body a: vertices holds a coordinate"),
+        ("solid a\nendsolid\n", "has no faces: it is no OBJ file, or is cut short"),
+        ("", "has 0 bytes"),
+        (b"\xff\xfe\x00", "is no text"),
+    ],
+)
+def test_obj_files_that_are_no_masonry(tmp_path, text, complaint):
+    path = written(tmp_path / "broken.obj", text)
+    with pytest.raises(ValueError, match=rf"broken.obj.*{complaint}"):
+        mr.Masonry.from_obj(path, ground=True, xi=0)
+
+
+def test_stl_files_that_are_none(tmp_path):
+    content = binary_stl(FACADE)
+    for name, broken, complaint in (
+        ("cut", content[:-30], "is no STL file, or is cut short: it has .* bytes; its head promises"),
+        ("text", text_stl(FACADE)[:3000], "is cut short: the solid .* does not end|is open|three vertices|no vertex"),
+        ("other", b"PK" + bytes(300), "is no STL file"),
+        ("open", text_stl(FACADE).replace(b"endfacet", b"", 1).replace(b"vertex", b"vert", 1), "three vertices|open"),
+    ):
+        with pytest.raises(ValueError, match=rf"{name}.stl.*({complaint})"):
+            mr.Masonry.from_stl(written(tmp_path / f"{name}.stl", broken), fixed=["body_0"], xi=0)
+
+
+def test_json_files_that_are_none(tmp_path):
+    text = FACADE.to_compas(tmp_path / "a.json").read_text()
+    for name, broken, complaint in (
+        ("cut", text[:2000], "is no JSON, or is cut short"),
+        ("deep", "[" * 100_000, "is no JSON, or is cut short"),
+        ("other", "[1, 2]", "is no COMPAS model: it has no data.elements"),
+        ("none", '{"data": {"elements": {}}}', "without elements"),
+        ("mesh", text.replace('"vertex"', '"corners"'), "the element .* is no block with a mesh: KeyError 'vertex'"),
+    ):
+        with pytest.raises(ValueError, match=rf"{name}.json.*{complaint}"):
+            mr.Masonry.from_compas(written(tmp_path / f"{name}.json", broken), xi=0)
+
+
+def test_arguments_are_checked(tmp_path):
+    path = FACADE.to_obj(tmp_path / "wall.obj")
+    with pytest.raises(ValueError, match="fixed = 'floor' is no body; there are ground, facade_0_0"):
+        mr.Masonry.from_obj(path, fixed=["floor"])
+    with pytest.raises(TypeError, match="fixed = 'ground' of type str is no list of names"):
+        mr.Masonry.from_obj(path, fixed="ground")
+    with pytest.raises(ValueError, match="scale = 0 m is outside the valid range"):
+        mr.Masonry.from_obj(path, scale=0)
+    with pytest.raises(ValueError, match=r"none.obj is no file"):
+        mr.Masonry.from_obj(tmp_path / "none.obj")
+    with pytest.raises(ValueError, match="blocks in the plane have no such file"):
+        mr.Masonry.stack([mr.Block(0.3, 1.0)], 1e8).to_obj(tmp_path / "a.obj")

@@ -1,0 +1,124 @@
+"""What masonry can be made as in space: blocks and joints are counted, sizes are closed forms."""
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.problem.masonry.statics import falling
+
+UNIT = (0.4, 0.2)
+
+
+def test_a_box():
+    masonry = mr.Masonry.box((0.6, 0.4, 2.0), k_n=1e8)
+    (joint,) = masonry.joints
+    assert (joint.name, joint.area, joint.width) == ("ground|block", pytest.approx(0.24), pytest.approx(0.4))
+    assert masonry.centroids[1] == pytest.approx([0, 0, 1])
+    assert masonry.in_space
+
+
+@pytest.mark.parametrize("sides", [3, 4, 12])
+def test_a_column_of_drums(sides):
+    masonry = mr.Masonry.column(1.0, 6.0, 3, sides=sides, xi=0)
+    assert [joint.name for joint in masonry.joints] == ["ground|drum_0", "drum_0|drum_1", "drum_1|drum_2"]
+    area = sides * math.tan(math.pi / sides) / 4
+    assert [joint.area for joint in masonry.joints] == pytest.approx(3 * [area])
+    assert [block.mass for block in masonry.blocks[1:]] == pytest.approx(3 * [2000 * area * 2])
+    assert masonry.joints[0].width == pytest.approx({3: 1.5, 4: 1.0, 12: 1.0}[sides])
+
+
+def test_a_square_column_overturns_about_its_side_and_a_round_one_in_any_direction():
+    square, round_one = (mr.Masonry.column(0.5, 5.0, 2, sides=sides, xi=0) for sides in (4, 48))
+    assert mr.collapse_multiplier(square, angle=0.0).multiplier == pytest.approx(0.1)
+    for angle in (0.0, 0.4):
+        assert mr.collapse_multiplier(round_one, angle=angle).multiplier == pytest.approx(0.1, rel=0.003)
+
+
+def test_a_dome_has_two_joints_a_voussoir():
+    masonry = mr.Masonry.dome(5.0, 0.5, 8, 4, xi=0)
+    assert len(masonry.blocks) == 1 + 8 * 4
+    assert Counter(len(joint.outline) for joint in masonry.joints) == {4: 2 * 8 * 4}
+    assert sum(masonry.blocks[joint.below].fixed for joint in masonry.joints) == 8
+    volume, cubes = sum(block.volume for block in masonry.blocks[1:]), 5.25**3 - 4.75**3
+    assert volume == pytest.approx(2 * math.pi / 3 * cubes, rel=0.14)
+    thick = mr.Masonry.dome(5.0, 1.0, 8, 4, xi=0)  # all corners lie on two spheres
+    assert sum(block.volume for block in thick.blocks[1:]) / volume == pytest.approx((5.5**3 - 4.5**3) / cubes)
+    heights = masonry.centroids[:, 2]
+    assert (np.diff(heights[1:].reshape(4, 8).mean(axis=1)) > 0).all()
+
+
+def boxes_that_touch(masonry):
+    """Joints between axis-parallel boxes, counted from their bounds alone."""
+    low = np.array([block.corners.min(axis=0) for block in masonry.blocks])
+    high = np.array([block.corners.max(axis=0) for block in masonry.blocks])
+    count = 0
+    for i in range(len(low)):
+        common = np.minimum(high[i], high[:i]) - np.maximum(low[i], low[:i])
+        touches, overlaps = (np.abs(common) < 1e-9).sum(axis=1), (common > 1e-6).sum(axis=1)
+        count += int(((touches == 1) & (overlaps == 2)).sum())
+    return count
+
+
+def test_a_facade_with_return_walls():
+    """Courses of 6 and 5 units between walls of 3: 12 and 11 blocks, and 8 of each other course."""
+    masonry = mr.Masonry.facade(2.4, 1.6, 1.2, UNIT, xi=0)
+    assert len(masonry.free) == 4 * 12 + 4 * 11
+    assert len(masonry.joints) == boxes_that_touch(masonry) == 222
+    assert sum(masonry.blocks[i].volume for i in masonry.free) == pytest.approx(1.6 * (2.4 * 0.2 + 2 * 1.0 * 0.2))
+    corners = [joint for joint in masonry.joints if not joint.is_bed and abs(joint.normal[0]) > 0.9]
+    assert len(corners) == 8 * 2 * 3 - 4 * 2  # across the return walls, and behind the facade in every other course
+    assert masonry.blocks[1:][0].corners[:, 0].max() == 0.0
+
+
+def test_openings_have_lintels_and_a_gable_narrows():
+    door, window = (0.0, mr.Opening(0.8, 0.8)), (-1.2, mr.Opening(0.4, 0.4, sill=0.4))
+    masonry = mr.Masonry.facade(4.0, 1.2, 0.8, UNIT, openings=[door, window], gable=2, xi=0)
+    assert len(masonry.joints) == boxes_that_touch(masonry)
+    lintels = [
+        block for block in masonry.blocks if block.name.startswith("facade") and np.ptp(block.corners[:, 1]) > 0.41
+    ]
+    assert sorted(round(float(np.ptp(block.corners[:, 1])), 9) for block in lintels) == [0.8, 1.2]
+    walls = 1.2 * (4.0 * 0.2 + 2 * 0.6 * 0.2) - 0.2 * (0.64 + 0.16)
+    gable = 0.2 * 0.2 * (4.0 + 3.6)
+    assert sum(masonry.blocks[i].volume for i in masonry.free) == pytest.approx(walls + gable)
+    assert falling(masonry) == ()
+    to_the_point = mr.Masonry.facade(1.2, 0.6, 0.8, UNIT, gable=2, xi=0)
+    assert to_the_point.centroids[:, 2].max() == pytest.approx(0.9)
+
+
+def facade(*openings, **options):
+    arguments = {"length": 4.0, "height": 1.2, "depth": 0.8, "unit": UNIT, "xi": 0} | options
+    return mr.Masonry.facade(**arguments, openings=openings)
+
+
+@pytest.mark.parametrize(
+    ("make", "complaint"),
+    [
+        (lambda: facade(length=4.1), "length = 4.1 m is not a whole number of units of 0.4 m"),
+        (lambda: facade(length=0.4), "length = 0.4 m is one unit"),
+        (lambda: facade(height=1.3), "height = 1.3 m is not a whole number of units of 0.2 m"),
+        (lambda: facade(depth=0.5), "depth = 0.5 m is not"),
+        (lambda: facade(gable=11), "gable = 11 is outside the valid range 0 to 10"),
+        (lambda: facade(unit=(0.4,)), "unit = .* is not the length and the height"),
+        (lambda: facade((0.1, mr.Opening(0.4, 0.4))), r"openings\[0\]: the left edge lies 9.500 half units"),
+        (lambda: facade((0.0, mr.Opening(0.4, 0.3))), r"openings\[0\]: the head lies 1.500 half units or courses"),
+        (lambda: facade((1.6, mr.Opening(0.4, 0.4))), r"openings\[0\] leaves less than a unit beside it"),
+        (lambda: facade((0.0, mr.Opening(0.4, 1.2))), "no course above it"),
+        (lambda: facade((0.0, mr.Opening(0.4, 0.4)), (0.6, mr.Opening(0.4, 0.4))), r"openings\[1\] and openings\[0\]"),
+        (lambda: facade((0.0, mr.Opening(1.2, 0.4, 2.2)), gable=9), r"openings\[0\] or its lintel does not lie within"),
+        (lambda: facade(mr.Opening(0.4, 0.4)), r"openings\[0\] = .* is not \(y, Opening\)"),
+        (lambda: mr.Masonry.column(1.0, 6.0, 0), "drums = 0 is outside the valid range 1 to 1000"),
+        (lambda: mr.Masonry.column(1.0, 6.0, 1, sides=2), "sides = 2"),
+        (lambda: mr.Masonry.dome(5.0, 6.0, 8, 4), "thickness = 6 m is outside the valid range 0.005 to 5 m"),
+        (lambda: mr.Masonry.dome(5.0, 0.5, 3, 4), "lunes = 3 is outside the valid range 4 to 360"),
+        (lambda: mr.Masonry.dome(5.0, 0.5, 360, 14), "lunes = 360 times hoops = 14"),
+        (lambda: mr.Masonry.dome(5.0, 0.5, 8, 4, oculus=2.0), "oculus = 2 rad"),
+        (lambda: mr.Masonry.box((1, 1)), r"size has the shape \(2,\)"),
+    ],
+)
+def test_what_cannot_be_built_is_refused_by_name(make, complaint):
+    with pytest.raises((ValueError, TypeError), match=complaint):
+        make()
