@@ -19,7 +19,7 @@ docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.
 	@echo "docs/build/html/index.html"
 
 test-slow: $(DOCS)
-	$(BIN)/pytest -n auto -m slow
+	$(BIN)/pytest -n auto --dist worksteal -m slow
 
 mutants: $(READY) # changes one operator or number of the physics at a time and names what no test notices; some minutes
 	$(BIN)/python tests/mutants.py $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))

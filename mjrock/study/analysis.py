@@ -145,7 +145,11 @@ class Analysis:
 
     def solve(self) -> Response:
         """The response."""
-        return SOLVERS[self.solver](self.case, self.e if self.solver == "analytical" else self.contacts, **self.options)
+        if self.solver != "analytical":
+            return SOLVERS[self.solver](self.case, self.contacts, **self.options)
+        with warnings.catch_warnings():  # it was said when the analysis was made
+            warnings.filterwarnings("ignore", message="the restitution is that of ", category=Implausible)
+            return SOLVERS[self.solver](self.case, self.e, **self.options)
 
     def __call__(self, history: Path | None = None) -> Row:
         """Solve, keep the history in the file given, and return the columns of the row."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..problem.damping.restitution import Restitution
 from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
 from ..problem.wall.ties_on_wall import lost, stored
-from ..quantities import GRAVITY, Array, require_kind, require_size, require_within
+from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, describe
 from ..result.response import Response
 from ..result.rocking import Impact, Rocking
@@ -57,6 +58,7 @@ def solve_analytical(
         RuntimeError: if the integration fails.
 
     Warns:
+        Implausible: if the restitution was made for another wall or another side stop.
         UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
     """
     require_kind("case", case, Case)
@@ -67,6 +69,8 @@ def solve_analytical(
     rest = require_within("rest", rest, 1e-30, 0.1)
     require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
     _require_solvable(case, e)
+    if unlike := e.doubt(case.wall, case.stop_top):
+        warnings.warn(unlike, Implausible, stacklevel=2)
     started = time.perf_counter()
     motion = _rocking(case, e, rtol, atol, rest)
     outcome = _outcome(case, motion)

@@ -26,6 +26,8 @@ WALLS = [(5.0, 1.6), (7.0, 2.1), (8.0, 1.4), (10.0, 2.8)]
 """Slenderness h/b [-] and half diagonal R [m]."""
 LEVELS = [1.2, 1.8, 2.5, 3.5, 5.0]
 """Peak ground acceleration in multiples of what lifts the wall, g tan(alpha) [-]."""
+SIDES = ((1, "one-sided"), (0, "two-sided"))
+"""Whether there is a side stop, and how that is called."""
 STIFFNESSES = (5e8, 3e9, 3e10)
 """Interface stiffness of base and side [N/m3]: the paper's example, the upper end of Table 1, ten times that."""
 
@@ -43,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 
     grid = mr.Grid(
         build,
-        side_stop=(1, 0),
+        side_stop=[side_stop for side_stop, _ in SIDES],
         wall=range(1 if args.quick else len(WALLS)),
         motion=suite.motions(args.records, 3 if args.quick else 8),
         polarity=(0, 1),
@@ -51,9 +53,11 @@ def main(argv: Sequence[str] | None = None) -> None:
         k_n=(0.0, *STIFFNESSES),  # zero stands for the rigid base of theory
     )
     found = completed(grid, out / "agreement.sqlite", workers=args.workers)
-    figure = Figure(figsize=(10.2, 7.4), layout="constrained")
+    figure = Figure(figsize=(10.2, 3.7 * len(SIDES)), layout="constrained")
     table = []
-    for axes, (side_stop, title) in zip(figure.subplots(2, 3), ((1, "one-sided"), (0, "two-sided")), strict=True):
+    for axes, (side_stop, title) in zip(
+        figure.subplots(len(SIDES), len(STIFFNESSES), squeeze=False), SIDES, strict=True
+    ):
         for ax, k_n in zip(axes, STIFFNESSES, strict=True):
             own = [row for row in found if row["side_stop"] == side_stop and row["k_n"] in (0.0, k_n)]
             if not side_stop:  # both polarities are the same to a wall without a side stop

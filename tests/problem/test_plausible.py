@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.study import ida
 
 WALL = mr.Block.from_size(0.9, 12.0, 10.0, 1900.0)
 E = mr.Restitution.from_geometry(WALL)
@@ -77,6 +78,14 @@ MISUSE = {
         lambda: mr.Analysis(case(), "analytical", e=mr.Restitution.from_geometry(SMALL)),
         r"of a wall of alpha = 0.2213 rad, and this one has 0.07486 rad",
     ),
+    "e of another wall in a call": (
+        lambda: mr.solve_analytical(mr.Case(SMALL, 0.01, 0.5), E),
+        r"of a wall of alpha = 0.07486 rad, and this one has 0.2213 rad",
+    ),
+    "e of another wall in an analysis that runs": (
+        lambda: mr.Analysis(mr.Case(SMALL, 0.01, 0.5), "analytical", e=E).solve(),
+        r"of a wall of alpha = 0.07486 rad",
+    ),
     "e of another wall in the law": (
         lambda: mr.Contacts.from_law(WALL, mr.Restitution.from_geometry(mr.Block.from_size(1.0, 12.0)), 1e9, 1e9),
         r"of a wall of alpha = 0.08314 rad",
@@ -99,7 +108,7 @@ def test_low_scales_of_a_study_are_meant():
 
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert mr.study.ida.built(build, 0.3, "build").case.motion.peak == pytest.approx(0.3)
+        assert ida.built(build, 0.3, "build").case.motion.peak == pytest.approx(0.3)
         mr.Capacity(mr.Analysis(case(), "analytical", e=E)).scaled(0.1)
 
 

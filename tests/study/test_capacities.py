@@ -23,7 +23,7 @@ def test_a_wall_that_leans_on_its_ties_is_lost():
         mr.lost([{"status": "failed", "outcome": None}])
     with pytest.raises(TypeError, match="rows = 3 of type int are no rows of a campaign"):
         mr.lost(3)
-    with pytest.raises(TypeError, match="rows = array.* are no rows of a campaign"):
+    with pytest.raises(TypeError, match=r"rows = array.* are no rows of a campaign"):
         mr.lost(np.array(0.3))
     with pytest.raises(TypeError, match=r"lost\(rows\) makes it of the rows of a campaign"):
         mr.fit_fragility([1.0, 2.0], ["overturned", "time ended"])
@@ -148,9 +148,9 @@ def test_what_cannot_be(call, complaint):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("records", [6, 12, 40])
+@pytest.mark.parametrize("records", [6, 40])
 def test_the_intervals_hold_the_truth(records):
-    """Of 90 % intervals at least 80 % hold the truth, with few records too; 150 studies know it to 3 %."""
-    for row in fragility_coverage.coverage(records, 150):
-        assert row[2] >= 140
+    """Of 90 % intervals at least 80 % hold the truth, with few records too; 80 studies know it to 4 %."""
+    for row in fragility_coverage.coverage(records, 80):
+        assert row[2] >= 75
         assert all(float(share) > 0.79 for share in row[3:-1]), row

@@ -13,10 +13,11 @@ RECORDS = Path(__file__).parents[1] / "records"
 
 
 @pytest.mark.slow
-def test_pairs_of_runs(tmp_path):
+def test_pairs_of_runs(tmp_path, monkeypatch):
+    monkeypatch.setattr(agreement, "SIDES", agreement.SIDES[:1])
     agreement.main(["--records", str(RECORDS), "--out", str(tmp_path)])
     with open(tmp_path / "agreement.csv") as file:
-        rows = [row for row in csv.DictReader(file) if row["side_stop"] == "1"]
+        rows = list(csv.DictReader(file))
     equal, ratio = {}, {}
     for k_n in agreement.STIFFNESSES:
         ends, peaks = suite.in_pairs(
