@@ -1,10 +1,10 @@
 """A column of drums and an arch near overturning under 30 records each, in MuJoCo and by explicit steps.
 
 The column is three drums 0.6 m wide and 1.2 m high; the arch has five voussoirs 0.4 m thick on a radius of 2.5 m.
-Joints of 2 lines stick rigidly, k_n = 1e9 N/m3, mu = 0.7, xi = 0.05. The synthetic records have a peak of 5 m/s2 and last 6 s
-for the column, 8 m/s2 and 4 s for the arch, and the motion is followed for a second more. A run overturns when a block
-has turned by more than 0.5 rad. Every record is run three times: by `simulate(accuracy=1e-4)`, by explicit steps of the
-default length, and by explicit steps half as long, which tells how far the scheme scatters by itself.
+Joints of 2 lines stick rigidly, k_n = 1e9 N/m3, mu = 0.7, xi = 0.05. The synthetic records have a peak of 5 m/s2 and
+last 6 s for the column, 8 m/s2 and 4 s for the arch, and the motion is followed for a second more. A run overturns when
+a block has turned by more than 0.5 rad. Every record is run three times: by `simulate(accuracy=1e-4)`, by explicit
+steps of the default length, and by steps half as long, which tells how far the scheme scatters by itself.
 Two runs part where a rotation differs by more than 2 mrad, which is 1.2 % of the angle at which the column overturns as
 one block. Prints how the largest rotations before that compare, how many overturn (exact sign test on the pairs of
 which one alone does), the median ratio of peaks where both stand (interval of order statistics, 95 %), and the
