@@ -161,9 +161,11 @@ def test_the_plane_inside_space_a_block_slides_over_an_edge_and_a_support_moves(
     plane = mr.Masonry([FLOOR, brick(1.2, 1.9, 0, 0.5)], k_n=1e9, k_s=1e9, friction=0.2, frequency=300.0)
     t, far = [0.0, 0.2, 0.4], [0.0, -0.02, 0.0]
     moved = {"ground": (t, far, [0.0, 0.01, 0.0])}, {"ground": (t, far, [0.0] * 3, [0.0, 0.01, 0.0])}
-    run, spatial = both(plane, 0.7, velocity=None, supports=moved, motion=steady(-5.0, 1.0))
+    run, spatial = both(plane, 0.9, supports=moved, motion=steady(-5.0, 1.0))
     assert run.pose[-1, 0, 0] > 0.5
     assert abs(run.theta[-1, 0]) > 0.05  # it turns over the edge
+    assert dict(spatial.fallen) == dict(run.fallen)
+    assert list(run.fallen) == ["block_1"]
     count = int(0.6 / 1e-3)
     np.testing.assert_allclose(angles(spatial)[:count], run.theta[:count], atol=1e-9)
 
