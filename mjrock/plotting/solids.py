@@ -1,0 +1,143 @@
+"""Blocks in space in motion, as a picture needs them: their faces, and where they are drawn and seen from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.frames import SPACE, frames_of
+from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.polyhedron import Polyhedron
+from ..problem.wall.effects import Effect
+from ..quantities import Array, Integers, keep, require_array, require_within
+from ..result.response import Response
+from ..scene.masonry import laden
+
+CAMERA = (18.0, 35.0)
+"""Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""
+
+
+class Facets(NamedTuple):
+    """The faces of bodies.
+
+    Args:
+        corners: of each face about the centroid of its body, at rest [m], shape (faces, most, 3). A face with fewer
+            corners than another repeats its last one.
+        body: number of the body of each face, shape (faces,).
+        counts: number of corners of each face, shape (faces,).
+    """
+
+    corners: Array
+    body: Integers
+    counts: Integers
+
+
+@dataclass(frozen=True, eq=False)
+class Solids:
+    """Masonry in space and its motion.
+
+    Args:
+        masonry: the blocks.
+        t: times [s], shape (n,), increasing.
+        poses: displacement of each centroid from rest [m] and unit quaternion, w first, of each block that is not
+            fixed, shape (n, bodies, 7).
+        magnify: factor on the displacement of every point [-], 0 to 1e6; 1 is true to scale.
+        camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
+        effects: of the case. The pose of a block with added masses is that of their common centroid.
+
+    Raises:
+        ValueError: for poses of another shape, or a value outside its range.
+    """
+
+    masonry: Masonry
+    t: Array
+    poses: Array
+    magnify: float = 1.0
+    camera: Sequence[float] | None = None
+    effects: tuple[Effect, ...] = ()
+
+    def __post_init__(self) -> None:
+        elevation, azimuth = require_array("camera", CAMERA if self.camera is None else self.camera, (2,))
+        elevation = require_within("elevation of the camera", elevation, -90.0, 90.0, "degrees")
+        keep(
+            self,
+            camera=(elevation, require_within("azimuth of the camera", azimuth, -360.0, 360.0, "degrees")),
+            magnify=require_within("magnify", self.magnify, 0.0, 1e6),
+            poses=require_array("poses", self.poses, (len(self.t), len(self.masonry.free), SPACE.nq)),
+        )
+
+    @classmethod
+    def of(cls, response: Response, magnify: float = 1.0, camera: Sequence[float] | None = None) -> Solids:
+        """The blocks of a response in space."""
+        case = response.case
+        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects)
+
+    def at(self, times: Array) -> Solids:
+        """The same blocks at other times, their poses interpolated linearly."""
+        columns = self.poses.reshape(len(self.t), -1).T
+        poses = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1).reshape(len(times), -1, 7)
+        poses[..., 3:] /= np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
+        return replace(self, t=times, poses=poses)
+
+    @cached_property
+    def eye(self) -> Array:
+        """Unit vector to the camera, shape (3,)."""
+        elevation, azimuth = np.radians(np.asarray(self.camera))
+        level = np.cos(elevation)
+        return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
+
+    @property
+    def free(self) -> list[Polyhedron]:
+        """The blocks that move."""
+        return [self.masonry.blocks[i] for i in self.masonry.free]
+
+    @cached_property
+    def rests(self) -> Array:
+        """Centroid of each block that moves with its added masses, at rest [m], shape (bodies, 3)."""
+        rests: Array = laden(self.masonry, self.effects)[1][list(self.masonry.free)]
+        return rests
+
+    @property
+    def fixed(self) -> list[Polyhedron]:
+        """The blocks that do not."""
+        return [block for block in self.masonry.blocks if block.fixed]
+
+    @cached_property
+    def facets(self) -> Facets:
+        """The faces of the blocks that move."""
+        counts = np.array([len(face) for block in self.free for face in block.faces])
+        body = np.repeat(np.arange(len(self.free)), [len(block.faces) for block in self.free])
+        corners = np.empty((len(counts), counts.max(), 3))
+        bodies = zip(self.free, self.rests, strict=True)
+        about = [(block.corners - rest)[list(face)] for block, rest in bodies for face in block.faces]
+        for row, face in zip(corners, about, strict=True):
+            row[:] = face[-1]
+            row[: len(face)] = face
+        return Facets(corners, body, counts)
+
+    def displaced(self, frame: int, body: int, point: Array) -> Array:
+        """Where a point of a body, given at rest [m], shape (3,), is drawn at a frame."""
+        drawn: Array = self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0]
+        return drawn
+
+    def corners(self, frame: int) -> Array:
+        """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
+        return self._drawn(frame, self.facets.body, self.facets.corners)
+
+    def extent(self) -> tuple[Array, Array]:
+        """The lowest and the highest x, y and z that the blocks that move reach in the picture [m], (3,) each."""
+        some = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int))
+        corners = np.concatenate([self.corners(int(frame)).reshape(-1, 3) for frame in some])
+        return corners.min(axis=0), corners.max(axis=0)
+
+    def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
+        """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
+        frames = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
+        swings = frames[:, 3:].reshape(-1, 3, 3)[body]
+        moved = frames[body, None, :3] + points @ swings.transpose(0, 2, 1)
+        drawn: Array = self.rests[body, None] + points + self.magnify * moved
+        return drawn

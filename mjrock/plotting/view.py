@@ -1,0 +1,173 @@
+"""A view of blocks in space: the camera, the light, the ground, and blocks that hide those behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.ticker import MultipleLocator
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+
+from ..geometry import convex
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects_in_space import anchored_at, held_at
+from ..problem.wall.effects import Tie
+from ..quantities import Array
+from ..result.ties_in_space import elongation_in_space
+from .solids import Solids
+
+TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
+"""Colours of blocks, which take turns so that neighbours are told apart."""
+FIXED, GROUND, STEEL = "#bdbdbd", "#e6e6e2", "#12406b"
+LIGHT = np.array([0.55, -0.35, 0.76])
+"""Where the light comes from."""
+DARKEST = 0.5
+"""Brightness of a face that is turned away from the light [-]."""
+MARGIN = 0.25
+"""Width of the ground around the blocks, over their largest extent [-]."""
+ZOOM = 1.25
+"""Size of the picture, over that which leaves room for labels on every side [-]."""
+
+Update = Callable[[int], None]
+
+
+def in_three(ax: Axes) -> Any:
+    """Axes of three dimensions.
+
+    Raises:
+        ValueError: for axes of two.
+    """
+    if not isinstance(ax, Axes3D):
+        raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
+    return ax
+
+
+def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
+    """Draw blocks in space, true to scale, and the ground below them.
+
+    Faces are drawn from the farthest to the nearest, by the means of their corners: those of blocks that lie close
+    together and differ much in size can hide what lies before them. What has sunk below the ground is left out.
+    """
+    space, eye = in_three(ax), bodies.eye
+    low, high = bodies.extent()
+    margin = MARGIN * float((high - low).max())
+    around = margin * np.array([1.0, 1.0, 0.0])
+    low, high = low - around, high + around
+    level = _ground(space, bodies, (low, high))
+    if level is not None:
+        low[2] = level
+    _frame(space, (low, high), bodies)
+    standing = [(face, FIXED) for block in bodies.fixed if not _is_ground(bodies, block) for face in _faces(block)]
+    tints = np.array([to_rgb(TINTS[i % len(TINTS)]) for i in range(len(bodies.free))])[bodies.facets.body]
+    moving = Poly3DCollection([np.zeros((3, 3))], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated)
+    space.add_collection3d(moving, autolim=False)
+
+    def update(frame: int) -> None:
+        corners = bodies.corners(frame)
+        normals = _normals(corners)
+        seen = normals @ eye > 0
+        if level is not None and eye[2] > 0:
+            seen &= corners[..., 2].mean(axis=1) > level
+        drawn = [face[:count] for face, count in zip(corners[seen], bodies.facets.counts[seen], strict=True)]
+        colours = list(_lit(tints[seen], normals[seen]))
+        for face, colour in standing:
+            normal = _normals(face[None])
+            if normal[0] @ eye > 0:
+                drawn.append(face)
+                colours.append(_lit(np.array([to_rgb(colour)]), normal)[0])
+        moving.set_verts(drawn)
+        moving.set_facecolor(colours)
+        if space.M is not None:
+            moving.do_3d_projection()
+
+    return update
+
+
+def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
+    """Ties of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
+    gone once it broke."""
+    space, moves, free = in_three(ax), [], bodies.masonry.free
+    for tie in (effect for effect in case.effects if isinstance(effect, Tie)):
+        elongation = elongation_in_space(case, tie, bodies.poses)
+        yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+        ends = [(held_at(tie), tie.block), (anchored_at(tie), tie.anchor_block)]
+        (line,) = space.plot([], [], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
+        moves.append((line, tie, ends, elongation, yielded))
+
+    def update(frame: int) -> None:
+        for line, tie, ends, elongation, yielded in moves:
+            points = [p if i not in free else bodies.displaced(frame, free.index(i), p) for p, i in ends]
+            line.set_data_3d(*np.transpose(points))
+            line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
+            line.set_visible(bool(yielded[frame] <= tie.breaks_at))
+
+    return update
+
+
+def _frame(ax: Axes3D, extent: tuple[Array, Array], bodies: Solids) -> None:
+    """Set limits and labels in m, of the same scale along every axis, and the camera."""
+    low, high = extent
+    for name, a, b in zip("xyz", low, high, strict=True):
+        getattr(ax, f"set_{name}lim")(a, b)
+        getattr(ax, f"set_{name}label")(f"${name}$ [m]", fontsize=8)
+        getattr(ax, f"{name}axis").set_major_locator(_locator(float((high - low).max())))
+    ax.tick_params(labelsize=7, pad=0)
+    ax.set_box_aspect(tuple(high - low), zoom=ZOOM)
+    ax.set_proj_type("ortho")
+    ax.view_init(*bodies.camera)
+    ax.computed_zorder = False  # the ground lies behind
+    ax.grid(False)
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+
+
+def _locator(extent: float) -> MultipleLocator:
+    """Ticks some five to the largest extent [m], at the same spacing on every axis."""
+    rough = extent / 5
+    power = 10.0 ** np.floor(np.log10(rough))
+    return MultipleLocator(power * min((1, 2, 5, 10), key=lambda step: abs(step * power - rough)))
+
+
+def _is_ground(bodies: Solids, block: Any) -> bool:
+    """Whether a fixed block lies below all that move."""
+    lowest = min(float(free.corners[:, 2].min()) for free in bodies.free)
+    return bool(block.corners[:, 2].max() <= lowest + 1e-3)
+
+
+def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | None:
+    """Draw the upper faces of the fixed blocks below all others, as far as the picture goes; their highest z [m]."""
+    (left, near), (right, far) = extent[0][:2], extent[1][:2]
+    window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
+    for block in bodies.fixed:
+        if _is_ground(bodies, block):
+            level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
+            for face in _faces(block):
+                plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
+                if len(plan) > 2:
+                    patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
+                    ax.add_collection3d(Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5))
+    return level
+
+
+def _faces(block: Any) -> list[Array]:
+    """Corners of each face of a block in place [m]."""
+    return [block.corners[list(face)] for face in block.faces]
+
+
+def _normals(corners: Array) -> Array:
+    """Unit normals out of faces, shape (faces, 3)."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    unit: Array = normals / np.where(length > 0, length, 1.0)
+    return unit
+
+
+def _lit(colours: Array, normals: Array) -> Array:
+    """Colours of faces in the light, shape (faces, 3)."""
+    bright = DARKEST + (1 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
+    shown: Array = colours * bright[:, None]
+    return shown
