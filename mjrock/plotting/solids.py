@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,10 @@ from ..scene.masonry import laden
 
 CAMERA = (18.0, 35.0)
 """Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""
+TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
+"""Colours of blocks, which take turns so that neighbours are told apart."""
+FIXED = "#bdbdbd"
+"""Colour of fixed blocks that are no ground."""
 
 
 class Facets(NamedTuple):
@@ -90,37 +95,55 @@ class Solids:
         level = np.cos(elevation)
         return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
 
+    @cached_property
+    def shown(self) -> tuple[int, ...]:
+        """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
+        return tuple(i for i, block in enumerate(self.masonry.blocks) if not self._is_ground(block))
+
     @property
-    def free(self) -> list[Polyhedron]:
-        """The blocks that move."""
-        return [self.masonry.blocks[i] for i in self.masonry.free]
+    def ground(self) -> list[Polyhedron]:
+        """The fixed blocks below all that move."""
+        return [block for block in self.masonry.blocks if self._is_ground(block)]
+
+    def _is_ground(self, block: Polyhedron) -> bool:
+        return block.fixed and bool(block.corners[:, 2].max() <= self._lowest + 1e-3)
+
+    @cached_property
+    def _lowest(self) -> float:
+        """The lowest z of the blocks that move, at rest [m]."""
+        return min(float(self.masonry.blocks[i].corners[:, 2].min()) for i in self.masonry.free)
+
+    @property
+    def colours(self) -> list[str]:
+        """Colour of each facet."""
+        tints = [FIXED if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
+        return [tints[body] for body in self.facets.body]
 
     @cached_property
     def rests(self) -> Array:
-        """Centroid of each block that moves with its added masses, at rest [m], shape (bodies, 3)."""
-        rests: Array = laden(self.masonry, self.effects)[1][list(self.masonry.free)]
+        """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
+        rests: Array = laden(self.masonry, self.effects)[1][list(self.shown)]
         return rests
-
-    @property
-    def fixed(self) -> list[Polyhedron]:
-        """The blocks that do not."""
-        return [block for block in self.masonry.blocks if block.fixed]
 
     @cached_property
     def facets(self) -> Facets:
-        """The faces of the blocks that move."""
-        counts = np.array([len(face) for block in self.free for face in block.faces])
-        body = np.repeat(np.arange(len(self.free)), [len(block.faces) for block in self.free])
+        """The faces of the blocks that are shown."""
+        blocks = [self.masonry.blocks[i] for i in self.shown]
+        counts = np.array([len(face) for block in blocks for face in block.faces])
+        body = np.repeat(np.arange(len(blocks)), [len(block.faces) for block in blocks])
         corners = np.empty((len(counts), counts.max(), 3))
-        bodies = zip(self.free, self.rests, strict=True)
+        bodies = zip(blocks, self.rests, strict=True)
         about = [(block.corners - rest)[list(face)] for block, rest in bodies for face in block.faces]
         for row, face in zip(corners, about, strict=True):
             row[:] = face[-1]
             row[: len(face)] = face
         return Facets(corners, body, counts)
 
-    def displaced(self, frame: int, body: int, point: Array) -> Array:
-        """Where a point of a body, given at rest [m], shape (3,), is drawn at a frame."""
+    def displaced(self, frame: int, block: int | None, point: Array) -> Array:
+        """Where a point of a block, given at rest [m], shape (3,), is drawn at a frame; one of the ground stays."""
+        if block not in self.shown:
+            return point
+        body = self.shown.index(block)
         drawn: Array = self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0]
         return drawn
 
@@ -128,16 +151,58 @@ class Solids:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
         return self._drawn(frame, self.facets.body, self.facets.corners)
 
+    def order(self, frame: int) -> Integers:
+        """The bodies from the farthest to the nearest, shape (shown,).
+
+        Of two with a joint the one on the far side comes first. Among those that hide no other the one with the
+        farthest centroid is next.
+        """
+        frames = self._frames(frame)
+        nearness = (self.rests + frames[:, :3]) @ self.eye
+        waits, hidden = np.zeros(len(nearness), dtype=int), [list[int]() for _ in nearness]
+        for below, above, normal in self._pairs:
+            turned = normal + frames[below, 3:].reshape(3, 3) @ normal
+            behind, before = (below, above) if turned @ self.eye > 0 else (above, below)
+            hidden[behind].append(before)
+            waits[before] += 1
+        ready = [(float(nearness[i]), int(i)) for i in np.flatnonzero(waits == 0)]
+        heapify(ready)
+        left, order = set(range(len(nearness))), []
+        while left:
+            body = heappop(ready)[1] if ready else min(left, key=nearness.__getitem__)  # a ring of joints is cut there
+            if body not in left:
+                continue
+            left.discard(body)
+            order.append(body)
+            for before in hidden[body]:
+                waits[before] -= 1
+                if waits[before] == 0:
+                    heappush(ready, (float(nearness[before]), before))
+        return np.array(order)
+
     def extent(self) -> tuple[Array, Array]:
-        """The lowest and the highest x, y and z that the blocks that move reach in the picture [m], (3,) each."""
+        """The lowest and the highest x, y and z that the blocks reach in the picture [m], (3,) each."""
         some = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int))
         corners = np.concatenate([self.corners(int(frame)).reshape(-1, 3) for frame in some])
         return corners.min(axis=0), corners.max(axis=0)
 
+    @cached_property
+    def _pairs(self) -> list[tuple[int, int, Array]]:
+        """Bodies below and above each joint between two that are shown, and its normal at rest."""
+        body = {block: i for i, block in enumerate(self.shown)}
+        joints = [joint for joint in self.masonry.joints if joint.below in body and joint.above in body]
+        return [(body[joint.below], body[joint.above], joint.normal) for joint in joints]
+
+    def _frames(self, frame: int) -> Array:
+        """Displacement and R - 1 of each body at a frame, shape (shown, 12)."""
+        frames, free = np.zeros((len(self.shown), 12)), list(self.masonry.free)
+        moves = [i for i, block in enumerate(self.shown) if block in free]
+        frames[moves] = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
+        return frames
+
     def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
         """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
-        frames = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
-        swings = frames[:, 3:].reshape(-1, 3, 3)[body]
-        moved = frames[body, None, :3] + points @ swings.transpose(0, 2, 1)
+        frames = self._frames(frame)[body]
+        moved = frames[:, None, :3] + points @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
         drawn: Array = self.rests[body, None] + points + self.magnify * moved
         return drawn

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MultipleLocator
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
 from ..geometry import convex
 from ..problem.masonry.case import MasonryCase
@@ -20,19 +22,33 @@ from ..quantities import Array
 from ..result.ties_in_space import elongation_in_space
 from .solids import Solids
 
-TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
-"""Colours of blocks, which take turns so that neighbours are told apart."""
-FIXED, GROUND, STEEL = "#bdbdbd", "#e6e6e2", "#12406b"
-LIGHT = np.array([0.55, -0.35, 0.76])
+GROUND, STEEL = "#e6e6e2", "#12406b"
+LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
-DARKEST = 0.5
+DARKEST = 0.62
 """Brightness of a face that is turned away from the light [-]."""
 MARGIN = 0.25
 """Width of the ground around the blocks, over their largest extent [-]."""
-ZOOM = 1.25
+ZOOM = 1.0
 """Size of the picture, over that which leaves room for labels on every side [-]."""
 
 Update = Callable[[int], None]
+
+
+class Faces(PolyCollection):
+    """Faces in space, drawn in the order given and not by their depth."""
+
+    corners: Sequence[Array] = ()
+    """Corners of each face [m], shape (n, 3)."""
+
+    def do_3d_projection(self) -> float:
+        """Bring the faces into the plane of the picture, whenever the axes are drawn."""
+        if len(self.corners):
+            space: Any = self.axes
+            x, y, _ = proj_transform(*np.concatenate(self.corners).T, space.M)
+            ends = np.cumsum([len(face) for face in self.corners])[:-1]
+            self.set_verts(np.split(np.column_stack([x, y]), ends))
+        return 0.0
 
 
 def in_three(ax: Axes) -> Any:
@@ -49,10 +65,11 @@ def in_three(ax: Axes) -> Any:
 def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """Draw blocks in space, true to scale, and the ground below them.
 
-    Faces are drawn from the farthest to the nearest, by the means of their corners: those of blocks that lie close
-    together and differ much in size can hide what lies before them. What has sunk below the ground is left out.
+    Blocks are drawn from the farthest to the nearest. Of two with a joint the one on the far side of it comes first,
+    and otherwise the one with the farther centroid; blocks that have moved far can hide what lies before them. What has
+    sunk below the ground is left out.
     """
-    space, eye = in_three(ax), bodies.eye
+    space = in_three(ax)
     low, high = bodies.extent()
     margin = MARGIN * float((high - low).max())
     around = margin * np.array([1.0, 1.0, 0.0])
@@ -61,25 +78,20 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     if level is not None:
         low[2] = level
     _frame(space, (low, high), bodies)
-    standing = [(face, FIXED) for block in bodies.fixed if not _is_ground(bodies, block) for face in _faces(block)]
-    tints = np.array([to_rgb(TINTS[i % len(TINTS)]) for i in range(len(bodies.free))])[bodies.facets.body]
-    moving = Poly3DCollection([np.zeros((3, 3))], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated)
-    space.add_collection3d(moving, autolim=False)
+    tints = np.array([to_rgb(colour) for colour in bodies.colours])
+    moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated)
+    space.add_collection(moving, autolim=False)
 
     def update(frame: int) -> None:
         corners = bodies.corners(frame)
         normals = _normals(corners)
-        seen = normals @ eye > 0
-        if level is not None and eye[2] > 0:
+        seen = normals @ bodies.eye > 0
+        if level is not None and bodies.eye[2] > 0:
             seen &= corners[..., 2].mean(axis=1) > level
-        drawn = [face[:count] for face, count in zip(corners[seen], bodies.facets.counts[seen], strict=True)]
-        colours = list(_lit(tints[seen], normals[seen]))
-        for face, colour in standing:
-            normal = _normals(face[None])
-            if normal[0] @ eye > 0:
-                drawn.append(face)
-                colours.append(_lit(np.array([to_rgb(colour)]), normal)[0])
-        moving.set_verts(drawn)
+        place = np.argsort(bodies.order(frame))  # of each body in the order
+        number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.body[seen]], kind="stable")]
+        counts, colours = bodies.facets.counts[number], cast(Any, _lit(tints[number], normals[number]))
+        moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]
         moving.set_facecolor(colours)
         if space.M is not None:
             moving.do_3d_projection()
@@ -90,7 +102,7 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
 def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
     """Ties of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
     gone once it broke."""
-    space, moves, free = in_three(ax), [], bodies.masonry.free
+    space, moves = in_three(ax), []
     for tie in (effect for effect in case.effects if isinstance(effect, Tie)):
         elongation = elongation_in_space(case, tie, bodies.poses)
         yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
@@ -100,7 +112,7 @@ def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
 
     def update(frame: int) -> None:
         for line, tie, ends, elongation, yielded in moves:
-            points = [p if i not in free else bodies.displaced(frame, free.index(i), p) for p, i in ends]
+            points = [bodies.displaced(frame, block, point) for point, block in ends]
             line.set_data_3d(*np.transpose(points))
             line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
             line.set_visible(bool(yielded[frame] <= tie.breaks_at))
@@ -111,14 +123,15 @@ def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
 def _frame(ax: Axes3D, extent: tuple[Array, Array], bodies: Solids) -> None:
     """Set limits and labels in m, of the same scale along every axis, and the camera."""
     low, high = extent
+    size: Array = high - low
     for name, a, b in zip("xyz", low, high, strict=True):
         getattr(ax, f"set_{name}lim")(a, b)
         getattr(ax, f"set_{name}label")(f"${name}$ [m]", fontsize=8)
-        getattr(ax, f"{name}axis").set_major_locator(_locator(float((high - low).max())))
+        getattr(ax, f"{name}axis").set_major_locator(_locator(float(size.max())))
     ax.tick_params(labelsize=7, pad=0)
-    ax.set_box_aspect(tuple(high - low), zoom=ZOOM)
+    ax.set_box_aspect(size, zoom=ZOOM)
     ax.set_proj_type("ortho")
-    ax.view_init(*bodies.camera)
+    ax.view_init(*np.asarray(bodies.camera))
     ax.computed_zorder = False  # the ground lies behind
     ax.grid(False)
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
@@ -132,30 +145,18 @@ def _locator(extent: float) -> MultipleLocator:
     return MultipleLocator(power * min((1, 2, 5, 10), key=lambda step: abs(step * power - rough)))
 
 
-def _is_ground(bodies: Solids, block: Any) -> bool:
-    """Whether a fixed block lies below all that move."""
-    lowest = min(float(free.corners[:, 2].min()) for free in bodies.free)
-    return bool(block.corners[:, 2].max() <= lowest + 1e-3)
-
-
 def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | None:
     """Draw the upper faces of the fixed blocks below all others, as far as the picture goes; their highest z [m]."""
     (left, near), (right, far) = extent[0][:2], extent[1][:2]
     window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
-    for block in bodies.fixed:
-        if _is_ground(bodies, block):
-            level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
-            for face in _faces(block):
-                plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
-                if len(plan) > 2:
-                    patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                    ax.add_collection3d(Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5))
+    for block in bodies.ground:
+        level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
+        for face in (block.corners[list(face)] for face in block.faces):
+            plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
+            if len(plan) > 2:
+                patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
+                ax.add_collection3d(Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5))
     return level
-
-
-def _faces(block: Any) -> list[Array]:
-    """Corners of each face of a block in place [m]."""
-    return [block.corners[list(face)] for face in block.faces]
 
 
 def _normals(corners: Array) -> Array:
