@@ -24,7 +24,7 @@ from .histories import acceleration, rotation, ties
 from .page import standalone
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry
 from .solids import Solids
-from .view import solids, ties_in_view
+from .view import fill, solids, ties_in_view
 
 ENDINGS = (".gif", ".mp4", ".html")
 """Endings of the files that are written."""
@@ -217,6 +217,8 @@ def scene(
     figure.suptitle(title, fontsize=10)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
+    if isinstance(bodies, Solids):
+        fill(ax)
 
     def update(frame: int) -> None:
         clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")

@@ -181,10 +181,16 @@ class Solids:
         return np.array(order)
 
     def extent(self) -> tuple[Array, Array]:
-        """The lowest and the highest x, y and z that the blocks reach in the picture [m], (3,) each."""
+        """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
+
+        What goes farther than one extent of the blocks at rest is outside.
+        """
+        rest = self.facets.corners + self.rests[self.facets.body, None]
+        low, high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
+        room = float((high - low).max())
         some = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int))
         corners = np.concatenate([self.corners(int(frame)).reshape(-1, 3) for frame in some])
-        return corners.min(axis=0), corners.max(axis=0)
+        return np.maximum(corners.min(axis=0), low - room), np.minimum(corners.max(axis=0), high + room)
 
     @cached_property
     def _pairs(self) -> list[tuple[int, int, Array]]:

@@ -27,10 +27,12 @@ LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
 DARKEST = 0.62
 """Brightness of a face that is turned away from the light [-]."""
-MARGIN = 0.25
+MARGIN = 0.15
 """Width of the ground around the blocks, over their largest extent [-]."""
-ZOOM = 1.0
+ZOOM = 1.15
 """Size of the picture, over that which leaves room for labels on every side [-]."""
+FILLED = (0.84, 0.74)
+"""Share of the width and of the height of a figure that moving blocks and their ground fill [-]."""
 
 Update = Callable[[int], None]
 
@@ -79,7 +81,7 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
         low[2] = level
     _frame(space, (low, high), bodies)
     tints = np.array([to_rgb(colour) for colour in bodies.colours])
-    moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated)
+    moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated, clip_on=False)
     space.add_collection(moving, autolim=False)
 
     def update(frame: int) -> None:
@@ -97,6 +99,18 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
             moving.do_3d_projection()
 
     return update
+
+
+def fill(ax: Axes) -> None:
+    """Enlarge a view until it fills its figure, which has been laid out."""
+    space = in_three(ax)
+    figure: Any = ax.get_figure(root=True)
+    limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
+    corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
+    x, y, _ = proj_transform(*corners, space.get_proj())
+    spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0) / figure.bbox.size
+    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array(FILLED) / spans).min()))
+    figure.draw_without_rendering()
 
 
 def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
@@ -155,7 +169,8 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                ax.add_collection3d(Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5))
+                ground = Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5, clip_on=False)
+                ax.add_collection3d(ground)
     return level
 
 

@@ -42,6 +42,10 @@ WRITES = {
     "heap": {"heap.png", "heap.txt"},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
+    "facade_in_space": {f"facade_in_space.{ending}" for ending in ("png", "gif", "csv", "txt")},
+    "corner_block": {f"corner_block.{ending}" for ending in ("png", "csv", "txt")},
+    "law_in_space": {f"law_in_space.{ending}" for ending in ("png", "csv", "txt")},
+    "dome": {f"dome.{ending}" for ending in ("png", "csv", "txt")},
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
@@ -96,6 +100,10 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "sliding",
     "solvers_of_masonry",
     "four_solvers",
+    "facade_in_space",
+    "corner_block",
+    "law_in_space",
+    "dome",
 }
 """Scripts that take a while even with --quick."""
 
