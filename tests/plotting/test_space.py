@@ -130,3 +130,19 @@ def test_what_takes_the_plane_alone_says_so(one_sided, e, tmp_path):
         plotting.blocks(axes(), wall)
     with pytest.raises(ValueError, match=r"camera = .* is for masonry in space"):
         plotting.animate(wall, tmp_path / "a.gif", camera=(10.0, 10.0))
+
+
+def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
+    solids = Solids(MASONRY, np.zeros(1), moved(place=(500.0, 0.0, 2.0))[None])
+    low, high = solids.extent()
+    np.testing.assert_allclose(low, [-1.0, -0.5, 0.0], atol=1e-12)
+    np.testing.assert_allclose(high, [3.0, 0.5, 3.0], atol=1e-12)
+
+
+def test_a_moving_picture_fills_its_figure():
+    case = mr.MasonryCase(MASONRY, 1.0)
+    figure, _ = animation.scene(Solids(MASONRY, np.zeros(1), REST[None]), [], case)
+    ax = figure.axes[0]
+    width, height = np.ptp(np.concatenate([path.vertices for c in ax.collections for path in c.get_paths()]), axis=0)
+    drawn = np.ptp(ax.transData.transform([(0, 0), (width, height)]), axis=0) / figure.bbox.size
+    assert 0.6 < max(drawn / (0.84, 0.74)) < 1.01
