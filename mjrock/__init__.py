@@ -54,8 +54,9 @@ if TYPE_CHECKING:
     from .reference.compliant import solve_compliant
     from .reporting.page import report
     from .result.compare import Comparison, compare
+    from .result.ending import Outcome
     from .result.ledger import Ledger
-    from .result.response import MasonryResponse, Outcome, Response
+    from .result.response import MasonryResponse, Response
     from .result.rocking import Impact
     from .scene.masonry import masonry_scene
     from .scene.of_case import scene_of
@@ -227,7 +228,8 @@ HOMES = {
     "reporting.page": "report",
     "result.compare": "Comparison compare",
     "result.ledger": "Ledger",
-    "result.response": "MasonryResponse Outcome Response",
+    "result.ending": "Outcome",
+    "result.response": "MasonryResponse Response",
     "result.rocking": "Impact",
     "scene.masonry": "masonry_scene",
     "scene.of_case": "scene_of",

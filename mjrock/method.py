@@ -12,7 +12,8 @@ class Method(NamedTuple):
         short: (omega h)^2 of a short step over the accuracy, omega the highest contact frequency. Newmark's period
             error is (omega h)^2 / 24 for beta = 0 and less for beta = 1/12, which short steps use.
         most: omega h of a short step, however loose the accuracy: some eighteen steps in the shortest period [-].
-        dashpot: (c h / m)^2 of a short step over the accuracy, m = 1 / (6 W) the least mass that a contact may feel.
+        dashpot: (c h / m)^2 of a short step over the accuracy, m = 1 / (6 W) the least mass that a contact may feel,
+            in space 1 / (7 W).
             The error of a dashpot centred in the step is (c h / m)^2 / 12.
         longest: (p h)^2 of the longest step over the accuracy, p the frequency parameter of the rocking.
         change: largest accepted (change of acceleration x step), as a multiple of accuracy x speed.

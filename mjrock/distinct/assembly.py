@@ -116,15 +116,15 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[S
     lines["support"] = np.where(lines["face"] < 0, below, -1)
 
 
-def moving(supports: Sequence[Support]) -> Supports:
-    """The supports for compiled functions."""
+def moving(supports: Sequence[Support], axes: int = 2) -> Supports:
+    """The supports for compiled functions, in the plane or along three axes."""
     sizes = [len(support.t) for support in supports]
     return Supports(
         np.concatenate([np.empty(0), *(support.t for support in supports)]),
-        np.concatenate([np.empty((0, 2)), *(support.displacement for support in supports)]),
+        np.concatenate([np.empty((0, axes)), *(support.displacement for support in supports)]),
         np.cumsum([0, *sizes]),
-        np.zeros((len(supports), 2)),
-        np.zeros((len(supports), 2)),
+        np.zeros((len(supports), axes)),
+        np.zeros((len(supports), axes)),
     )
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
-from tqdm import tqdm
 
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
@@ -16,18 +15,16 @@ from ..problem.wall.case import Case
 from ..quantities import ON_ITS_FACE, require_flag, require_size, require_within
 from ..result.response import Response, State
 from ..result.start import required_start
+from ..scene.course import Course
 from ..scene.of_case import course_of, require_case, scene_of
 from .assembly import system_of
 from .encounters import Encounters
+from .following import Setup, follow, steps_of
 from .limit import SHARE, SHARE_OF_A_WALL, longest_step
 from .loop import Clock, advance
 from .reading import Run, response_of
-from .system import Books, Samples, System
-
-AT_ONCE = 2e7
-"""Steps of a line that are made before the progress bar moves and Ctrl-C is heard: about a second."""
-LOOK = 5e-3
-"""Longest time between two looks for blocks that meet others [s]."""
+from .space.setup import setup_in_space
+from .system import Books, Samples
 
 
 def solve_explicit(
@@ -44,6 +41,11 @@ def solve_explicit(
     The scheme is that of the distinct element method: symplectic Euler, a unilateral spring and dashpot along each
     normal, and along each face a spring of stiffness k_s with a Coulomb slider, or rigid friction where k_s is None
     (Cundall and Strack, Geotechnique 29, 1979, 47-65). It shares no kinematics and no time integration with MuJoCo.
+
+    Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, and a spring or
+    friction with two components along each face. A point that has moved past the outline of its face hands its force
+    over to the nearest place of the outline, as long as this is under the block above. Blocks that fall meet no others
+    there, which the message of the response says.
 
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
@@ -68,30 +70,20 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
     output_step = require_within("output_step", output_step, 1e-9, 1e3, "s")
     state = None if start is None else required_start(start, case)
-    scene = scene_of(case, contacts)
-    course = course_of(case, scene)
-    if state is not None:
-        course = replace(course, pose=state[0], velocity=state[1], released=False)
-    masonry, supports = (case.masonry, case.supports) if isinstance(case, MasonryCase) else (None, ())
-    system = system_of(scene, course, masonry, supports)
-    limit = longest_step(system)
-    spacing = min(output_step, course.duration)
-    if isinstance(case, Case):
-        spacing = min(spacing, 1e-3 / case.wall.p)  # peaks and impacts are read off the samples
-    share = SHARE if isinstance(case, MasonryCase) else SHARE_OF_A_WALL
-    h, every = steps_of(timestep, share * limit, limit, spacing)
-    count = math.floor(course.duration / (h * every) * (1 + 1e-12)) + 1
+    setup = setup_in_space(case, state) if in_space(case) else setup_in_plane(case, contacts, state)
+    scene, limit = setup.scene, setup.limit
+    spacing = min(output_step, setup.course.duration, setup.spacing)
+    h, every = steps_of(timestep, setup.share * limit, limit, spacing)
+    count = math.floor(setup.course.duration / (h * every) * (1 + 1e-12)) + 1
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
     groups = tuple(dict.fromkeys(scene.group))
-    encounters = None if masonry is None else Encounters(masonry, system, scene.group)
     columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 1 if ledger else 0)
     if ledger:
         require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
-    books = Books.of(system, len(groups) + 1, 0 if encounters is None else len(encounters.room))
-    samples = Samples.of(count, len(scene.names), columns)
-    ends = ON_ITS_FACE if isinstance(case, Case) else math.inf
+    books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else len(setup.encounters.room))
+    samples = Samples.of(count, len(scene.names), columns, setup.freedom)
     stepping = time.perf_counter()
-    system, steps, kept = follow(system, encounters, books, samples, Clock(0, h, every, 0, count, ends))
+    system, steps, kept = follow(setup, books, samples, Clock(0, h, every, 0, count, setup.ends))
     took = time.perf_counter() - stepping
     stats: dict[str, Any] = {
         "steps": steps,
@@ -101,47 +93,33 @@ def solve_explicit(
         "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
         "stepping_time": took,
     }
-    run = Run(case, contacts, scene, course, system, books, Samples(*(part[:kept] for part in samples)), h * every)
+    samples = Samples(*(part[:kept] for part in samples))
+    run = Run(case, contacts, scene, setup.course, system, books, samples, h * every)
     response = response_of(run, ledger=ledger, stride=max(1, round(output_step / (h * every))), stats=stats)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response
 
 
-def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
-    """Length of a step [s], and how many lie between two samples.
-
-    Raises:
-        ValueError: for a step that is not stable.
-    """
-    if timestep is None:
-        every = max(1, math.ceil(spacing / taken))
-        return spacing / every, every
-    if timestep > limit:
-        raise ValueError(
-            f"timestep = {timestep:.3g} s is not stable; the valid range is up to {limit:.3g} s, which the stiffest "
-            "contacts and the strongest dashpots allow"
-        )
-    return timestep, max(1, round(spacing / timestep))
+def setup_in_plane(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
+    """A wall or masonry in the plane at its start."""
+    scene = scene_of(case, contacts)
+    course = continued(course_of(case, scene), state)
+    masonry, supports = (case.masonry, case.supports) if isinstance(case, MasonryCase) else (None, ())
+    system = system_of(scene, course, masonry, supports)
+    limit = longest_step(system)
+    if masonry is None:
+        assert isinstance(case, Case)
+        # peaks and impacts are read off the samples
+        return Setup(scene, course, system, advance, limit, SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
+    encounters = Encounters(masonry, system, scene.group)
+    return Setup(scene, course, system, advance, limit, SHARE, encounters=encounters)
 
 
-def follow(
-    system: System, encounters: Encounters | None, books: Books, samples: Samples, clock: Clock
-) -> tuple[System, int, int]:
-    """Make the steps, with a progress bar where they take more than some seconds.
+def continued(course: Course, state: State | None) -> Course:
+    """A course that starts from a state where one is given."""
+    return course if state is None else replace(course, pose=state[0], velocity=state[1], released=False)
 
-    Returns:
-        The system at the end, how many steps it took, and of how many samples.
-    """
-    total, sample, ended = clock.rows, clock.every * clock.h, False
-    with tqdm(total=total, desc="explicit", unit="sample", delay=3, disable=None, leave=False) as bar:
-        while clock.row < total and not ended:
-            rows = max(1, int(AT_ONCE / (clock.every * max(1, len(system.lines)))))
-            if encounters is not None:
-                rows = min(rows, max(1, int(LOOK / sample)))
-                loose = encounters.loose(system)
-                if loose.any():
-                    system = encounters.looked_for(system, loose, rows * sample)
-            step, row, ended = advance(system, books, samples, clock._replace(rows=min(rows, total - clock.row)))
-            bar.update(row - clock.row)
-            clock = clock._replace(step=step, row=row)
-    return system, clock.step, clock.row
+
+def in_space(case: Case | MasonryCase) -> TypeGuard[MasonryCase]:
+    """Whether a case is one of masonry in space."""
+    return isinstance(case, MasonryCase) and case.masonry.in_space

@@ -8,6 +8,7 @@ of damping with every contact closed, which need not belong to one mode.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
@@ -41,20 +42,32 @@ def longest_step(system: System) -> float:
     )
     sprung = np.isfinite(lines["k_s"])
     shear = [np.where(sprung, lines[name], 0.0) for name in ("k_s", "c_s")]
-    stiffness = highest(system, rates, np.concatenate([lines["k"], shear[0], ties["k"], dampers["k"]]))
-    damping = highest(system, rates, np.concatenate([lines["c"], shear[1], ties["c"], dampers["c"]]))
+    bodies = system.bodies
+    ease = np.column_stack([1 / bodies["mass"], 1 / bodies["mass"], bodies["ease"]]).ravel()
+    return stable_step(
+        rates,
+        np.concatenate([lines["k"], shear[0], ties["k"], dampers["k"]]),
+        np.concatenate([lines["c"], shear[1], ties["c"], dampers["c"]]),
+        diags_array(np.sqrt(ease)),
+    )
+
+
+def stable_step(rates: csr_array, k: Array, c: Array, root: Any) -> float:
+    """The longest stable step [s] on springs k and dashpots c, whose lengths have these rates.
+
+    The masses come in as a matrix whose product with its transpose is their inverse.
+    """
+    stiffness, damping = (highest(rates, weights, root) for weights in (k, c))
     return math.inf if stiffness == 0 else (math.sqrt(damping**2 + 4 * stiffness) - damping) / stiffness
 
 
-def highest(system: System, rates: csr_array, weights: Array) -> float:
+def highest(rates: csr_array, weights: Array, root: Any) -> float:
     """The highest eigenvalue of M^-1 J^T W J, as that of W^1/2 J M^-1 J^T W^1/2."""
     acting = np.flatnonzero(weights)
     if not acting.size:
         return 0.0
-    bodies = system.bodies
-    ease = np.column_stack([1 / bodies["mass"], 1 / bodies["mass"], bodies["ease"]]).ravel()
-    root = diags_array(np.sqrt(weights[acting])) @ rates[acting] @ diags_array(np.sqrt(ease))
-    matrix = root @ root.T
+    scaled = diags_array(np.sqrt(weights[acting])) @ rates[acting] @ root
+    matrix = scaled @ scaled.T
     if len(acting) <= SMALL:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(acting))

@@ -105,7 +105,7 @@ def support_place(supports: Supports, i: int, axis: int, t: float) -> float:
 def move_supports(supports: Supports, t: float, h: float) -> None:
     """Bring displacement and mean velocity of the supports up to date, after a step of length h."""
     for i in range(len(supports.moved)):
-        for axis in range(2):
+        for axis in range(supports.moved.shape[1]):
             place = support_place(supports, i, axis, t)
             supports.moving[i, axis] = (place - supports.moved[i, axis]) / h if h > 0 else 0.0
             supports.moved[i, axis] = place

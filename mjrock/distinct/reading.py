@@ -8,21 +8,24 @@ from typing import Any
 
 import numpy as np
 
+from ..geometry.frames import SPACE
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array
+from ..result.ending import ending, masonry_ending
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
+from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion, fallen_blocks, joint_numbers
 from ..result.ledger import Ledger, from_nowhere
-from ..result.response import Response, ending, masonry_ending
+from ..result.response import Response
 from ..result.rocking import Rocking
 from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .system import Books, Samples, System
+from .system import Books, Samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,10 +36,15 @@ class Run:
     contacts: Contacts | None
     scene: Scene
     course: Course
-    system: System
+    system: Any
     books: Books
     samples: Samples
     spacing: float
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the bodies move in space."""
+        return bool(self.samples.pose.shape[2] == SPACE.nq)
 
     @cached_property
     def t(self) -> Array:
@@ -119,10 +127,11 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     """Openings, slidings and falls of masonry, and the sample at which the first block falls."""
     masonry, scene, pose = case.masonry, run.scene, run.samples.pose
     flat = pose.reshape(len(pose), -1)
-    motion = joint_motion(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
-    fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, 1] - pose[:, :, 1])
+    followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
+    motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
+    fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
-    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), met=True)
+    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), met=not run.in_space)
     opening = motion.opening.copy()
     of = joint_numbers(masonry, scene.group)
     np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.frames import PLANE, Freedom
 from ..quantities import Array, Integers
 from ..scene.ground import Ground
 
@@ -84,9 +85,9 @@ class Supports(NamedTuple):
 
     Args:
         t: times of the samples of all supports, one support after the other [s], shape (samples,).
-        displacement: x and z [m], shape (samples, 2), linear in between.
+        displacement: x and z [m], shape (samples, 2), in space (samples, 3), linear in between.
         first: where the samples of each support begin, and where those of the last end, shape (s + 1,).
-        moved, moving: displacement and velocity at the pose [m, m/s], shape (s, 2).
+        moved, moving: displacement and velocity at the pose [m, m/s], shape (s, 2), in space (s, 3).
     """
 
     t: Array
@@ -115,7 +116,7 @@ class Books(NamedTuple):
         dashpots: by group, shape (g,).
         ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
         friction: friction, what is in the shear springs included; then the work of ground and supports; then the
-            accelerations of the ground in the last step [m/s2], shape (4,).
+            accelerations of the ground in the last step, x, z and y [m/s2], shape (5,).
         active: room for the numbers of the lines that stick rigidly, shape (m,).
     """
 
@@ -127,9 +128,9 @@ class Books(NamedTuple):
     active: Integers
 
     @classmethod
-    def of(cls, system: System, groups: int, further: int) -> Books:
-        """Empty books, with room for some further lines."""
-        sizes = (groups, len(system.ties), len(system.ties), len(system.dampers), 4)
+    def of(cls, system: Any, groups: int, further: int = 0) -> Books:
+        """Empty books of a system in the plane or in space, with room for some further lines."""
+        sizes = (groups, len(system.ties), len(system.ties), len(system.dampers), 5)
         dashpots, ties, broken, dampers, friction = (np.zeros(size) for size in sizes)
         return cls(dashpots, ties, broken, dampers, friction, np.zeros(len(system.lines) + further, dtype=np.int64))
 
@@ -138,7 +139,7 @@ class Samples(NamedTuple):
     """What is kept of a motion at its samples.
 
     Args:
-        pose, velocity: of the bodies, shape (samples, n, 3).
+        pose, velocity: of the bodies, shape (samples, n, 3); in space (samples, n, 7) and (samples, n, 6).
         energy: kinetic, potential and elastic [J], shape (samples, 3).
         work: friction and ground, then dampers, ties, broken ties and dashpots by group [J], shape (samples, columns).
             Without a ledger it is the first two alone, and friction is that of shear springs.
@@ -150,7 +151,7 @@ class Samples(NamedTuple):
     work: Array
 
     @classmethod
-    def of(cls, count: int, bodies: int, columns: int) -> Samples:
+    def of(cls, count: int, bodies: int, columns: int, freedom: Freedom = PLANE) -> Samples:
         """Room for some samples."""
-        shapes = (count, bodies, 3), (count, bodies, 3), (count, 3), (count, columns)
+        shapes = (count, bodies, freedom.nq), (count, bodies, freedom.nv), (count, 3), (count, columns)
         return cls(*(np.zeros(shape) for shape in shapes))

@@ -51,12 +51,13 @@ class ContactParameters:
         return self.solimp[0]
 
 
-def planar_weight(mass: Array) -> Array:
-    """Inverse weight of bodies that move in a plane, 2 / (3 m) [1/kg].
+def body_weight(mass: Array, translations: int) -> Array:
+    """Inverse weight of bodies [1/kg]: 2 / (3 m) of those that move in a plane, with 2 translations, 1 / m in space.
 
-    MuJoCo's `body_invweight0` is the mean of the inverse masses along three axes. Two slides and a hinge leave two.
+    MuJoCo's `body_invweight0` is the mean of the inverse masses along three axes. Two slides and a hinge leave two, and
+    three slides and a ball about the centroid all three.
     """
-    return 2 / (3 * mass)
+    return translations / (3 * mass)
 
 
 @jitable

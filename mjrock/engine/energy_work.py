@@ -14,25 +14,29 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import take_frames
-from ..geometry.kinematics import along, gap
+from ..geometry.kinematics import Places, gap, meeting, over_face, where_friction_acts
+from ..geometry.poses import moved
+from ..geometry.vectors import dot
 from ..quantities import Array, Integers
 from ..result.ledger import Ledger
 from ..scene.course import Course
 from ..scene.dampers import taken_by_dampers
 from ..scene.ground import Shaking, mean_acceleration
-from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
+from ..scene.structure import breaks, spring_energy
 from .points import Points, points_of
 from .record import Kinds, Record, Steps, Windows
 from .rows import Step, impratio_of, row_of
+from .sliding import slip_of
 
 
 def ground_work(scene: Scene, course: Course, steps: Steps) -> Array:
     """Work that the moving ground has done in the window of each step [J], shape (steps,)."""
     work, windows, freedom = np.zeros(len(steps.t)), steps.windows, scene.places.freedom
-    for axis, shaking in zip((0, freedom.translations - 1), course.ground, strict=True):
+    ground = course.ground
+    for axis, shaking in ((0, ground.x), (freedom.translations - 1, ground.z), (1, ground.y)):
         if len(shaking.accel):
             momentum = windows.mean[:, axis :: freedom.nv] @ scene.mass
             _ground_work(shaking, steps.t, steps.h, windows.width, momentum, work)
@@ -81,7 +85,7 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     groups, dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
     record = steps.record
-    dampers = taken_by_dampers(scene.dampers, record.pose, windows.mean, windows.width, record.damping)
+    dampers = taken_by_dampers(scene.dampers, scene.freedom, record.pose, windows.mean, windows.width, record.damping)
     dashpots = np.concatenate([dashpots, dampers], axis=1)
     return Ledger(
         t=windows.t,
@@ -104,17 +108,17 @@ def lost_by_breaking(scene: Scene, broken: Integers, steps: int) -> dict[str, Ar
 
 
 def given_back(scene: Scene, steps: Steps) -> Array:
-    """Energy that ties and constant forces regain after each step of the plane but the last [J], shape (steps - 1,).
+    """Energy that ties and constant forces regain after each step but the last [J], shape (steps - 1,).
 
     An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken on the
     way is then there again. It would else add up under a thrust that a resting wall bears for long.
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
-    pose[::2], pose[1::2] = steps.pose, (steps.pose + steps.h[:, None] * steps.record.after)[:-1]
+    pose[::2], pose[1::2] = steps.pose, moved(steps.pose, steps.h[:, None] * steps.record.after, scene.freedom)[:-1]
     broken = np.maximum(
         2 * breaks(scene.ties, steps.pose, scene.places.freedom) - 1, 0
     )  # before the drift that ends at the pose
-    stored = scene.accounts(pose, np.zeros_like(pose), broken)[0].sum(axis=1)
+    stored = scene.accounts(pose, np.zeros((len(pose), len(scene.masses))), broken)[0].sum(axis=1)
     gained: Array = stored[2::2] - stored[1::2]
     return gained
 
@@ -188,7 +192,7 @@ class Room(NamedTuple):
     @classmethod
     def of(cls, scene: Scene) -> Room:
         """Room for a step of a scene."""
-        freedom, coordinates, contacts = scene.places.freedom, len(scene.masses), len(scene.k)
+        freedom, coordinates, contacts = scene.freedom, len(scene.masses), len(scene.k)
         frames = (freedom.frames(len(scene.mass)) for _ in range(3))
         return cls(*frames, *np.empty((3, coordinates)), *np.empty((2, contacts)))
 
@@ -230,6 +234,18 @@ def drag_of(law_k: float, dashpot: float, inertia: float, step: Step, i: int, ra
     return Drag(dashpot * (rate - 0.5 * step.h * curve) + inertia * curve - sprung, sprung)
 
 
+@inlined
+def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> float:
+    """Slip of contact i for velocities v along that for other velocities, which is the way of its friction [m/s].
+
+    In the plane there is one way. In space friction of the rows is against the slip after the step, and Coulomb's
+    against that at the pose.
+    """
+    meets = where_friction_acts(places, meeting(places, i, frames))
+    velocity = over_face(places, i, meets, frames, v)
+    return dot(slip_of(meets.normal, over_face(places, i, meets, frames, way)).way, velocity)
+
+
 @compiled
 def _contact_work(
     points: Points, number: Integers, record: Record, windows: Windows, kinds: Kinds, room: Room, work: Work
@@ -256,12 +272,13 @@ def _contact_work(
             if law.friction[i] > 0:
                 dragging, lift = record.friction[n, i], 0.0
                 if math.isnan(dragging):
-                    slip = along(places, i, room.frames, record.after[n]).bodies
+                    slip = slip_along(places, i, room.frames, record.after[n], record.after[n])
                     stopping = -impratio * inertia * slip / step.h
                     pressing, dragging = cone_force(pressed, stopping, impratio * inertia, inertia, law.friction[i])
                     lift = pressing - max(pressed, 0.0)  # what a sliding cone presses on top of the law
                     if points.rubs[i] and abs(stopping) > law.friction[i] * max(pressed, 0.0):
                         work.impulses[0] += lift * step.h
                         work.impulses[1] += max(pressed, 0.0) * step.h
-                slipped = along(places, i, room.frames, room.mean).bodies * windows.width[n]
+                way = record.after[n] if math.isnan(record.friction[n, i]) else room.middle
+                slipped = slip_along(places, i, room.frames, room.mean, way) * windows.width[n]
                 work.friction[n] -= dragging * slipped + lift * opened

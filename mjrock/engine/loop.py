@@ -15,6 +15,7 @@ from ..compiled import compiled, jitable
 from ..geometry.frames import take_frames
 from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array
+from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .pace import Pace, judged, step_of, while_loaded, while_taut
 from .points import Points, Reach
@@ -26,6 +27,8 @@ from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_
 from .sticking import Moved, put_sticking_edges_back
 from .touches import Openings, closure_changed, follow, step_to_break, step_to_touch
 
+LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
+"""x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
 FAR = 1e9
 """Length up to which a tie that has broken is slack [m]."""
 
@@ -38,20 +41,25 @@ def copied(values: Array, to: Array) -> None:
 
 
 @jitable
-def kinetic(masses: Array, v: Array) -> float:
+def kinetic(masses: Array, products: Array, v: Array) -> float:
     """Twice the kinetic energy [J], or the same norm of any other rate."""
     total = 0.0
     for j in range(len(v)):
         total += masses[j] * v[j] * v[j]
-    return total
+    return total + coupling(products, v) if len(products) > 0 else total
 
 
 @jitable
-def fallen(q: Array) -> bool:
-    """Whether a body of the plane lies on its face. A NaN counts."""
-    for j in range(2, len(q), 3):  # noqa: SIM110, numba knows no any()
-        if not abs(q[j]) <= ON_ITS_FACE:
-            return True
+def fallen(q: Array, axes: tuple[int, ...]) -> bool:
+    """Whether a body lies on its face. A NaN counts."""
+    if len(axes) == 2:
+        for j in range(2, len(q), 3):
+            if not abs(q[j]) <= ON_ITS_FACE:
+                return True
+    else:
+        for j in range(4, len(q), 7):
+            if not q[j] * q[j] + q[j + 1] * q[j + 1] <= LYING:
+                return True
     return False
 
 
@@ -118,15 +126,18 @@ def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, v
 
 @jitable
 def change_of_acceleration(
-    memory: Memory, masses: Array, state: Progress, last: float, now: float, fresh: bool
+    memory: Memory, setting: Setting, state: Progress, last: float, now: float, fresh: bool
 ) -> float:
     """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
-    change = 0.0
+    change, masses = 0.0, setting.masses
     for j in range(len(masses)):
         difference = memory.acceleration[j] - state.acceleration[j]
         change += masses[j] * difference * difference
+        state.change[j] = difference
         state.rate[j] = 0.0 if fresh else difference / last
         state.acceleration[j] = memory.acceleration[j]
+    if len(setting.products) > 0:
+        change += coupling(setting.products, state.change)
     return now * now * change
 
 
@@ -186,6 +197,7 @@ def fitted_loop(
     """
     t, h, last, energy, calm, fresh, abrupt, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
+    axes = points.places.axes
     if last == 0:
         set_step(memory, points, pace, h)
         find_acceleration(memory, setting, sliding, state.frames, -h)
@@ -219,16 +231,16 @@ def fitted_loop(
             set_step(memory, points, pace, now)
         record.t[n], record.h[n] = t, now
         make_step(memory, setting, sliding, state.frames, record, n)
-        ended = t >= setting.duration or fallen(record.pose[n]) or out_of_reach(points.reach, openings)
+        ended = t >= setting.duration or fallen(record.pose[n], axes) or out_of_reach(points.reach, openings)
         turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting.masses, state, last, now, fresh or turned) / energy
+        change = change_of_acceleration(memory, setting, state, last, now, fresh or turned) / energy
         abrupt = change > pace.method.abrupt**2
         settle_pose(memory, setting, pace, state, record, n)
 
         # judge
         t, last = t + now, now
         if to_touch > 0:
-            energy = max(kinetic(setting.masses, memory.velocity), pace.least_energy)
+            energy = max(kinetic(setting.masses, setting.products, memory.velocity), pace.least_energy)
             touches += 1
             h, calm, fresh = pace.short, 0, True
         else:
@@ -252,6 +264,6 @@ def fixed_loop(
             take_frames(memory.pose, frames, setting.points.places.axes)
         record.t[n], record.h[n] = h * (first + n), h
         make_step(memory, setting, sliding, frames, record, n)
-        if first + n >= last or fallen(record.pose[n]):
+        if first + n >= last or fallen(record.pose[n], setting.points.places.axes):
             return True, n + 1
     return False, len(record.t)

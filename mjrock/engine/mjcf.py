@@ -14,17 +14,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from .._version import __version__
+from ..geometry.frames import PLANE
 from ..method import METHOD, Method
 from ..quantities import GRAVITY, Array
 from ..scene.arrays import GROUND
 from ..scene.scene import Scene
 from .points import points_of
 from .rows import Rows, Step, set_rows
+from .shapes import in_space, meshes, sites, world
 from .tags import section, tag, value_text
 
 HEAD = """\
@@ -59,6 +60,8 @@ HEAD = """\
   </asset>
 """
 
+IN_FRONT = (5.0, -3.0, 2.0)
+"""From the middle of a scene of space to its camera, over half the size of the scene [-]."""
 SPARSE_FROM = 4
 """Bodies from which MuJoCo keeps the rows of the contacts sparse. A row moves two bodies. A step of sixteen blocks in a
 stack takes half the time with sparse rows, one of four blocks as much."""
@@ -68,8 +71,8 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
     """The model of a scene as MJCF text. The same arguments give the same bytes.
 
     Names: each body and the geom that shows it; each contact point, its pair and its geom by group and number, such as
-    `base_0`; the face that a group meets by the group; the joints `x`, `z` and `theta` of a single body, or with the
-    name of the body before them; the keyframe `release`; the camera `front`.
+    `base_0`; the face that a group meets by the group; the joints `x`, `z` and `theta` of a single body, and in space
+    `x`, `y`, `z` and `turn`, or with the name of the body before them; the keyframe `release`; the camera `front`.
 
     Args:
         scene: the scene.
@@ -81,7 +84,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     fixed = pair_rows(scene, timestep, newmark_beta)
-    keyframe = Keyframe(scene.at_rest, np.zeros_like(scene.at_rest), np.empty(0)) if keyframe is None else keyframe
+    keyframe = Keyframe(scene.at_rest, np.zeros_like(scene.masses), np.empty(0)) if keyframe is None else keyframe
     head = HEAD.format(
         title=scene.title.replace("--", "- -"),
         version=__version__,
@@ -91,20 +94,20 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         impratio=value_text(fixed.impratio),
         rows=' jacobian="sparse"' if len(scene.names) >= SPARSE_FROM else "",
         start="" if len(scene.names) > 1 else 'warmstart="disable" ',
-        center=value_text((middle[0], 0.0, middle[1])),
+        center=value_text(in_space(middle)),
         extent=value_text(2 * half),
-        meshes="".join(f"\n    {mesh}" for mesh in _meshes(scene)),
+        meshes="".join(f"\n    {mesh}" for mesh in meshes(scene)),
     )
-    camera = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
+    camera = _camera(scene, middle, half)
     key = {"qpos": keyframe.pose.ravel(), "qvel": keyframe.velocity.ravel()}
     if len(keyframe.plastic):
         key["plastic"] = keyframe.plastic
     body = [
         "<worldbody>",
         '  <light name="sun" directional="true" castshadow="false" dir="-0.4 0.5 -0.8"/>',
-        tag("camera", name="front", pos=camera, xyaxes=(1.0, 0.0, 0.0, 0.0, 0.05, 1.0), fovy="28"),
-        *_world(scene),
-        *(f"  {site}" for site in _sites(scene, GROUND)),
+        tag("camera", name="front", **camera, fovy="28"),
+        *world(scene),
+        *(f"  {site}" for site in sites(scene, GROUND)),
         "</worldbody>",
         *section("contact", _pairs(scene, fixed.rows)),
         *section("tendon", chain(_ties(scene), _dampers(scene))),
@@ -115,12 +118,22 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
 
 
+def _camera(scene: Scene, middle: Array, half: float) -> dict[str, object]:
+    """Where the camera stands: before the plane, or in space before the facade and beside it."""
+    if scene.freedom == PLANE:
+        at = (middle[0] + 0.2 * half, -6 * half, middle[1] + 0.3 * half)
+        return {"pos": at, "xyaxes": (1.0, 0.0, 0.0, 0.0, 0.05, 1.0)}
+    away = np.array(IN_FRONT)
+    right = np.cross((0.0, 0.0, 1.0), away)
+    return {"pos": middle + half * away, "xyaxes": (*right, *np.cross(away, right))}
+
+
 class Keyframe(NamedTuple):
     """What the keyframe `release` holds.
 
     Args:
-        pose: of the bodies at the release, shape (n, 3).
-        velocity: half a step before the release, shape (n, 3).
+        pose: of the bodies at the release, shape (n, nq).
+        velocity: half a step before the release, shape (n, nv).
         plastic: state of the ties, as MuJoCo keeps it, shape (2 t,); empty where none can yield.
     """
 
@@ -144,56 +157,6 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float, method: Method
     return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.damper_c)
 
 
-def _world(scene: Scene) -> Iterator[str]:
-    """The faces of the ground, and each body with its faces and its contact points."""
-    radius = scene.radius
-    faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
-    for name in sorted(faces, key=faces.__getitem__):
-        if scene.face_body[faces[name]] == GROUND:
-            yield from _ground(scene, name, radius)
-    for j, (name, rest, outline) in enumerate(zip(scene.names, scene.rest, scene.outlines, strict=True)):
-        mass, (width, height) = scene.mass[j], np.ptp(outline, axis=0)
-        across = [mass * (scene.length**2 + side**2) / 12 for side in (height, width)]
-        if not abs(across[0] - across[1]) <= scene.inertia[j] <= sum(across):  # of a rectangle; any will do that can be
-            across = [scene.inertia[j]] * 2
-        prefix = "" if len(scene.names) == 1 else f"{name}_"
-        yield f"  <body name={quoteattr(name)} pos={value_text((rest[0], 0.0, rest[1] + radius))}>"
-        yield "    " + tag("inertial", pos=(0, 0, 0), mass=mass, diaginertia=(across[0], scene.inertia[j], across[1]))
-        for joint, kind, axis in (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0 1 0")):
-            yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)
-        if _is_box(outline):
-            yield "    " + tag(
-                "geom", name=name, type="box", size=(width / 2, scene.length / 2, height / 2), material="brick"
-            )
-        else:
-            yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick")
-        for face in (face for face, i in faces.items() if scene.face_body[i] == j):
-            yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face], radius))
-        for i in np.flatnonzero(scene.point_body == j):
-            at = (scene.point[i, 0], 0.0, scene.point[i, 1])
-            yield "    " + tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
-        yield from (f"    {site}" for site in _sites(scene, j))
-        yield "  </body>"
-
-
-def _sites(scene: Scene, body: int) -> Iterator[str]:
-    """Ends of ties and points of forces on a body or on the ground, which is raised by the radius of the points."""
-    ends = (
-        (scene.tie_names, scene.tie_body, scene.tie_point),
-        ([f"{name}_anchor" for name in scene.tie_names], scene.anchor_body, scene.anchor),
-        (scene.damper_names, scene.damper_body, scene.damper_point),
-        ([f"{name}_anchor" for name in scene.damper_names], np.full(len(scene.damper_c), GROUND), scene.damper_anchor),
-        (scene.force_names, scene.force_body, scene.force_point),
-    )
-    raised = scene.radius if body == GROUND else 0.0
-    for names, bodies, places in ends:
-        for name, on, (x, z) in zip(names, bodies, places, strict=True):
-            if on == body:
-                yield tag("site", name=name, pos=(x, 0.0, z + raised))
-    if body == GROUND and scene.force_names:
-        yield tag("site", name="origin")
-
-
 def _ties(scene: Scene) -> Iterator[str]:
     """The ties: springs that are slack up to a length and yield at a force."""
     for i, name in enumerate(scene.tie_names):
@@ -212,64 +175,17 @@ def _dampers(scene: Scene) -> Iterator[str]:
 
 def _forces(scene: Scene) -> Iterator[str]:
     """The constant forces: actuators that need no control."""
-    for name, (x, z) in zip(scene.force_names, scene.force, strict=True):
+    for name, force in zip(scene.force_names, scene.force, strict=True):
         yield "  " + tag(
             "general",
             name=name,
             site=name,
             refsite="origin",
-            gear=(x, 0, z, 0, 0, 0),
+            gear=(*in_space(force), 0, 0, 0),
             gainprm="0",
             biastype="affine",
             biasprm="1 0 0",
         )
-
-
-def _ground(scene: Scene, name: str, radius: float) -> Iterator[str]:
-    """A face of the ground as a plane. Level ground is seen as paving, any other face as a slab behind it."""
-    i = scene.face_names.index(name)
-    x, z = scene.face[i]
-    nx, nz = scene.normal[i]
-    at = (x - radius * nx, 0.0, z - radius * nz + radius)
-    if nz == 1:
-        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
-        return
-    met = np.array([face == name for face in scene.face_names])
-    along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
-    places = along @ np.array([nz, -nx])
-    half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())
-    x, z = x + middle * nz, z - middle * nx
-    size, axis = (half, 0.6 * scene.length, 1.0), (nx, 0.0, nz)
-    yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")
-    thick = 0.15 * half
-    slab, behind = (half, 0.6 * scene.length, thick), (x - thick * nx, 0.0, z - thick * nz)
-    yield "  " + tag("geom", name=f"{name}_wall", type="box", size=slab, pos=behind, zaxis=axis, material="plaster")
-
-
-def _plate(scene: Scene, i: int, radius: float) -> dict[str, object]:
-    """The face of a body as a plate that is wider than any slip and thicker than any penetration.
-
-    It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
-    be at the origin, and a thinner plate of a square block would have its middle a radius away from there.
-    """
-    extent, deep = scene.extent, 2 * scene.extent
-    x, z = scene.face[i]
-    nx, nz = scene.normal[i]
-    at = (x - (deep + radius) * nx, 0.0, z - (deep + radius) * nz)
-    return {"size": (4 * extent, 0.6 * scene.length, deep), "pos": at, "zaxis": (nx, 0.0, nz)}
-
-
-def _meshes(scene: Scene) -> Iterator[str]:
-    """The bodies that are no boxes, as prisms."""
-    for name, outline in zip(scene.names, scene.outlines, strict=True):
-        if not _is_box(outline):
-            vertices = [(x, y, z) for y in (-scene.length / 2, scene.length / 2) for x, z in outline]
-            yield tag("mesh", name=name, vertex=np.ravel(vertices))
-
-
-def _is_box(outline: Array) -> bool:
-    half = np.ptp(outline, axis=0) / 2
-    return len(outline) == 4 and bool(np.allclose(np.abs(outline), half, rtol=1e-12))
 
 
 def _pairs(scene: Scene, rows: Rows) -> Iterator[str]:

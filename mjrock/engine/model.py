@@ -15,7 +15,7 @@ import numpy as np
 from ..quantities import Flags
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .contact import planar_weight
+from .contact import body_weight
 from .memory import Memory
 from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
 from .record import Record
@@ -62,7 +62,7 @@ class Engine:
     @classmethod
     def of(cls, model: mujoco.MjModel, scene: Scene) -> Engine:
         """The engine of a model that was compiled from the text of a scene. It raises what `compile` raises."""
-        inverse = planar_weight(scene.mass)
+        inverse = body_weight(scene.mass, scene.freedom.translations)
         for j, name in enumerate(scene.names):
             weighed = float(model.body_invweight0[j + 1, 0])
             if not math.isclose(weighed, inverse[j], rel_tol=1e-9):
@@ -74,7 +74,12 @@ class Engine:
             raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")
         data = mujoco.MjData(model)
         require_room(model, data)
-        return cls(model, data, Memory.of(model, data), Record.of(CHUNK, model.nv, model.npair, len(scene.damper_c)))
+        return cls(
+            model,
+            data,
+            Memory.of(model, data),
+            Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.damper_c)),
+        )
 
     def follow(self, timestep: float, fixed: FixedRows) -> None:
         """Set the step and the rows of all contacts."""
@@ -167,5 +172,5 @@ def released_mjcf(scene: Scene, course: Course, timestep: float, newmark_beta: f
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
         engine.release(course)
-        keyframe = Keyframe(course.pose, engine.data.qvel.reshape(-1, 3), engine.data.plastic)
+        keyframe = Keyframe(course.pose, engine.data.qvel.reshape(len(scene.names), -1), engine.data.plastic)
         return scene_mjcf(scene, timestep, newmark_beta, keyframe)

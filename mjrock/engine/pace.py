@@ -34,6 +34,10 @@ from .points import Reach, inverse_weights, points_of
 from .rows import Step
 from .touches import Openings
 
+LIGHTEST = {2: 6, 3: 7}
+"""Largest inverse mass that a contact of a block may feel, over W, in the plane and in space [-]: 4/m at the edge of a
+slender block, and 7/m at the corner of a thin plate."""
+
 
 class Pace(NamedTuple):
     """The limits of the steps of a run.
@@ -67,7 +71,9 @@ class Pace(NamedTuple):
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
         represented = min(longest_step(k, W) for k, W in zip(scene.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        slowed = math.sqrt(method.dashpot * accuracy) / max(damping_rate(scene.dampers, scene.masses), 1e-300)
+        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.principal)
+        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.principal)
+        slowed = math.sqrt(method.dashpot * accuracy) / max(slowing, 1e-300)
         longest = max(short, min(rocking, represented, stable, slowed, *course.sampling))
         damped = scene.c / (longest * scene.k) if scene.damped_joints else 0.0
         ringing = np.where(scene.bears > 0, np.maximum(method.ringing_borne - damped, 0.0), method.ringing_open)
@@ -92,7 +98,9 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     """
     spring = min(method.most, math.sqrt(method.short * accuracy)) / scene.highest_frequency
     strongest = float(np.max(scene.c * inverse_weights(scene)))
-    dashpot = math.sqrt(method.dashpot * accuracy) / (6 * strongest) if strongest else math.inf
+    lightest = LIGHTEST[scene.freedom.translations] * strongest
+    lightest = LIGHTEST[scene.freedom.translations] * strongest
+    dashpot = math.sqrt(method.dashpot * accuracy) / lightest if strongest else math.inf
     return min(spring, max(dashpot, spring / 8))
 
 

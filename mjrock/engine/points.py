@@ -12,7 +12,7 @@ from ..method import METHOD, Method
 from ..quantities import Array, Flags
 from ..scene.arrays import frozen
 from ..scene.scene import Scene
-from .contact import planar_weight
+from .contact import body_weight
 from .rows import Law, RowInertia
 
 
@@ -49,7 +49,7 @@ class Points(NamedTuple):
 
 def inverse_weights(scene: Scene) -> Array:
     """Sum of MuJoCo's inverse weights of the two bodies of each contact [1/kg], shape (m,)."""
-    inverse = planar_weight(scene.mass)
+    inverse = body_weight(scene.mass, scene.freedom.translations)
     return frozen(inverse[scene.point_body] + np.where(scene.face_body < 0, 0.0, inverse[scene.face_body]))
 
 
@@ -61,6 +61,7 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
     dashpot is weaker than the stiffest vibration, has it centred in long steps too where the scene asks for that.
     """
     weight = inverse_weights(scene)
+    held = method.held_masses * scene.freedom.translations / (3 * weight)
     mild = scene.damped_joints & (scene.bears > 0) & (scene.c * weight < scene.highest_frequency)
     return Points(
         places=scene.places,
@@ -68,7 +69,7 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
         inertia=RowInertia(
             weight=weight,
             overdamped=np.where(mild, method.borne, method.overdamped),
-            friction=frozen(np.where(scene.friction > 0, method.held_masses * 2 / (3 * weight), 0.0)),
+            friction=frozen(np.where(scene.friction > 0, held, 0.0)),
             growth=0.0 if np.any(scene.holds) else method.held_growth,
         ),
         reach=Reach(scene.bears, scene.reach, scene.overlap),

@@ -22,6 +22,7 @@ class Progress(NamedTuple):
     Args:
         acceleration: in the last step, shape (n nv,).
         rate: its rate, from the last two steps, shape (n nv,).
+        change: room for the change of the acceleration in a step, shape (n nv,).
         velocity_now, acceleration_now: room for the values at the time of the pose, shape (n nv,).
         frames, next_frames: frames of the pose before and after the step.
         openings: gap of each contact, slack of each tie, and their rates.
@@ -34,6 +35,7 @@ class Progress(NamedTuple):
 
     acceleration: Array
     rate: Array
+    change: Array
     velocity_now: Array
     acceleration_now: Array
     frames: Array
@@ -51,8 +53,8 @@ class Progress(NamedTuple):
         springs, freedom = Springs.of(setting.points.law, setting.ties), setting.points.places.freedom
         frames = frames_of(memory.pose, freedom)
         closed = np.zeros(len(springs.k), dtype=np.bool_)
-        acceleration, rate, velocity_now, acceleration_now = np.zeros((4, len(memory.velocity)))
-        rates = acceleration, rate, velocity_now, acceleration_now
+        acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
+        rates = acceleration, rate, change, velocity_now, acceleration_now
         touching = Openings.of(springs), closed, Touches.of(springs), springs
         return cls(*rates, frames, frames.copy(), *touching, joints, sliding)
 

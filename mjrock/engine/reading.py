@@ -8,15 +8,17 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..geometry.kinematics import gaps
+from ..geometry.poses import angles
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
+from ..result.ending import Outcome, ending, masonry_ending
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
+from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion, fallen_blocks
-from ..result.response import Outcome, ending, masonry_ending
 from ..result.rocking import Rocking
 from ..scene.course import Course
 from ..scene.scene import Scene
@@ -103,8 +105,9 @@ class AskedMasonry:
         structure that is falling has less energy than at rest, and is not quiet.
         """
         masonry, t = self.case.masonry, steps.t
-        motion = joint_motion(masonry, scene.places, scene.group, scene.at_rest.ravel(), steps.pose)
-        drop = scene.at_rest[:, 1] - steps.pose[:, 1::3]
+        followed, up = (joint_motion_in_space, 2) if masonry.in_space else (joint_motion, 1)
+        motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), steps.pose)
+        drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
         quiet = bool(abs(energy[-1]) < scene.rest_energies[2])
@@ -118,13 +121,12 @@ class AskedMasonry:
 
 
 def left_behind(scene: Scene, course: Course, steps: Steps) -> dict[str, float]:
-    """When a run ended that a block left by going too far or turning over [s], by the name of each that did.
-
-    Distances are those of a plane, shifts and one rotation.
-    """
+    """When a run ended that a block left by going too far or turning over [s], by the name of each that did."""
     end = float(steps.t[-1])
     if end >= course.duration - 0.5 * float(steps.h[-1]):
         return {}
-    moved = steps.pose[-1].reshape(-1, 3) - scene.at_rest
-    far = np.hypot(moved[:, 0], moved[:, 1]) + np.abs(moved[:, 2]) * scene.extent
+    freedom = scene.freedom
+    last, first = steps.pose[-1].reshape(-1, freedom.nq), scene.at_rest
+    shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
+    far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.extent
     return {name: end for name, distance in zip(scene.names, far, strict=True) if distance >= 0.5 * far.max()}

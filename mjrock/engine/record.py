@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.frames import PLANE, Freedom
+from ..geometry.poses import coordinate_rates, from_rates, moved
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, Integers
 from ..result.response import State
@@ -29,8 +31,8 @@ class Record(NamedTuple):
     Args:
         t: times [s], shape (steps,).
         h: step lengths [s], shape (steps,).
-        pose: of each body [m, m, rad], shape (steps, n nq).
-        before, after: velocities at t - h/2 and t + h/2 [m/s, m/s, rad/s], shape (steps, n nv).
+        pose: of each body, displacements [m] and rotation, shape (steps, n nq).
+        before, after: velocities at t - h/2 and t + h/2 [m/s, rad/s], shape (steps, n nv).
         friction: friction of each contact that slides by Coulomb's law, NaN for one that has its row [N], (steps, m).
         damping: force of each damper [N], shape (steps, d).
     """
@@ -44,11 +46,19 @@ class Record(NamedTuple):
     damping: Array
 
     @classmethod
-    def of(cls, steps: int, coordinates: int, contacts: int, dampers: int = 0) -> Record:
-        """Room for a number of steps."""
+    def of(cls, steps: int, coordinates: tuple[int, int], contacts: int, dampers: int = 0) -> Record:
+        """Room for a number of steps of bodies with so many coordinates and velocities."""
         t, h = np.empty((2, steps))
-        pose, before, after = np.empty((3, steps, coordinates))
-        return cls(t, h, pose, before, after, np.empty((steps, contacts)), np.empty((steps, dampers)))
+        before, after = np.empty((2, steps, coordinates[1]))
+        return cls(
+            t,
+            h,
+            np.empty((steps, coordinates[0])),
+            before,
+            after,
+            np.empty((steps, contacts)),
+            np.empty((steps, dampers)),
+        )
 
     def first(self, n: int) -> Record:
         """A copy of the first n steps."""
@@ -85,12 +95,14 @@ class Steps:
         kinds: their rows.
         touches: how many touches were met with a short step.
         method: the constants of the method by which they were made.
+        freedom: of the bodies.
     """
 
     record: Record
     kinds: Kinds
     touches: int = 0
     method: Method = METHOD
+    freedom: Freedom = PLANE
 
     @property
     def t(self) -> Array:
@@ -104,64 +116,65 @@ class Steps:
 
     @property
     def pose(self) -> Array:
-        """Poses [m, m, rad], shape (steps, n nq)."""
+        """Poses, shape (steps, n nq)."""
         return self.record.pose
 
     @cached_property
     def velocity(self) -> Array:
-        """Velocities at the times of the poses, shape (steps, 3 n)."""
+        """Velocities at the times of the poses, shape (steps, n nv)."""
         velocity: Array = 0.5 * (self.record.before + self.record.after)
         return velocity
 
     def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, State]:
-        """Samples of a motion in the plane: times [s], poses and velocities (n, bodies, 3), and the state at the end.
+        """Samples: times [s], poses (n, bodies, nq), velocities (n, bodies, nv), and the state at the end.
 
         Args:
             duration: up to when samples that are interpolated reach [s].
             spacing: their distance [s]; None takes every `stride`-th step as it is.
             stride: which steps are taken then.
         """
+        nq, nv, pose, velocity = self.freedom.nq, self.freedom.nv, self.pose, self.velocity
         if spacing is None:
-            t, pose, velocity = self.t[::stride], self.pose[::stride], self.velocity[::stride]
-            last = self.pose[-1], self.velocity[-1]
+            t, last, pose, velocity = self.t[::stride], (pose[-1], velocity[-1]), pose[::stride], velocity[::stride]
         else:
             finish = min(float(self.t[-1]), duration)
             t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
-            pose, velocity = interpolated(self.t, self.pose, self.velocity, t)
+            rates = coordinate_rates(pose, velocity, self.freedom)
+            pose, velocity = from_rates(*interpolated(self.t, pose, rates, t), self.freedom)
             last = pose[-1], velocity[-1]
-        shape = (len(t), -1, 3)
-        return t, pose.reshape(shape), velocity.reshape(shape), (last[0].reshape(-1, 3), last[1].reshape(-1, 3))
+        end = last[0].reshape(-1, nq), last[1].reshape(-1, nv)
+        return t, pose.reshape(len(t), -1, nq), velocity.reshape(len(t), -1, nv), end
 
     @cached_property
     def windows(self) -> Windows:
         """The windows of the steps."""
-        before, after = self.record.before, self.record.after
-        t, pose, velocity = self.t - 0.5 * self.h, self.pose - 0.5 * self.h[:, None] * before, before.copy()
+        before, after, freedom = self.record.before, self.record.after, self.freedom
+        t, velocity = self.t - 0.5 * self.h, before.copy()
+        pose = moved(self.pose, -0.5 * self.h[:, None] * before, freedom)
         t[0], pose[0], velocity[0] = self.t[0], self.pose[0], self.velocity[0]
         end = np.concatenate([velocity[1:], after[-1:]])
         width, mean = np.append(np.diff(t), self.h[-1]), 0.5 * (velocity + end)
         square = np.append(0.0, self.h[1:] ** 2)  # of the distance from pose to seam, four times
         late = np.diff(square)[:, None] * ((after - before) / self.h[:, None])[:-1] / 8
-        placed = pose - np.concatenate([np.zeros_like(pose[:1]), np.cumsum(late, axis=0)])
-        return Windows(t, width, pose, placed, velocity, mean)
+        behind = np.concatenate([np.zeros_like(before[:1]), np.cumsum(late, axis=0)])
+        return Windows(t, width, pose, moved(pose, -behind, freedom), velocity, mean)
 
 
 class Windows(NamedTuple):
     """The windows of the leapfrog, in which the force of a step acts, from half a step before a pose to half a step
     after it.
 
-    They are those of the plane, in which a pose moves by its velocities. The first starts at the release: before it no
-    force has acted. Over a window a constant force does the work that is its product with the mean velocity and the
-    width, without error.
+    The first starts at the release: before it no force has acted. Over a window a constant force does the work that is
+    its product with the mean velocity and the width, without error.
 
     Args:
         t: start of each window [s], shape (steps,).
         width: its length, the last as long as its step [s], shape (steps,).
-        pose, velocity: at its start, the pose as the springs of the contacts see it, shape (steps, 3 n).
-        placed: the same as the weight sees it, moved by mean velocity times width in each window, shape (steps, 3 n).
+        pose, velocity: at its start, the pose as the springs of the contacts see it, (steps, n nq) and (steps, n nv).
+        placed: the same as the weight sees it, moved by mean velocity times width in each window, (steps, n nq).
             Where the step changes from h to h', a pose that falls back to the seam with its velocity alone misses
             a (h'^2 - h^2) / 8, with a the acceleration of the step.
-        mean: the mean velocity in it, shape (steps, 3 n).
+        mean: the mean velocity in it, shape (steps, n nv).
     """
 
     t: Array

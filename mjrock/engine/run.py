@@ -14,8 +14,8 @@ from ..result.ledger import ENERGY_GAIN, from_nowhere
 from ..result.response import Response
 from ..result.ties import Plastic, told_of_ties
 from ..scene.course import Course
-from ..scene.potential import breaks
 from ..scene.scene import Scene
+from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
 from .model import SimulationError
 from .reading import Asked, Reading
@@ -39,7 +39,7 @@ class Run:
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
-        broken: the step from which each tie no longer acts, see `mjrock.scene.potential.breaks`.
+        broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, and of what the ground put in or took [J].
     """

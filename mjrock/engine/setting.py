@@ -8,11 +8,13 @@ import numpy as np
 
 from ..compiled import jitable
 from ..geometry.kinematics import Ties
+from ..geometry.vectors import minus
 from ..method import METHOD, Method
 from ..quantities import Array
 from ..scene.course import Course
 from ..scene.dampers import Dampers, damp, damping_forces
 from ..scene.ground import Ground, push_ground
+from ..scene.masses import gyroscopic
 from ..scene.scene import Scene
 from .memory import TIMESTEP, Memory
 from .points import Points, points_of
@@ -25,42 +27,69 @@ class Setting(NamedTuple):
         points: the contacts.
         ties: the ties.
         masses: the generalised ones, shape (n nv,).
+        products: products of inertia of bodies of space, see `mjrock.scene.masses`, shape (n, 3), else (0, 3).
         ground: how the ground moves.
         dampers: the dampers.
         damping: their forces in the last step [N], shape (d,).
-        damps: whether they act as applied forces; else the engine has them in its text.
+        refines: whether dampers, and what MuJoCo's gyroscopic moments lack, act as applied forces at the velocity of
+            the pose; else the engine does what is in its text.
         duration: how long the motion is followed [s].
     """
 
     points: Points
     ties: Ties
     masses: Array
+    products: Array
     ground: Ground
     dampers: Dampers
     damping: Array
-    damps: bool
+    refines: bool
     duration: float
 
     @classmethod
-    def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, damps: bool = True) -> Setting:
+    def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
         ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.damper_c))
-        acting = scene.dampers, damping, damps, float(course.duration)
-        return cls(points_of(scene, method), ties, scene.masses, course.ground, *acting)
+        acting = scene.dampers, damping, refines, float(course.duration)
+        return cls(points_of(scene, method), ties, scene.masses, scene.products, course.ground, *acting)
+
+
+@jitable
+def turn_on(memory: Memory, setting: Setting, ahead: float) -> None:
+    """Add to the applied forces what MuJoCo's gyroscopic moments lack in space.
+
+    MuJoCo has -w x I w at the velocity that it keeps, half a step before the pose. This is first order in the step, and
+    energy grows by it. The difference to the velocity of the pose, w + h/2 w', makes it second order.
+    """
+    v, a = memory.velocity, memory.acceleration
+    for body in range(len(setting.products)):
+        x, y, z = 6 * body + 3, 6 * body + 4, 6 * body + 5
+        kept = (v[x], v[y], v[z])
+        now = (v[x] + ahead * a[x], v[y] + ahead * a[y], v[z] + ahead * a[z])
+        lacking = minus(
+            gyroscopic(setting.masses, setting.products, body, kept),
+            gyroscopic(setting.masses, setting.products, body, now),
+        )
+        memory.applied[x] += lacking[0]
+        memory.applied[y] += lacking[1]
+        memory.applied[z] += lacking[2]
 
 
 @jitable
 def push(memory: Memory, setting: Setting, frames: Array, t: float) -> None:
     """Write the forces of the moving ground and of the dampers in the step that is set into the applied forces.
 
-    A damper acts at the velocity of the pose. That of the text, which a fixed step has, acts half a step earlier.
+    A damper acts at the velocity of the pose. That of the text, which a fixed step has, acts half a step earlier. So it
+    is with the gyroscopic moments of bodies of space.
     """
     dampers, axes, ahead = setting.dampers, setting.points.places.axes, 0.5 * memory.options[TIMESTEP]
     if len(dampers.c) > 0:
         for j in range(len(memory.applied)):
-            memory.applied[j] = memory.velocity[j] + (ahead * memory.acceleration[j] if setting.damps else 0.0)
+            memory.applied[j] = memory.velocity[j] + (ahead * memory.acceleration[j] if setting.refines else 0.0)
         damping_forces(dampers, frames, memory.applied, axes, setting.damping)
     memory.applied[:] = 0.0
-    if setting.damps:
+    if setting.refines:
         damp(dampers, frames, setting.damping, axes, memory.applied)
+        if len(axes) == 3:
+            turn_on(memory, setting, ahead)
     push_ground(setting.ground, setting.masses, axes, t, memory.options[TIMESTEP], memory.applied)

@@ -12,7 +12,8 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_kind
-from ..result.response import Outcome, Response, State
+from ..result.ending import Outcome
+from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.ties import warn_of_ties
 from ..scene.course import Course

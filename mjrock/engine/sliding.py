@@ -20,7 +20,7 @@ import numpy as np
 
 from ..compiled import inlined, jitable
 from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
-from ..geometry.vectors import dot, scaled, tangent
+from ..geometry.vectors import Vector, dot, minus, plus, scaled, tangent
 from ..method import METHOD, Method
 from ..quantities import Array, Flags
 from .contact import inertia_of
@@ -31,6 +31,8 @@ from .touches import ROUNDING
 
 SMOOTH, ROUGH = 1, 3
 """MuJoCo's dimension of a contact without and with rows of friction."""
+SLOWEST = 1e-300
+"""Slip below which it has no way [m/s]."""
 STAGE_VELOCITY = 2
 """mjSTAGE_VEL: positions and velocities are as in the last look, and only forces have changed."""
 
@@ -42,7 +44,9 @@ class Sliding(NamedTuple):
         coulomb: whether contacts that slide obey Coulomb's law; otherwise all have their rows.
         method: the constants of the method.
         slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
-        force: friction of each that does, positive along (nz, -nx) on the body that carries the point [N], shape (m,).
+        force: friction of each that does, along its way on the body that carries the point [N], shape (m,). The way is
+            (nz, -nx) in the plane. In space it is that of the slip, and the force is negative.
+        way: unit vectors of the ways in space, shape (m, 3), else (0, 3).
     """
 
     coulomb: bool
@@ -50,19 +54,67 @@ class Sliding(NamedTuple):
     slides: Flags
     slid: Flags
     force: Array
+    way: Array
 
     @classmethod
     def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
         """None slides yet."""
         m = len(points.rubs)
-        none = np.zeros((2, m), dtype=np.bool_)
-        return cls(coulomb and bool(points.rubs.any()), method, none[0], none[1], np.zeros(m))
+        none, ways = np.zeros((2, m), dtype=np.bool_), m if len(points.places.axes) == 3 else 0
+        return cls(coulomb and bool(points.rubs.any()), method, none[0], none[1], np.zeros(m), np.zeros((ways, 3)))
+
+
+class Slipping(NamedTuple):
+    """How fast two bodies slip [m/s], and the unit vector along which they do; see `Sliding` for its sign."""
+
+    speed: float
+    way: Vector
 
 
 @inlined
-def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> float:
-    """Slip of contact i where friction acts for velocities v [m/s], or the same of accelerations."""
-    return dot(tangent(meets.normal), over_face(places, i, meets, frames, v))
+def slip_of(normal: Vector, velocity: Vector) -> Slipping:
+    """The slip of a velocity over a face."""
+    if len(normal) == 2:
+        along_face = tangent(normal)
+        return Slipping(dot(along_face, velocity), along_face)
+    across = minus(velocity, scaled(dot(normal, velocity), normal))
+    speed = math.sqrt(dot(across, across))
+    return Slipping(speed, scaled(1.0 / max(speed, SLOWEST), across))
+
+
+@inlined
+def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> Slipping:
+    """Slip of contact i where friction acts for velocities v."""
+    return slip_of(meets.normal, over_face(places, i, meets, frames, v))
+
+
+@inlined
+def way_of(sliding: Sliding, i: int, normal: Vector) -> Vector:
+    """The way along which friction acts on contact i."""
+    if len(normal) == 2:
+        return tangent(normal)
+    return sliding.way[i, 0], sliding.way[i, 1], sliding.way[i, 2]
+
+
+@inlined
+def turned_to(sliding: Sliding, i: int, way: Vector) -> float:
+    """Take a way for contact i, and return by how much it has changed [-]. In the plane it is the same always."""
+    if len(way) == 2:
+        return 0.0
+    x, y, z = way[0] - sliding.way[i, 0], way[1] - sliding.way[i, 1], way[2] - sliding.way[i, 2]
+    sliding.way[i, 0], sliding.way[i, 1], sliding.way[i, 2] = way[0], way[1], way[2]
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@inlined
+def take_way(memory: Memory, places: Places, sliding: Sliding, i: int, meets: Meeting, frames: Array) -> float:
+    """Take the way of contact i at the velocity of the pose, and return by how much it has changed [-].
+
+    The leapfrog keeps the velocity of half a step before. The slip may turn with the motion in between.
+    """
+    kept = over_face(places, i, meets, frames, memory.velocity)
+    ahead = scaled(0.5 * memory.options[TIMESTEP], over_face(places, i, meets, frames, memory.acceleration))
+    return turned_to(sliding, i, slip_of(meets.normal, plus(kept, ahead)).way)
 
 
 @jitable
@@ -89,7 +141,7 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         meets = where_friction_acts(places, meeting(places, i, frames))
         if meets.gap > -ROUNDING:
             continue
-        mu, slip = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
+        mu, slip = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity).speed
         inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
         stopping = inertia * abs(slip) / memory.options[TIMESTEP]
         pressing = normal_force(memory, points, i, meets, frames)
@@ -97,6 +149,7 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
             sliding.force[i] = -math.copysign(mu * pressing, slip)
+            take_way(memory, places, sliding, i, meets, frames)
             memory.dimension[i] = SMOOTH
     return any_slides
 
@@ -109,7 +162,8 @@ def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: A
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
-            push_apart(places, i, meets, frames, scaled(sliding.force[i], tangent(meets.normal)), memory.applied)
+            force = scaled(sliding.force[i], way_of(sliding, i, meets.normal))
+            push_apart(places, i, meets, frames, force, memory.applied)
 
 
 @jitable
@@ -124,19 +178,21 @@ def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
-            slip = slipping(places, i, meets, frames, memory.velocity)
+            slip = slipping(places, i, meets, frames, memory.velocity).speed
             pressing = normal_force(memory, points, i, meets, frames)
             force = -math.copysign(points.law.friction[i] * pressing, slip)
-            change = max(change, abs(force - sliding.force[i]))
+            turned = take_way(memory, places, sliding, i, meets, frames)
+            change = max(change, abs(force - sliding.force[i]), turned * abs(force))
             largest = max(largest, abs(force), abs(sliding.force[i]))
             sliding.force[i] = force
     again, stopped = change > sliding.method.known * largest, False
     for i in range(len(sliding.slides)):
         if sliding.slides[i] and (n >= sliding.method.patient or not again):
             meets = where_friction_acts(places, meeting(places, i, frames))
-            slip = slipping(places, i, meets, frames, memory.velocity)
-            later = slip + memory.options[TIMESTEP] * slipping(places, i, meets, frames, memory.acceleration)
-            if slip * later <= 0 or (again and n == sliding.method.looks - 1):
+            now = slipping(places, i, meets, frames, memory.velocity)
+            faster = dot(now.way, over_face(places, i, meets, frames, memory.acceleration))
+            later = now.speed + memory.options[TIMESTEP] * faster
+            if now.speed * later <= 0 or (again and n == sliding.method.looks - 1):
                 memory.dimension[i] = ROUGH
                 sliding.slides[i] = False
                 stopped = True

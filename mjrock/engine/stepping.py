@@ -54,7 +54,7 @@ def fitted_steps(
 
     record = _recorded(engine, course.duration, advance)
     kind = (record.h * pace.frequency >= method.smooth).astype(np.int64)
-    return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method)
+    return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method, places.freedom)
 
 
 def fixed_steps(
@@ -75,7 +75,7 @@ def fixed_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    memory, setting, done = engine.memory, Setting.of(scene, course, method, damps=False), 0
+    memory, setting, done = engine.memory, Setting.of(scene, course, method, refines=False), 0
     sliding, released_on = Sliding.of(setting.points, coulomb=coulomb, method=method), engine.closed
     frames = frames_of(memory.pose, setting.points.places.freedom)
     if sliding.coulomb:
@@ -90,7 +90,7 @@ def fixed_steps(
     record, contacts = _recorded(engine, course.duration, advance), len(scene.k)
     kind = np.zeros(len(record.t), dtype=np.int64)
     kinds = Kinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on)
-    return Steps(record, kinds, method=method)
+    return Steps(record, kinds, method=method, freedom=setting.points.places.freedom)
 
 
 def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple[int, float, bool]]) -> Record:

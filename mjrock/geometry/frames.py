@@ -3,10 +3,10 @@
 The plane is space with joints left out. A body of the plane has the joints x, z and a rotation about y. A body of space
 has x, y, z and a ball. Poses are displacements from rest in both: (x, z, theta) or (x, y, z, quaternion), of all bodies
 one after the other. Velocities have the rates of the displacements, and the spin: theta' in the plane, and in space the
-angular velocity in the axes of the body. Bodies have principal axes, so that their mass matrix is diagonal.
+angular velocity in the axes of the body, which are those of the world at rest.
 
 A frame is a pose with its rotation taken once: the displacement of the centroid, and R - 1, with R the rotation. R - 1
-keeps the digits of small rotations. The functions of this module are the only ones that know the joints.
+keeps the digits of small rotations. The functions of this module and of `poses` are the only ones that know the joints.
 """
 
 from __future__ import annotations

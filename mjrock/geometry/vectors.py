@@ -7,6 +7,8 @@ of the tuples that it meets, so that the plane costs what it would cost alone.
 
 from __future__ import annotations
 
+import math
+
 from ..compiled import inlined
 from ..quantities import Array
 
@@ -77,3 +79,16 @@ def moment(r: Vector, force: Vector) -> Vector:
 def tangent(normal: Vector) -> Vector:
     """The direction along a face of the plane, a quarter turn from its normal."""
     return normal[1], -normal[0]
+
+
+@inlined
+def tangents(normal: Vector) -> tuple[Vector, Vector]:
+    """Two unit vectors along a face of space, square to each other and to its unit normal.
+
+    They are those of Duff et al., Building an orthonormal basis, revisited (2017), which lose no digits near any axis.
+    """
+    sign = math.copysign(1.0, normal[2])
+    a = -1.0 / (sign + normal[2])
+    b = normal[0] * normal[1] * a
+    first = (1.0 + sign * normal[0] * normal[0] * a, sign * b, -sign * normal[0])
+    return first, (b, sign + normal[1] * normal[1] * a, -normal[1])

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
-from ..result.response import Outcome, Response
+from ..result.ending import Outcome
+from ..result.response import Response
 from .style import style_of, styles_of
 
 BEYOND = 1.2

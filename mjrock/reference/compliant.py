@@ -19,8 +19,9 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.wall.case import Case
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
+from ..result.ending import ending
 from ..result.history import rocking_history
-from ..result.response import Response, ending
+from ..result.response import Response
 from ..result.rocking import Rocking
 from .equations import Wall
 

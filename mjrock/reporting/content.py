@@ -17,7 +17,8 @@ from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import GRAVITY
-from ..result.response import Outcome, Response
+from ..result.ending import Outcome
+from ..result.response import Response
 from ..result.ties import PLAUSIBLE
 
 Rows = list[tuple[str, ...]]

@@ -10,8 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from ..quantities import Array, Integers, require_kind
+from .ending import Outcome
 from .pairing import FAINT, TOGETHER, paired, taken_by
-from .response import Outcome, Response
+from .response import Response
 from .table import csv_text
 
 

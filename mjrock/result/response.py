@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import enum
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,8 +12,11 @@ from typing import Any
 import numpy as np
 
 from ..files import write_text
+from ..geometry.frames import SPACE
+from ..geometry.rotations import angle_of, tilt_of
 from ..problem.wall.case import Case
-from ..quantities import Array, named, require_path
+from ..quantities import Array, require_path
+from .ending import Outcome
 from .joints import JointMotion
 from .ledger import Ledger
 from .rocking import Impact, Rocking, displacement_at, restitution_of
@@ -22,15 +24,13 @@ from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
 
 State = tuple[Array, Array]
-"""Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3)."""
+"""Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
+space as the `pose` and `velocity` of a `Response`, shapes (bodies, 7) and (bodies, 6)."""
 
-
-class Outcome(enum.Enum):
-    """How a run ended."""
-
-    AT_REST = "at rest"
-    OVERTURNED = "overturned"
-    TIME_ENDED = "time ended"
+COORDINATES = (("x", "m"), ("z", "m"), ("rotation", "rad"))
+"""Coordinates of a body of the plane, and their units."""
+COORDINATES_IN_SPACE = (*((axis, "m") for axis in "xyz"), *((f"quaternion {part}", "-") for part in "wxyz"))
+"""The same of a body in space."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,7 +47,9 @@ class Response:
         t: times [s], shape (n,).
         pose: displacement x, z of each centroid from the undeformed contacts [m], and rotation theta [rad], shape (n,
             bodies, 3). x points away from the side stop, z upwards, and theta is positive where a top turns towards +x.
-        velocity: its rate [m/s, m/s, rad/s], shape (n, bodies, 3).
+            In space displacement x, y, z [m] and unit quaternion of the rotation, w first, shape (n, bodies, 7).
+        velocity: its rate [m/s, m/s, rad/s], shape (n, bodies, 3). In space the velocity x, y, z [m/s], and the angular
+            velocity in the axes of the body, which are those of the world at rest [rad/s], shape (n, bodies, 6).
         energy: kinetic, potential and, where contacts are compliant, elastic energy above rest [J], shape (n,).
         outcome: how the run ended. Masonry has overturned when a block has fallen.
         message: the same in words, for the user.
@@ -77,19 +79,47 @@ class Response:
     end: State | None = None
 
     @property
+    def in_space(self) -> bool:
+        """Whether the bodies move in space."""
+        return bool(self.pose.shape[2] == SPACE.nq)
+
+    @property
+    def tilt(self) -> Array:
+        """Angle between the axis of each body that was vertical at rest and the vertical [rad], shape (n, bodies)."""
+        return tilt_of(self.pose) if self.in_space else np.abs(self.pose[:, :, 2])
+
+    @property
     def theta(self) -> Array:
-        """Rotation [rad], shape (n,) of a wall, and (n, bodies) of masonry."""
+        """Rotation [rad], shape (n,) of a wall, and (n, bodies) of masonry.
+
+        Raises:
+            AttributeError: in space, where a rotation is a quaternion.
+        """
+        self._require_plane("theta")
         return self.pose[:, :, 2] if self.rocking is None else self.pose[:, 0, 2]
 
     @property
     def omega(self) -> Array:
-        """Angular velocity [rad/s], shape (n,) of a wall, and (n, bodies) of masonry."""
+        """Angular velocity [rad/s], shape (n,) of a wall, and (n, bodies) of masonry.
+
+        Raises:
+            AttributeError: in space, where it has three components.
+        """
+        self._require_plane("omega")
         return self.velocity[:, :, 2] if self.rocking is None else self.velocity[:, 0, 2]
 
     @property
     def peak(self) -> Array:
-        """Largest |rotation| of each body among the samples [rad], shape (bodies,)."""
-        return np.asarray(np.abs(self.pose[:, :, 2]).max(axis=0))
+        """Largest |rotation| of each body among the samples [rad], in space about any axis, shape (bodies,)."""
+        angle = angle_of(self.pose) if self.in_space else np.abs(self.pose[:, :, 2])
+        return np.asarray(angle.max(axis=0))
+
+    def _require_plane(self, name: str) -> None:
+        if self.in_space:
+            raise AttributeError(
+                f"a response in space has no {name}; its rotations are quaternions, pose[:, :, 3:], and its tilt and "
+                "peak are angles"
+            )
 
     @property
     def energy_residual(self) -> Array | None:
@@ -198,7 +228,8 @@ class Response:
         """The samples as CSV text, one row each, written to `path` where one is given.
 
         The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
-        rest [m, m, rad], and the acceleration of the ground where there is one [m/s2]. Their names have no commas, so
+        rest [m, m, rad], in space x, y, z and the quaternion, and the acceleration of the ground where there is one
+        [m/s2]. Their names have no commas, so
         that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read them. Numbers keep all their digits.
 
         Raises:
@@ -210,9 +241,11 @@ class Response:
         columns["energy [J]"] = self.energy
         for i, body in enumerate(self.bodies):
             of = f" of {body}" if self.rocking is None else ""
-            for j, (name, unit) in enumerate((("x", "m"), ("z", "m"), ("rotation", "rad"))):
+            for j, (name, unit) in enumerate(COORDINATES_IN_SPACE if self.in_space else COORDINATES):
                 columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
-        for motion, name in ((self.case.motion, "horizontal"), (self.case.vertical, "vertical")):
+        for name in ("motion", "vertical", "transverse"):
+            motion = getattr(self.case, name, None)
+            name = {"motion": "horizontal"}.get(name, name)
             if motion is not None:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
@@ -253,41 +286,3 @@ class Response:
 
 MasonryResponse = Response
 """The response of masonry, which is like that of a wall."""
-
-
-def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:
-    """How a run on compliant contacts ended, and the same in words.
-
-    The wall is at rest when its energy above the settled wall no longer lifts an edge off the base. It has overturned
-    when it lies on its face or ends beyond the rotation from which weight, loads, thrusts and ties bring it back.
-    """
-    if not case.returns_from(theta[-1:])[0]:
-        outcome = Outcome.OVERTURNED
-    elif energy[-1] < uplift_energy:
-        outcome = Outcome.AT_REST
-    else:
-        outcome = Outcome.TIME_ENDED
-    return outcome, describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
-
-
-def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
-    """The ending in words."""
-    share = abs(theta_end) / case.wall.alpha
-    match outcome:
-        case Outcome.AT_REST:
-            return f"The wall came to rest; last looked at {t_end:.4g} s."
-        case Outcome.OVERTURNED:
-            return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
-        case Outcome.TIME_ENDED:
-            return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
-
-
-def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, met: bool = False) -> tuple[Outcome, str]:
-    """How a run ended, and the same in words; `met` where blocks that fell meet others."""
-    if fallen:
-        unmet = "" if met else "; contacts other than those of the joints at rest are not in the model"
-        first = f"{len(fallen)} blocks fell, the first at {next(iter(fallen.values())):.4g} s: {named(list(fallen))}."
-        return Outcome.OVERTURNED, f"{first} The motion was followed for {t_end:.4g} s{unmet}."
-    if quiet:
-        return Outcome.AT_REST, f"The masonry came to rest; last looked at {t_end:.4g} s."
-    return Outcome.TIME_ENDED, f"The masonry was still moving when the asked {t_end:.4g} s ended."

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ..geometry.frames import PLANE, SPACE
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effects import Tie
@@ -14,12 +15,14 @@ from .response import State
 
 PARTS = ("pose", "velocity")
 """What a state is made of."""
+UNIT = 1e-6
+"""Largest difference of the length of a quaternion from one [-]."""
 LARGEST = 1e3
 """Largest displacement or rate of a start [m, m/s, rad/s]."""
 
 
 def required_start(start: object, case: Case | MasonryCase) -> State:
-    """A start as pose and velocity of all bodies, each of shape (bodies, 3) and finite.
+    """A start as pose and velocity of all bodies, of shape (bodies, 3), in space (bodies, 7) and (bodies, 6), finite.
 
     Raises:
         TypeError: if it is no pose and velocity.
@@ -30,13 +33,19 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
     bodies = 1 if isinstance(case, Case) else len(case.masonry.free)
+    freedom = PLANE if isinstance(case, Case) or not case.masonry.in_space else SPACE
     pose, velocity = (
-        require_array(f"start, {name}", part, (bodies, 3)) for name, part in zip(PARTS, start, strict=True)
+        require_array(f"start, {name}", part, (bodies, numbers))
+        for name, part, numbers in zip(PARTS, start, (freedom.nq, freedom.nv), strict=True)
     )
     if isinstance(case, Case):
         require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
     for name, values in zip(PARTS, (pose, velocity), strict=True):
         require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, LARGEST)
+    if freedom is SPACE:
+        size = np.linalg.norm(pose[:, 3:], axis=1)
+        for length in size[np.abs(size - 1) > UNIT].tolist():
+            require_within("start, length of a quaternion", length, 1 - UNIT, 1 + UNIT)
     return pose, velocity
 
 

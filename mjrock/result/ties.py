@@ -10,9 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..geometry.frames import SPACE
 from ..problem.wall.case import Case
 from ..problem.wall.effects import AddedMass, Tie
 from ..quantities import Array
+from .ties_in_space import elongation_in_space
 
 PLAUSIBLE = 0.05
 """Share of its length up to which a tie may yield before that is warned of [-]: the characteristic strain at the
@@ -61,7 +63,7 @@ class TieMotion:
 
 
 def motion_of_ties(case: Any, t: Array, pose: Array, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
-    """The ties of a case, of a wall or of masonry, at poses of shape (n, bodies, 3) and times t [s]."""
+    """The ties of a case, of a wall or of masonry, at poses as of a `Response` and times t [s]."""
     ties = [effect for effect in case.effects if isinstance(effect, Tie)]
     return {f"tie_{i}": _motion(case, tie, t, pose, plastic.get(f"tie_{i}")) for i, tie in enumerate(ties)}
 
@@ -80,8 +82,9 @@ def _motion(case: Any, tie: Tie, t: Array, pose: Array, ended: Plastic | None) -
 
 
 def elongation_of(case: Any, tie: Tie, pose: Array) -> Array:
-    """How much longer than its slack length a tie is at poses of shape (n, bodies, 3) [m], negative where it is
-    slack."""
+    """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack."""
+    if pose.shape[2] == SPACE.nq:
+        return elongation_in_space(case, tie, pose)
     body, held, centroid = held_by(case, tie)
     return elongation_at(pose[:, body], tie, held - centroid)
 

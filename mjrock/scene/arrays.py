@@ -29,12 +29,32 @@ VECTORS = {
     "force_names": ("force_point", "force"),
 }
 """The same for arrays with one vector for each."""
-POSITIVE = ("mass", "inertia", "k", "tie_k", "tie_length", "tie_strength")
+POSITIVE = ("mass", "k", "tie_k", "tie_length", "tie_strength")
 NOT_NEGATIVE = ("c", "friction", "damper_c", "tie_ultimate")
 INFINITE = ("tie_strength", "tie_ultimate")
 """What may be infinite."""
 CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
 """Where the body of a face or an anchor stands, and the body that must be another one."""
+
+
+def require_inertia(inertia: Array) -> None:
+    """Raise ValueError for moments of inertia, or tensors of space, that no body has.
+
+    Tensors are symmetric, and no principal moment is larger than the sum of the other two.
+    """
+    if inertia.ndim == 1:
+        if not (inertia > 0).all():
+            raise ValueError(f"inertia = {inertia.min():g} is outside the valid range inertia > 0")
+        return
+    for tensor in inertia:
+        moments = np.linalg.eigvalsh(tensor)
+        if not (np.allclose(tensor, tensor.T, rtol=0, atol=1e-9 * np.abs(tensor).max()) and moments[0] > 0):
+            raise ValueError(f"inertia = {tensor.tolist()} is no symmetric tensor with three positive moments")
+        if moments[2] > (1 + 1e-9) * (moments[0] + moments[1]):
+            raise ValueError(
+                f"inertia with the principal moments {', '.join(f'{moment:g}' for moment in moments)}: no body has one "
+                "that is larger than the sum of the other two"
+            )
 
 
 def frozen(values: ArrayLike) -> NDArray[Any]:
@@ -57,7 +77,10 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
     """
     arrays: dict[str, Array | Integers] = {}
     shapes: dict[str, tuple[int, ...]] = {name: (len(given[of]),) for of, names in NUMBERS.items() for name in names}
-    shapes |= {name: (len(given[of]), 2) for of, names in VECTORS.items() for name in names}
+    directions = 3 if np.shape(given["rest"])[-1:] == (3,) else 2
+    shapes |= {name: (len(given[of]), directions) for of, names in VECTORS.items() for name in names}
+    if directions == 3:
+        shapes["inertia"] = (len(given["names"]), 3, 3)
     for name, wanted in shapes.items():
         try:
             values = np.ascontiguousarray(given[name], dtype=np.int64 if name.endswith("body") else float)
@@ -72,6 +95,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
     for name in POSITIVE:
         if not (arrays[name] > 0).all():
             raise ValueError(f"{name} = {arrays[name].min():g} is outside the valid range {name} > 0")
+    require_inertia(np.asarray(arrays["inertia"], dtype=float))
     for name in NOT_NEGATIVE:
         if not (arrays[name] >= 0).all():
             raise ValueError(f"{name} = {arrays[name].min():g} is outside the valid range, which starts at 0")
@@ -82,7 +106,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Array | Integers]:
     for name, carrier in CARRIERS.items():
         if not ((arrays[name] >= GROUND) & (arrays[name] < bodies) & (arrays[name] != arrays[carrier])).all():
             raise ValueError(f"{name} is another body, 0 to {bodies - 1}, or {GROUND} for the ground")
-    if not np.allclose(np.hypot(*arrays["normal"].T), 1.0):
+    if not np.allclose(np.hypot.reduce(arrays["normal"], axis=1), 1.0):
         raise ValueError("normal holds a vector that is not of unit length")
     names = (*given["names"], *dict.fromkeys(given["group"]), *given["tie_names"], *given["damper_names"])
     names += tuple(given["force_names"])

@@ -15,9 +15,10 @@ class Course:
     """How a scene starts, for how long it is followed, and how the ground moves.
 
     Args:
-        pose, velocity: of the bodies at the start, shape (n, 3) each.
+        pose, velocity: of the bodies at the start, shape (n, nq) and (n, nv).
         duration: how long to follow the motion [s].
         motion, vertical: acceleration of the ground, horizontal and upwards, or None.
+        transverse: the same along y, in space.
         released: whether the start is a release, whose rotation is the first peak; else it carries on an earlier run.
     """
 
@@ -27,16 +28,17 @@ class Course:
     motion: GroundMotion | None = None
     vertical: GroundMotion | None = None
     released: bool = True
+    transverse: GroundMotion | None = None
 
     @property
     def ground(self) -> Ground:
         """The motions of the ground for compiled functions."""
-        return Ground.of(self.motion, self.vertical)
+        return Ground.of(self.motion, self.vertical, self.transverse)
 
     @property
     def sampling(self) -> list[float]:
         """Time steps of the records that move the ground [s]."""
-        return [motion.dt for motion in (self.motion, self.vertical) if motion is not None]
+        return [motion.dt for motion in (self.motion, self.vertical, self.transverse) if motion is not None]
 
     def energy(self, scene: Scene) -> float:
         """Energy at the start above the scene at rest [J]."""

@@ -11,9 +11,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ..compiled import compiled, inlined, jitable
-from ..geometry.frames import PLANE, displaced, frames_of, linear, place, push_body, spin, swung, take_frames
+from ..geometry.frames import Freedom, displaced, frames_of, linear, place, push_body, spin, swung, take_frames
 from ..geometry.vectors import Vector, dot, plus, scaled, spun, vector
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Effect
@@ -92,29 +93,37 @@ def damp(dampers: Dampers, frames: Array, force: Array, axes: tuple[int, ...], t
         push_body(frames, dampers.body[i], now.arm, scaled(force[i], now.direction), total)
 
 
-def damping_rate(dampers: Dampers, masses: Array) -> float:
-    """The highest rate at which a damper alone slows the bodies down [1/s], zero without dampers."""
-    frames, rates = frames_of(np.zeros_like(masses)), [0.0]
+def damping_rate(dampers: Dampers, pose: Array, freedom: Freedom, principal: tuple[csr_array, Array]) -> float:
+    """The highest rate at which a damper alone slows the bodies down at a pose [1/s], zero without dampers.
+
+    Args:
+        dampers: the dampers.
+        pose: shape (n nq,).
+        freedom: of the bodies.
+        principal: velocities along principal axes and their masses, see `masses.principal`.
+    """
+    frames, rates, (columns, masses) = frames_of(pose, freedom), [0.0], principal
     for i, c in enumerate(dampers.c):
         push = np.zeros_like(masses)
-        now = stroke(dampers, i, frames, PLANE.axes)
+        now = stroke(dampers, i, frames, freedom.axes)
         push_body(frames, dampers.body[i], now.arm, now.direction, push)
-        rates.append(float(c * (push**2 / masses).sum()))
+        rates.append(float(c * ((columns.T @ push) ** 2 / masses).sum()))
     return max(rates)
 
 
-def taken_by_dampers(dampers: Dampers, pose: Array, mean: Array, width: Array, force: Array) -> Array:
+def taken_by_dampers(dampers: Dampers, freedom: Freedom, pose: Array, mean: Array, width: Array, force: Array) -> Array:
     """What each damper takes in the window of each step [J], shape (steps, d).
 
     Args:
         dampers: the dampers.
+        freedom: of the bodies.
         pose: of the steps, shape (steps, n nq).
         mean, width: mean velocity in each window, shape (steps, n nv), and its length [s].
         force: of each damper in each step [N], shape (steps, d).
     """
     rates = np.zeros_like(force)
     if len(dampers.c):
-        _rates(dampers, pose, mean, PLANE.frames(pose.shape[1] // PLANE.nq), PLANE.axes, rates)
+        _rates(dampers, pose, mean, freedom.frames(pose.shape[1] // freedom.nq), freedom.axes, rates)
     work: Array = -rates * force * width[:, None]
     return work
 

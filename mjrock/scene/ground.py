@@ -1,4 +1,4 @@
-"""The moving ground, as seen from it: a force -m a_g on every body, horizontal and vertical.
+"""The moving ground, as seen from it: a force -m a_g on every body, along each direction in which it moves.
 
 The leapfrog gets its mean over each window, from half a step before the pose to half a step after it. The bodies then
 receive the impulse of the ground exactly, whatever the step and wherever the record jumps.
@@ -37,15 +37,21 @@ class Shaking(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """The motions of the ground, horizontal away from the side stop, and vertical upwards."""
+    """The motions of the ground: horizontal away from the side stop, vertical upwards, and in space along y."""
 
     x: Shaking
     z: Shaking
+    y: Shaking
 
     @classmethod
-    def of(cls, motion: GroundMotion | None, vertical: GroundMotion | None = None) -> Ground:
-        """The arrays of both motions."""
-        return cls(Shaking.of(motion), Shaking.of(vertical))
+    def of(
+        cls,
+        motion: GroundMotion | None,
+        vertical: GroundMotion | None = None,
+        transverse: GroundMotion | None = None,
+    ) -> Ground:
+        """The arrays of the motions."""
+        return cls(Shaking.of(motion), Shaking.of(vertical), Shaking.of(transverse))
 
 
 @jitable
@@ -77,6 +83,11 @@ def push_ground(ground: Ground, masses: Array, axes: tuple[int, ...], t: float, 
         mean = mean_acceleration(ground.x, t, h)
         for j in range(0, len(masses), velocities(axes)):
             applied[j] -= masses[j] * mean
+    if len(axes) == 3:  # noqa: SIM102, numba leaves out what the number of axes excludes
+        if len(ground.y.accel) > 0:
+            mean = mean_acceleration(ground.y, t, h)
+            for j in range(1, len(masses), velocities(axes)):
+                applied[j] -= masses[j] * mean
     if len(ground.z.accel) > 0:
         mean = mean_acceleration(ground.z, t, h)
         for j in range(len(axes) - 1, len(masses), velocities(axes)):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects_in_space import applied_in_space, held_at
 from ..problem.masonry.lines import Lines
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.statics import falling, friction_lacking, slippery
@@ -17,6 +18,7 @@ from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .arrays import GROUND
 from .course import Course
 from .effects import attachments
+from .effects_in_space import attachments_in_space
 from .equilibrium import UnsettledError
 from .scene import Scene
 
@@ -36,8 +38,9 @@ def masonry_scene(case: MasonryCase) -> Scene:
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:
     """What happens to the scene of a case: it starts at rest, with the velocities of the case."""
-    velocity = np.zeros_like(scene.at_rest) if case.velocity is None else np.asarray(case.velocity)
-    return Course(scene.at_rest, velocity, case.duration, case.motion, case.vertical)
+    still = np.zeros((len(scene.names), scene.freedom.nv))
+    velocity = still if case.velocity is None else np.asarray(case.velocity)
+    return Course(scene.at_rest, velocity, case.duration, case.motion, case.vertical, transverse=case.transverse)
 
 
 @lru_cache(maxsize=16)
@@ -60,7 +63,7 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
                 f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
                 f"joints that need friction, of any coefficient above 0: {named(joints)}"
             ) from None
-        moved = np.hypot(*error.pose[:, :2].T)
+        moved = np.hypot.reduce(error.pose[:, : 3 if masonry.in_space else 2], axis=1)
         gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= 0.1 * moved.max()]
         raise ValueError(
             f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
@@ -68,8 +71,10 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
         ) from None
 
 
-def placed(masonry: Masonry, effect: Effect) -> tuple[float, float]:
+def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
     """Where an effect acts on its block, from the origin of the world [m]."""
+    if masonry.in_space:
+        return tuple(held_at(effect).tolist())
     block = masonry.blocks[effect.block]
     if isinstance(effect, Tie | Damper):
         return block.left_at(effect.height), effect.height
@@ -77,7 +82,9 @@ def placed(masonry: Masonry, effect: Effect) -> tuple[float, float]:
 
 
 def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
-    """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them, (free, 3)."""
+    """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them."""
+    if masonry.in_space:
+        return applied_in_space(masonry, effects)
     total = np.zeros((len(masonry.free), 3))
     for one in effects:
         if not isinstance(one, Tie):
@@ -90,17 +97,23 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
 
 
 def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
-    """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, (n,), (n, 2) and (n,)."""
+    """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, as those of a `Scene`."""
     mass = np.array([block.mass for block in masonry.blocks])
     inertia, centroids = np.array([block.inertia for block in masonry.blocks]), np.array(masonry.centroids)
     for one in effects:
         if isinstance(one, AddedMass) and one.mass > 0:
             i = one.block
             apart, total = np.array(placed(masonry, one)) - centroids[i], mass[i] + one.mass
-            inertia[i] += mass[i] * one.mass / total * float(apart @ apart)
+            inertia[i] += mass[i] * one.mass / total * _second(apart)
             centroids[i] += one.mass / total * apart
             mass[i] = total
     return mass, centroids, inertia
+
+
+def _second(apart: Array) -> float | Array:
+    """Moment or tensor of inertia of a unit mass at a distance [m2]."""
+    square = float(apart @ apart)
+    return square if len(apart) == 2 else square * np.eye(3) - np.outer(apart, apart)
 
 
 @lru_cache(maxsize=16)
@@ -117,14 +130,18 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
     if len(free) > 1:  # one block is stepped as a wall is
         corners = np.concatenate([blocks[i].corners for i in free])
         extent = max(float(np.abs(blocks[i].corners - centroids[i]).max()) for i in free)
-        limits = {"reach": float(np.hypot(*np.ptp(corners, axis=0))), "overlap": 2 * extent, "damped_joints": True}
+        limits = {
+            "reach": float(np.hypot.reduce(np.ptp(corners, axis=0))),
+            "overlap": 2 * extent,
+            "damped_joints": True,
+        }
     return Scene(
         names=tuple(masonry.names[i] for i in free),
         mass=mass[free],
         inertia=inertia[free],
         rest=centroids[free],
         outlines=tuple(blocks[i].corners - centroids[i] for i in free),
-        length=max(blocks[i].length for i in free),
+        length=max(float(np.ptp(blocks[i].corners[:, 1])) if masonry.in_space else blocks[i].length for i in free),
         point_body=number[lines.body],
         point=lines.at - centroids[lines.body],
         face_body=number[lines.face],
@@ -136,10 +153,15 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
         group=tuple(masonry.joints[j].name for j in lines.joint),
         **limits,
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
-        **attachments(
-            effects, lambda one: int(number[one.block]), lambda one: placed(masonry, one)[0], centroids[free]
-        ),
+        **_held(masonry, effects, number, centroids[free]),
     )
+
+
+def _held(masonry: Masonry, effects: tuple[Effect, ...], number: Integers, centroids: Array) -> dict[str, Any]:
+    """Fields of a scene for ties, dampers, loads and thrusts; `number` is that of each block among the bodies."""
+    if masonry.in_space:
+        return attachments_in_space(effects, number, centroids)
+    return attachments(effects, lambda one: int(number[one.block]), lambda one: placed(masonry, one)[0], centroids)
 
 
 def _sorted(lines: Lines, number: Integers) -> Lines:

@@ -6,133 +6,20 @@ Velocities and forces are those of the joints of all bodies, shape (n nv,) with 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from ..compiled import compiled, inlined, jitable
-from ..geometry.frames import Freedom, frames_of, push_body, swung, take_frames
-from ..geometry.kinematics import Forces, Places, Ties, along, depth, displacement, opening, slack, stretch
-from ..geometry.vectors import dot, plus, vector
+from ..compiled import compiled, inlined
+from ..geometry.frames import frames_of, push_body, swung, unswung, velocities
+from ..geometry.kinematics import Forces, Places, Ties, along, meeting, opening, over_face
+from ..geometry.poses import at_rest
+from ..geometry.vectors import dot, plus, tangents, vector
 from ..linear import entries, sprung
 from ..quantities import GRAVITY, Array, Integers
-
-
-class Structure(NamedTuple):
-    """What has energy in a scene, as arrays for compiled functions.
-
-    Args:
-        places: the contacts.
-        k: their springs [N/m], shape (m,).
-        ties, forces: the ties and the constant forces.
-        masses: the generalised ones, the mass in every direction and then the moments of inertia of each body, (n nv,).
-    """
-
-    places: Places
-    k: Array
-    ties: Ties
-    forces: Forces
-    masses: Array
-
-
-@jitable
-def spring_energy(places: Places, k: Array, i: int, frames: Array) -> float:
-    """Energy in the spring of contact i [J]."""
-    pressed = max(depth(places, i, frames), 0.0)
-    return 0.5 * k[i] * pressed * pressed
-
-
-@inlined
-def weight_energy(masses: Array, q: Array, axes: tuple[int, ...]) -> float:
-    """Energy of the weight of all bodies above their position at rest [J]."""
-    energy = 0.0
-    if len(axes) == 2:
-        for body in range(len(masses) // 3):
-            energy += GRAVITY * masses[3 * body] * q[3 * body + 1]
-    else:
-        for body in range(len(masses) // 6):
-            energy += GRAVITY * masses[6 * body] * q[7 * body + 2]
-    return energy
-
-
-@jitable
-def force_energy(forces: Forces, frames: Array, axes: tuple[int, ...]) -> float:
-    """Energy of the constant forces above their position at rest [J]."""
-    energy = 0.0
-    for i in range(len(forces.body)):
-        energy -= dot(vector(forces.force, i, axes), displacement(forces, i, frames, axes))
-    return energy
-
-
-def energies(structure: Structure, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
-    """Kinetic, potential and elastic energy at the steps of a motion [J], shape (steps, 3), and what ties have taken.
-
-    The potential energy is that of the weight above the position of rest of the centroids, and that of the constant
-    forces. Ties yield as the motion goes on. What they have taken up to each step has the shape (steps, t) [J].
-
-    Args:
-        structure: what has energy.
-        q, v: poses and velocities, shapes (steps, n nq) and (steps, n nv).
-        broken: the step from which each tie no longer acts, shape (t,), as many as there are steps or more for one that
-            does not break. None breaks none.
-    """
-    parts, taken = np.zeros((len(q), 3)), np.zeros((len(q), len(structure.ties.k)))
-    ties = structure.ties._replace(reach=np.array(structure.ties.reach))
-    freedom, until = structure.places.freedom, np.full(taken.shape[1], len(q)) if broken is None else broken
-    frames = freedom.frames(q.shape[1] // freedom.nq)
-    _energies(structure._replace(ties=ties), q, v, frames, until, parts, taken)
-    return parts, taken
-
-
-@compiled
-def _energies(
-    structure: Structure, q: Array, v: Array, frames: Array, broken: Integers, parts: Array, taken: Array
-) -> None:
-    places, k, ties, masses = structure.places, structure.k, structure.ties, structure.masses
-    for step in range(len(q)):
-        take_frames(q[step], frames, places.axes)
-        for j in range(len(masses)):
-            parts[step, 0] += 0.5 * masses[j] * v[step, j] ** 2
-        parts[step, 1] = weight_energy(masses, q[step], places.axes)
-        parts[step, 1] += force_energy(structure.forces, frames, places.axes)
-        for i in range(len(k)):
-            parts[step, 2] += spring_energy(places, k, i, frames)
-        for i in range(len(ties.k)):
-            if step >= broken[i]:
-                taken[step, i] = taken[step - 1, i] if step else 0.0
-                if ties.reach[i] < math.inf:  # it yields up to its limit, and breaks
-                    left = ties.limit[i] - ties.stretch[i] - ties.reach[i]
-                    taken[step, i] += ties.k[i] * ties.stretch[i] * left
-                    ties.reach[i] = math.inf
-                continue
-            stretched, yielded = stretch(ties, i, frames, v[step], places.axes)
-            parts[step, 2] += 0.5 * ties.k[i] * stretched * stretched
-            taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * stretched * yielded
-
-
-def breaks(ties: Ties, q: Array, freedom: Freedom) -> Integers:
-    """The first step of a motion at whose pose each tie is longer than its limit, or the number of steps, shape (t,).
-
-    No tie has yielded before. Poses have the shape (steps, n nq).
-    """
-    broken = np.full(len(ties.k), len(q))
-    if np.isfinite(ties.limit).any():
-        _breaks(ties, q, freedom.axes, freedom.frames(q.shape[1] // freedom.nq), broken)
-    return broken
-
-
-@compiled
-def _breaks(ties: Ties, q: Array, axes: tuple[int, ...], frames: Array, broken: Integers) -> None:
-    for step in range(len(q)):
-        take_frames(q[step], frames, axes)
-        for i in range(len(broken)):
-            longer = ties.reach[i] - slack(ties, i, frames, q[step], q[step], axes).value > ties.limit[i]
-            if longer and broken[i] == len(q):
-                broken[i] = step
+from .structure import Structure, force_energy, weight_energy
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,13 +53,28 @@ class Potential:
         _rates(places, ties, frames_of(pose, places.freedom), np.zeros_like(masses), none, rates)
         return entries(rates, bodies, len(masses))
 
-    def slip_rates(self, pose: Array) -> csr_array:
-        """Rates at which the points move along their faces for unit velocities, shape (m, n nv)."""
+    def slip_rates(self, pose: Array) -> tuple[csr_array, ...]:
+        """Rates at which the points move along their faces for unit velocities, shape (m, n nv).
+
+        One matrix for each direction along a face: one in the plane, and the two `tangents` in space.
+        """
         places, masses = self.structure.places, self.structure.masses
-        bodies = self._bodies[: len(places.body)]
-        rates = np.zeros((*bodies.shape, places.freedom.nv))
-        _slip_rates(places, frames_of(pose, places.freedom), np.zeros_like(masses), rates)
-        return entries(rates, bodies, len(masses))
+        bodies, freedom = self._bodies[: len(places.body)], places.freedom
+        rates = np.zeros((freedom.translations - 1, *bodies.shape, freedom.nv))
+        _slip_rates(places, frames_of(pose, freedom), places.axes, np.zeros_like(masses), rates)
+        return tuple(entries(values, bodies, len(masses)) for values in rates)
+
+    def spots(self, pose: Array) -> Array:
+        """Where each point of space is on its face along the two `tangents` [m], shape (m, 2)."""
+        places, frames = self.structure.places, frames_of(pose, self.structure.places.freedom)
+        met = [meeting(places, i, frames) for i in range(len(places.body))]
+        return np.array([[dot(along_face, one.across) for along_face in tangents(one.normal)] for one in met])
+
+    @property
+    def unmoved(self) -> Array:
+        """The undeformed pose, shape (n nq,)."""
+        freedom = self.structure.places.freedom
+        return at_rest(len(self.structure.masses) // freedom.nv, freedom)
 
     @cached_property
     def _bodies(self) -> Integers:
@@ -212,8 +114,8 @@ class Potential:
         """Geometric stiffness: the second derivatives of the openings, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
-        takes from the stiffness of a tall wall. A force that follows a turning point adds its part likewise. This part
-        is that of the plane, where a body has one rotation.
+        takes from the stiffness of a tall wall. A force F that follows a turning point at r from the centroid adds F.r
+        1 - (F r^T + r F^T) / 2 to the rotations in space, and F.r to the one rotation of the plane.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
@@ -225,18 +127,29 @@ class Potential:
         unknown = np.where(bodies < 0, -1, nv * bodies + np.tile(np.arange(nv), 2))
         there = (unknown[:, :, None] >= 0) & (unknown[:, None] >= 0) & (acting != 0)[:, None, None]
         rows, columns = np.broadcast_to(unknown[:, :, None], bent.shape), np.broadcast_to(unknown[:, None], bent.shape)
-        turning = np.zeros_like(masses)
-        for i, body in enumerate(forces.body):
-            at = vector(forces.at, i, places.axes)
-            arm = plus(at, swung(frames, body, at))
-            turning[3 * body + 2] += dot(vector(forces.force, i, places.axes), arm)
         shape = (len(masses), len(masses))
-        return csr_array((bent[there], (rows[there], columns[there])), shape=shape) + diags_array(turning)
+        of_springs = csr_array((bent[there], (rows[there], columns[there])), shape=shape)
+        return csr_array(of_springs + _turning_forces(forces, frames, places.axes, len(masses)))
 
     def hessian(self, pose: Array) -> csr_array:
         """Second derivatives of the energy, shape (n nv, n nv)."""
         closed = self.openings(pose) < 0
         return self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
+
+
+def _turning_forces(forces: Forces, frames: Array, axes: tuple[int, ...], unknowns: int) -> csr_array:
+    """Second derivatives of the energy of the constant forces, shape (n nv, n nv)."""
+    bent, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 and len(forces.body) else np.zeros(0), velocities(axes)
+    turning = np.zeros(unknowns)
+    for i, body in enumerate(forces.body):
+        at, force = vector(forces.at, i, axes), vector(forces.force, i, axes)
+        if len(axes) == 2:
+            turning[nv * body + 2] += dot(force, plus(at, swung(frames, body, at)))
+        else:
+            r, local = np.array(at), np.array(plus(force, unswung(frames, body, force)))
+            part = slice(nv * body + 3, nv * body + 6)
+            bent[part, part] += r @ local * np.eye(3) - 0.5 * (np.outer(r, local) + np.outer(local, r))
+    return csr_array(diags_array(turning) if not bent.size else csr_array(bent))
 
 
 @inlined
@@ -265,14 +178,19 @@ def _rates(places: Places, ties: Ties, frames: Array, unit: Array, none: Array, 
 
 
 @compiled
-def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> None:
+def _slip_rates(places: Places, frames: Array, axes: tuple[int, ...], unit: Array, rates: Array) -> None:
     nv = len(unit) // len(frames)
-    for i in range(len(rates)):
+    for i in range(len(places.body)):
         bodies = (places.body[i], places.face_body[i])
         for side in range(2):
             for j in range(nv if bodies[side] >= 0 else 0):
                 unit[nv * bodies[side] + j] = 1.0
-                rates[i, side, j] = along(places, i, frames, unit).rate
+                if len(axes) == 2:
+                    rates[0, i, side, j] = along(places, i, frames, unit).rate
+                else:
+                    meets = meeting(places, i, frames)
+                    velocity, (first, second) = over_face(places, i, meets, frames, unit), tangents(meets.normal)
+                    rates[0, i, side, j], rates[1, i, side, j] = dot(first, velocity), dot(second, velocity)
                 unit[nv * bodies[side] + j] = 0.0
 
 

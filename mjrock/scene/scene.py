@@ -1,29 +1,34 @@
 """The scene: one flat description of what stands, for any number of bodies.
 
-Everything lies in a plane, x horizontal and z upwards. At rest no body is turned, so that a vector in the frame of a
-body is the same in the world. Contact points on one body meet plane faces of another body or of the ground. The model
-text, the steps, the energy ledger and the result all follow from this description. What happens to it is its `Course`.
+Everything lies in a plane, x horizontal and z upwards, or stands in space, with y along the facade. Vectors have d = 2
+or 3 numbers, poses of a body nq = 3 or 7, and velocities nv = 3 or 6, see `mjrock.geometry.frames`. At rest no body is
+turned, so that a vector in the frame of a body is the same in the world. Contact points on one body meet plane faces of
+another body or of the ground. The model text, the steps, the energy ledger and the result all follow from this
+description. What happens to it is its `Course`.
 """
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import csr_array
 
-from ..geometry.frames import PLANE
+from ..geometry.frames import PLANE, SPACE, Freedom
 from ..geometry.kinematics import Forces, Places, Ties, gaps
-from ..linear import highest_square
-from ..quantities import GRAVITY, Array, Flags, Integers
+from ..quantities import Array, Flags, Integers
 from .arrays import GROUND, checked, frozen, nothing
 from .dampers import Dampers
 from .equilibrium import lowered, settled
-from .potential import Potential, Structure, energies
+from .frequencies import highest_frequency, rocking_frequency, tie_frequency
+from .masses import mass_diagonals, principal, products_of
+from .names import face_names, point_names
+from .potential import Potential
+from .structure import Structure, energies
 
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
@@ -32,20 +37,21 @@ surface, which is why it is tiny."""
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Rigid bodies in a plane, and the compliant contacts between them and with the ground.
+    """Rigid bodies in a plane or in space, and the compliant contacts between them and with the ground.
 
     Args:
         names: names of the n bodies.
         mass: masses [kg], shape (n,).
-        inertia: moments of inertia about the centroids [kg m2], shape (n,).
-        rest: positions of the centroids at rest, the contacts undeformed [m], shape (n, 2).
-        outlines: vertices of each body about its centroid, for pictures [m], n arrays of shape (vertices, 2).
-        length: length out of the plane, for pictures [m].
+        inertia: moments of inertia about the centroids [kg m2], shape (n,), and in space the tensors, shape (n, 3, 3).
+        rest: positions of the centroids at rest, the contacts undeformed [m], shape (n, d). It says whether the scene
+            is one of the plane or of space.
+        outlines: vertices of each body about its centroid, for pictures [m], n arrays of shape (vertices, d).
+        length: length out of the plane, for pictures [m]. It makes no difference in space.
         point_body: the body that carries each of the m contact points, shape (m,).
-        point: position of each point from the centroid of its body [m], shape (m, 2).
+        point: position of each point from the centroid of its body [m], shape (m, d).
         face_body: the body whose face each point meets, or GROUND, shape (m,).
-        face: a point of that face, from the centroid of its body or from the origin of the world [m], shape (m, 2).
-        normal: unit vector out of that face, shape (m, 2).
+        face: a point of that face, from the centroid of its body or from the origin of the world [m], shape (m, d).
+        normal: unit vector out of that face, shape (m, d).
         k, c: spring [N/m] and dashpot [N s/m] of each contact, shape (m,).
         friction: coefficient of friction of each contact, zero for none [-], shape (m,).
         holds: which contacts stand for a base that holds, shape (m,), or one answer for all. Their coefficient of
@@ -53,20 +59,21 @@ class Scene:
         group: name of the group that each contact belongs to. Its points are numbered in the model, and the ledger has
             an account for each group.
         tie_names: names of the t ties, which pull and never push.
-        tie_body, tie_point: the body that each tie holds, and where, from its centroid [m], shapes (t,) and (t, 2).
-        anchor_body, anchor: the body of the other end, or GROUND, and the end, as for a face, shapes (t,) and (t, 2).
+        tie_body, tie_point: the body that each tie holds, and where, from its centroid [m], shapes (t,) and (t, d).
+        anchor_body, anchor: the body of the other end, or GROUND, and the end, as for a face, shapes (t,) and (t, d).
         tie_k: stiffness of each tie [N/m], shape (t,).
         tie_length: length up to which it is slack [m], shape (t,).
         tie_strength: force at which it yields [N], infinite for one that does not, shape (t,).
         tie_ultimate: plastic elongation at which it breaks [m], shape (t,); infinite, or nothing, where none does.
         damper_names: names of the d viscous dampers, which are anchored in the ground.
-        damper_body, damper_point: the body that each damper holds, and where, from its centroid [m], (d,) and (d, 2).
-        damper_anchor: its other end, from the origin of the world [m], shape (d, 2).
+        damper_body, damper_point: the body that each damper holds, and where, from its centroid [m], shapes (dampers,)
+            and (dampers, d).
+        damper_anchor: its other end, from the origin of the world [m], shape (dampers, d).
         damper_c: its damping coefficient [N s/m], shape (d,).
         force_names: names of the f constant forces. They keep their direction and follow their points.
-        force_body, force_point: the body that each force acts on, and where, from its centroid [m], (f,) and (f, 2).
-        force: its x and z component [N], shape (f, 2).
-        settled: pose of the bodies at rest under their weight, shape (n, 3). None searches for it.
+        force_body, force_point: the body that each force acts on, and where, from its centroid [m], (f,) and (f, d).
+        force: its components [N], shape (f, d).
+        settled: pose of the bodies at rest under their weight, shape (n, nq). None searches for it.
         reach, overlap: largest gap and deepest penetration of a contact that a run follows [m]; beyond them a body has
             gone too far.
         damped_joints: whether the dashpots of contacts that bear weight matter in long steps too, as those between flat
@@ -129,11 +136,16 @@ class Scene:
             object.__setattr__(self, name, values)
         object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), self.k.shape)))
         if self.settled is not None:
-            pose = np.reshape(np.asarray(self.settled, dtype=float), (len(self.names), 3))
+            pose = np.reshape(np.asarray(self.settled, dtype=float), (len(self.names), self.freedom.nq))
             object.__setattr__(self, "settled", frozen(pose))
 
+    @property
+    def freedom(self) -> Freedom:
+        """How the bodies may move: in the plane or in space."""
+        return PLANE if self.rest.shape[1] == 2 else SPACE
+
     def lowered(self, pose: Array) -> Array:
-        """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, 3)."""
+        """A pose lowered until the springs of the ground carry the weight of all bodies, shape (n, nq)."""
         return lowered(self.places, self.k, self.forces, self.masses, pose)
 
     @cached_property
@@ -149,34 +161,33 @@ class Scene:
     @cached_property
     def point_names(self) -> tuple[str, ...]:
         """Name of each contact point: its group and its number in it."""
-        numbers: Counter[str] = Counter()
-        names = []
-        for group in self.group:
-            names.append(f"{group}_{numbers[group]}")
-            numbers[group] += 1
-        return tuple(names)
+        return point_names(self.group)
 
     @cached_property
     def face_names(self) -> tuple[str, ...]:
         """Name of the face that each point meets: its group, with a number where the points of a group meet several."""
-        known: dict[tuple[object, ...], str] = {}
-        names = []
-        for group, body, face, normal in zip(self.group, self.face_body, self.face, self.normal, strict=True):
-            mark = (group, int(body), *face.tolist(), *normal.tolist())
-            number = sum(met[0] == group for met in known)
-            names.append(known.setdefault(mark, f"{group}_face_{number}" if number else group))
-        return tuple(names)
+        return face_names(self.group, self.face_body, self.face, self.normal)
 
     @cached_property
     def masses(self) -> Array:
-        """Generalised masses: m, m, I of each body, shape (3 n,)."""
-        return frozen(np.column_stack([self.mass, self.mass, self.inertia]).ravel())
+        """Generalised masses: m, m, I of each body, and in space m, m, m, Ixx, Iyy, Izz, shape (n nv,)."""
+        return frozen(mass_diagonals(self.mass, self.inertia))
+
+    @cached_property
+    def products(self) -> Array:
+        """Products of inertia of the bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), else (0, 3)."""
+        return frozen(products_of(self.inertia))
+
+    @cached_property
+    def principal(self) -> tuple[csr_array, Array]:
+        """Velocities of the bodies along their principal axes, and the masses of each, see `masses.principal`."""
+        return principal(self.mass, self.inertia)
 
     @cached_property
     def places(self) -> Places:
         """The contacts for the compiled functions."""
         return Places(
-            axes=PLANE.axes,
+            axes=self.freedom.axes,
             body=self.point_body,
             at=self.point,
             face_body=self.face_body,
@@ -220,7 +231,7 @@ class Scene:
     @cached_property
     def structure(self) -> Structure:
         """What has energy, for the compiled functions."""
-        return Structure(self.places, self.k, self.ties, self.forces, self.masses)
+        return Structure(self.places, self.k, self.ties, self.forces, self.masses, self.products)
 
     @cached_property
     def potential(self) -> Potential:
@@ -229,7 +240,7 @@ class Scene:
 
     @cached_property
     def at_rest(self) -> Array:
-        """Pose of the bodies at rest under their weight, shape (n, 3)."""
+        """Pose of the bodies at rest under their weight, shape (n, nq)."""
         return settled(self.potential, self.friction) if self.settled is None else self.settled
 
     @cached_property
@@ -240,15 +251,14 @@ class Scene:
     @cached_property
     def rest_energies(self) -> Array:
         """Kinetic, potential and elastic energy of the scene at rest [J], shape (3,)."""
-        rest = _one(self.at_rest)
-        return self.accounts(rest, np.zeros_like(rest))[0][0]
+        return self.accounts(_one(self.at_rest), np.zeros((1, len(self.masses))))[0][0]
 
     def accounts(self, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
-        """Kinetic, potential and elastic energy, and what ties have taken, see `potential.energies`."""
+        """Kinetic, potential and elastic energy, and what ties have taken, see `structure.energies`."""
         return energies(self.structure, q, v, broken)
 
     def energy(self, pose: Array, velocity: Array) -> Array:
-        """Energy above the scene at rest [J], shape (steps,), for poses and velocities of shape (steps, n, 3)."""
+        """Energy above the scene at rest [J], shape (steps,), of poses (steps, n, nq) and velocities (steps, n, nv)."""
         flat = (len(pose), -1)
         parts, _ = self.accounts(np.reshape(pose, flat), np.reshape(velocity, flat))
         total: Array = parts.sum(axis=1) - self.rest_energies.sum()
@@ -258,22 +268,19 @@ class Scene:
     def highest_frequency(self) -> float:
         """The highest natural frequency with every contact closed and free to slide [rad/s].
 
-        No contact state of a run can vibrate faster, because opening a contact or holding it sideways only lowers it.
+        No contact state of a run vibrates faster: opening a contact or holding it sideways only lowers it.
         """
-        stiffness = self.potential.stiffness(np.zeros_like(self.masses), self.potential.springs)
-        return math.sqrt(highest_square(stiffness, self.masses))
+        return highest_frequency(self.potential, self.principal)
 
     @cached_property
     def tie_frequency(self) -> float:
         """The highest natural frequency of the bodies on one tie alone [rad/s], zero without ties."""
-        rates = self.potential.rates(np.zeros_like(self.masses))[len(self.k) :]
-        return math.sqrt(max(self.tie_k * (rates.power(2) @ (1 / self.masses)), default=0.0))
+        return tie_frequency(self.potential, self.principal)
 
     @cached_property
     def rocking_frequency(self) -> float:
         """The largest p = sqrt(m g R / (I + m R^2)) of the bodies [rad/s], R to the farthest point of each."""
-        R = np.array([np.hypot(*corners.T).max() for corners in self.outlines])
-        return math.sqrt(float(np.max(self.mass * GRAVITY * R / (self.inertia + self.mass * R**2))))
+        return rocking_frequency(self.mass, self.inertia, self.outlines)
 
     @cached_property
     def key(self) -> str:
@@ -290,5 +297,5 @@ class Scene:
 
 
 def _one(pose: Array) -> Array:
-    """A pose as a history of one step, shape (1, 3 n)."""
+    """A pose as a history of one step, shape (1, n nq)."""
     return np.array(pose, dtype=float).reshape(1, -1)

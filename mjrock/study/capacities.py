@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import stdtrit
 
 from ..quantities import Array, Flags, is_iterable, require_row, require_whole, require_within, shown
-from ..result.response import Outcome
+from ..result.ending import Outcome
 from .fragility import FEWEST_GROUPS, Fragility, labels_of
 
 

@@ -16,7 +16,8 @@ from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
 from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
-from ..result.response import Outcome, Response, describe
+from ..result.ending import Outcome, describe
+from ..result.response import Response
 from ..result.rocking import Impact, Rocking
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .forced import rock_forced

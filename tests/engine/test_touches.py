@@ -47,7 +47,7 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
         sliding = Sliding.of(setting.points, coulomb=True)
         state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
-        record = Record.of(1, 3, len(scene.k))
+        record = Record.of(1, (3, 3), len(scene.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         values, n = fitted_loop(engine.memory, setting, pace, state, before, record)

@@ -28,7 +28,8 @@ from mjrock.geometry.kinematics import (
 )
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
 from mjrock.scene.ground import Ground, push_ground
-from mjrock.scene.potential import Potential, Structure, energies
+from mjrock.scene.potential import Potential
+from mjrock.scene.structure import Structure, energies
 
 AXES = SPACE.axes
 

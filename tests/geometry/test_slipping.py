@@ -28,7 +28,7 @@ def test_rates_are_those_of_the_kinematics(scene):
             opening = dot(meets.normal, over_face(places, i, meets, frames, velocity))
             assert opening == pytest.approx(between.rate, abs=1e-13)
             slip = along(places, i, frames, velocity).bodies
-            assert slipping(places, i, meets, frames, velocity) == pytest.approx(slip, abs=1e-13)
+            assert slipping(places, i, meets, frames, velocity).speed == pytest.approx(slip, abs=1e-13)
 
 
 @pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
@@ -39,7 +39,7 @@ def test_the_power_of_a_force_along_a_face_is_force_times_slip(scene):
     for i in range(len(scene.k)):
         meets, applied = where_friction_acts(places, meeting(places, i, frames)), np.zeros_like(pose)
         push_apart(places, i, meets, frames, scaled(-3.0, tangent(meets.normal)), applied)
-        power = -3.0 * slipping(places, i, meets, frames, velocity)
+        power = -3.0 * slipping(places, i, meets, frames, velocity).speed
         assert applied @ velocity == pytest.approx(power, rel=1e-12)
         assert power == pytest.approx(-3.0 * along(places, i, frames, velocity).bodies, rel=1e-12)
 

@@ -1,0 +1,90 @@
+"""Following a system by explicit steps, in the plane or in space: what is set up, how long a step is, and the steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from tqdm import tqdm
+
+from ..geometry.frames import PLANE, Freedom
+from ..scene.course import Course
+from ..scene.scene import Scene
+from .encounters import Encounters
+from .loop import Clock
+from .system import Books, Samples
+
+AT_ONCE = 2e7
+"""Steps of a line that are made before the progress bar moves and Ctrl-C is heard: about a second."""
+LOOK = 5e-3
+"""Longest time between two looks for blocks that meet others [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A system at its start, and how it is followed.
+
+    Args:
+        scene: what stands.
+        course: what happens to it.
+        system: its rows.
+        advance: the compiled steps.
+        limit: the longest stable step [s].
+        share: step that is taken over the longest stable one [-].
+        spacing: largest spacing of the samples [s].
+        ends: rotation at which the run ends [rad].
+        freedom: of the bodies.
+        encounters: where blocks that fall meet others, or None where that is not followed.
+    """
+
+    scene: Scene
+    course: Course
+    system: Any
+    advance: Callable[..., tuple[int, int, bool]]
+    limit: float
+    share: float
+    spacing: float = math.inf
+    ends: float = math.inf
+    freedom: Freedom = PLANE
+    encounters: Encounters | None = None
+
+
+def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
+    """Length of a step [s], and how many lie between two samples.
+
+    Raises:
+        ValueError: for a step that is not stable.
+    """
+    if timestep is None:
+        every = max(1, math.ceil(spacing / taken))
+        return spacing / every, every
+    if timestep > limit:
+        raise ValueError(
+            f"timestep = {timestep:.3g} s is not stable; the valid range is up to {limit:.3g} s, which the stiffest "
+            "contacts and the strongest dashpots allow"
+        )
+    return timestep, max(1, round(spacing / timestep))
+
+
+def follow(setup: Setup, books: Books, samples: Samples, clock: Clock) -> tuple[Any, int, int]:
+    """Make the steps, with a progress bar where they take more than some seconds.
+
+    Returns:
+        The system at the end, how many steps it took, and of how many samples.
+    """
+    system, encounters = setup.system, setup.encounters
+    total, sample, ended = clock.rows, clock.every * clock.h, False
+    with tqdm(total=total, desc="explicit", unit="sample", delay=3, disable=None, leave=False) as bar:
+        while clock.row < total and not ended:
+            rows = max(1, int(AT_ONCE / (clock.every * max(1, len(system.lines)))))
+            if encounters is not None:
+                rows = min(rows, max(1, int(LOOK / sample)))
+                loose = encounters.loose(system)
+                if loose.any():
+                    system = encounters.looked_for(system, loose, rows * sample)
+            step, row, ended = setup.advance(system, books, samples, clock._replace(rows=min(rows, total - clock.row)))
+            bar.update(row - clock.row)
+            clock = clock._replace(step=step, row=row)
+    return system, clock.step, clock.row

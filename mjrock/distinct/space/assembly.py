@@ -1,0 +1,163 @@
+"""The rows of a system in space from the scene of masonry, its faces, and what happens to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...problem.masonry.effects_in_space import anchored_at
+from ...problem.masonry.faces_of_joints import faces_of_joints
+from ...problem.masonry.masonry import Masonry
+from ...problem.masonry.support import Support
+from ...problem.wall.damper import Damper
+from ...problem.wall.effects import Effect
+from ...quantities import Array, Integers
+from ...scene.ground import Ground
+from ...scene.scene import Scene
+from ..assembly import moving
+from ..contact import OVERHANG
+from ..system import Rows, rows
+from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named, named_vectors, turns, vectors
+from .system import BODY, EDGE, LINK, POINT, WAY, System
+
+
+def masonry_system(scene: Scene, masonry: Masonry, effects: Sequence[Effect] = ()) -> System:
+    """Masonry in space as it is drawn, at rest on ground that does not move."""
+    bodies = rows(
+        BODY, len(scene.mass), mass=scene.mass, qw=1.0, **ease_columns(scene.inertia), **named(REST, scene.rest)
+    )
+    lines, edges = points_of(scene, masonry)
+    ways = rows(WAY, 2 * len(lines) if np.isinf(lines["k_s"]).any() else 0)
+    ties = rows(
+        LINK,
+        len(scene.tie_k),
+        body=scene.tie_body,
+        anchor=scene.anchor_body,
+        **named_vectors(at=scene.tie_point, origin=scene.anchor, between=scene.ties.between),
+        k=scene.tie_k,
+        reach=scene.tie_length,
+        strength=scene.tie_strength,
+        ultimate=scene.tie_ultimate,
+        broken=np.inf,
+    )
+    forces = rows(
+        LINK,
+        len(scene.force_names),
+        body=scene.force_body,
+        anchor=-1,
+        **named_vectors(at=scene.force_point, between=scene.force),
+    )
+    dampers = dampers_of(scene, masonry, effects)
+    return System(bodies, lines, edges, ways, ties, dampers, forces, Ground.of(None), moving((), axes=3))
+
+
+def dampers_of(scene: Scene, masonry: Masonry, effects: Sequence[Effect]) -> Rows:
+    """The dampers, between a body and the ground or between two bodies."""
+    dampers, number = [effect for effect in effects if isinstance(effect, Damper)], numbers_of(masonry)
+    anchor = np.array([-1 if d.anchor_block is None else number[d.anchor_block] for d in dampers], dtype=np.int64)
+    ends = np.reshape([anchored_at(damper) for damper in dampers], (-1, 3))
+    origin = ends - np.where(anchor[:, None] < 0, 0.0, scene.rest[anchor])
+    places = named_vectors(at=scene.damper_point, origin=origin, between=scene.dampers.between)
+    return rows(LINK, len(dampers), body=scene.damper_body, anchor=anchor, **places, c=scene.damper_c)
+
+
+def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
+    """The contact points of masonry, and the edges of the faces of its joints."""
+    number, places = {joint.name: i for i, joint in enumerate(masonry.joints)}, scene.places
+    of = np.array([number[name] for name in scene.group])
+    groups = {name: i for i, name in enumerate(dict.fromkeys(scene.group))}
+    edges, ends = edges_of(scene, masonry)
+    above = numbers_of(masonry)[[joint.above for joint in masonry.joints]][of] == places.body
+    of_face, of_body = np.where(above, 0, 1), np.where(above, 1, 0)
+    k_s = masonry.joint_shear[of] * scene.k / masonry.joint_stiffness[of]
+    sprung = np.isfinite(k_s)
+    points = rows(
+        POINT,
+        len(of),
+        body=places.body,
+        face=places.face_body,
+        support=-1,
+        group=np.array([groups[name] for name in scene.group]),
+        **named_vectors(at=places.at, origin=places.face_at + places.between, normal=places.normal),
+        k=scene.k,
+        c=scene.c,
+        k_s=k_s,
+        c_s=np.where(sprung, scene.c * np.where(sprung, k_s, 0.0) / scene.k, 0.0),
+        friction=scene.friction,
+        first=ends[of, of_face, 0],
+        last=ends[of, of_face, 1],
+        own_first=ends[of, of_body, 0],
+        own_last=ends[of, of_body, 1],
+    )
+    points["margin"] = margins(points, edges)
+    return points, edges
+
+
+def numbers_of(masonry: Masonry) -> Integers:
+    """Number of the body of each block, -1 for a fixed one, shape (blocks,)."""
+    number = np.full(len(masonry.blocks), -1)
+    number[list(masonry.free)] = np.arange(len(masonry.free))
+    return number
+
+
+def edges_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Integers]:
+    """The edges of the two faces of each joint, from the centroids of their bodies, and which are those of each face.
+
+    A face is taken to be longer by `OVERHANG` at either end, as in the plane.
+
+    Returns:
+        The edges, and the numbers of the first and of the one after the last, of the faces of the block below and of
+        the one above of each joint, shape (joints, 2, 2).
+    """
+    number = numbers_of(masonry)
+    origins = np.where(number[:, None] < 0, 0.0, scene.rest[number])
+    table: list[list[float]] = []
+    ends = []
+    for joint, faces in zip(masonry.joints, faces_of_joints(masonry), strict=True):
+        for block, face in zip((joint.below, joint.above), faces, strict=True):
+            ways = np.cross(np.roll(face.corners, -1, axis=0) - face.corners, face.normal)
+            ways /= np.linalg.norm(ways, axis=1)[:, None]
+            places = (face.corners - origins[block]) @ ways.T  # (corners, edges)
+            extent = np.ptp(places, axis=0)
+            reach, band = places.max(axis=0) + OVERHANG * extent, OVERHANG * (1 + 2 * OVERHANG) * extent
+            ends.append((len(table), len(table) + len(ways)))
+            table += np.column_stack([ways, reach, band]).tolist()
+    columns = np.reshape(table, (-1, 5))
+    edges = rows(EDGE, len(columns), **named_vectors(way=columns[:, :3]), reach=columns[:, 3], band=columns[:, 4])
+    return edges, np.reshape(ends, (-1, 2, 2))
+
+
+def margins(points: Rows, edges: Rows) -> Array:
+    """Square of the least way that each point has along its face to its end [m2], shape (m,)."""
+    places, ways = vectors(points, "origin"), vectors(edges, "way")
+    margin = np.empty(len(points))
+    for i, (place, first, last) in enumerate(zip(places, points["first"], points["last"], strict=True)):
+        margin[i] = max(float((edges["reach"][first:last] - ways[first:last] @ place).min()), 0.0)
+    square: Array = margin**2
+    return square
+
+
+def started(system: System, pose: Array, velocity: Array) -> None:
+    """Give the bodies of a system a pose and velocities, shapes (n, 7) and (n, 6)."""
+    bodies, turn = system.bodies, turns(pose[:, 3:])
+    momentum = np.linalg.solve(ease_of(bodies), velocity[:, 3:, None])[:, :, 0]
+    momentum = momentum + np.einsum("nij,nj->ni", turn, momentum)
+    columns = named((*PLACE, *QUATERNION), pose) | named(("vx", "vy", "vz"), velocity[:, :3])
+    for name, values in (columns | named_vectors(momentum=momentum)).items():
+        bodies[name] = values
+
+
+def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
+    """The system with supports that move fixed blocks."""
+    numbers = {support.block: i for i, support in enumerate(supports)}
+    below = {joint.name: numbers.get(joint.below, -1) for joint in masonry.joints}
+    support = np.array([below[name] for name in scene.group])
+    system.lines["support"] = np.where(system.lines["face"] < 0, support, -1)
+    return system._replace(supports=moving(supports, axes=3))
+
+
+def copied(system: System) -> System:
+    """A system whose motion leaves the first as it is."""
+    tables = ("bodies", "lines", "edges", "ways", "ties", "dampers", "forces")
+    return system._replace(**{name: getattr(system, name).copy() for name in tables})

@@ -1,0 +1,63 @@
+"""Masonry in space at rest, and its system at the start of a case."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from ...geometry.frames import SPACE
+from ...problem.masonry.case import MasonryCase
+from ...problem.masonry.masonry import Masonry
+from ...problem.wall.damper import Damper
+from ...problem.wall.effects import Effect
+from ...quantities import named
+from ...result.response import State
+from ...scene.masonry import masonry_course, standing_masonry
+from ...scene.scene import Scene
+from ..following import Setup
+from ..limit import SHARE
+from .assembly import copied, masonry_system, moved_by, started
+from .columns import PLACE, QUATERNION, stacked
+from .limit import longest_step
+from .loop import advance
+from .rest import UnsettledError, settle
+from .system import System
+
+GONE = 0.1
+"""Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
+
+
+def setup_in_space(case: MasonryCase, state: State | None) -> Setup:
+    """Masonry in space at the start of a case, or in a given state."""
+    scene, at_rest = standing(case.masonry, case.effects)
+    course = masonry_course(case, scene)
+    if state is not None:
+        course = replace(course, pose=state[0], velocity=state[1], released=False)
+    system = moved_by(copied(at_rest), scene, case.masonry, case.supports)._replace(ground=course.ground)
+    started(system, course.pose, course.velocity)
+    return Setup(scene, course, system, advance, longest_step(system), SHARE, freedom=SPACE)
+
+
+@lru_cache(maxsize=16)
+def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene, System]:
+    """Masonry in space and its system at rest, which all cases of it with the same effects share.
+
+    Raises:
+        ValueError: if it does not stand. The message names the blocks that fall.
+    """
+    # a scene anchors dampers on the ground; the system anchors them where they are
+    anchored = tuple(replace(effect, anchor_block=None) if isinstance(effect, Damper) else effect for effect in effects)
+    scene = standing_masonry(masonry, anchored)
+    system = masonry_system(scene, masonry, effects)
+    try:
+        settle(system)
+    except UnsettledError as error:
+        far = np.linalg.norm(error.place, axis=1)
+        gone = [name for name, way in zip(scene.names, far, strict=True) if way >= GONE * far.max()]
+        raise ValueError(
+            f"the masonry cannot stand: {named(gone)} would fall under the weight; raise k_n or friction, or support it"
+        ) from None
+    pose = np.column_stack([stacked(system.bodies, PLACE), stacked(system.bodies, QUATERNION)])
+    return replace(scene, settled=pose), system

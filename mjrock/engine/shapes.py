@@ -1,0 +1,160 @@
+"""Shapes: the bodies of a model text, with their joints, faces and contact points, and the faces of the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from ..geometry.frames import PLANE
+from ..quantities import Array
+from ..scene.arrays import GROUND
+from ..scene.scene import Scene
+from .tags import tag, value_text
+
+BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"))
+"""The slides of a body of space, by the name, kind and axis of the joint. A ball joint `turn` follows them."""
+HINGE = (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0 1 0"))
+"""The joints of a body of the plane."""
+
+
+def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
+    """A vector of the plane or of space in MuJoCo's world, raised by a length."""
+    if len(vector) == 2:
+        return vector[0], 0.0, vector[1] + raised
+    return vector[0], vector[1], vector[2] + raised
+
+
+def world(scene: Scene) -> Iterator[str]:
+    """The faces of the ground, and each body with its faces and its contact points."""
+    faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
+    for name in sorted(faces, key=faces.__getitem__):
+        if scene.face_body[faces[name]] == GROUND:
+            yield from _ground(scene, name)
+    for j in range(len(scene.names)):
+        yield from _body(scene, j, faces)
+
+
+def _body(scene: Scene, j: int, faces: dict[str, int]) -> Iterator[str]:
+    """A body with its joints, its shape, its faces by their first points, and its contact points."""
+    name, radius, outline = scene.names[j], scene.radius, scene.outlines[j]
+    prefix = "" if len(scene.names) == 1 else f"{name}_"
+    yield f"  <body name={quoteattr(name)} pos={value_text(in_space(scene.rest[j], radius))}>"
+    yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.mass[j], **_inertia(scene, j))
+    for joint, kind, axis in HINGE if scene.freedom == PLANE else BALL:
+        yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)
+    if scene.freedom != PLANE:
+        yield "    " + tag("joint", name=f"{prefix}turn", type="ball")
+    if _is_box(outline):
+        yield "    " + tag("geom", name=name, type="box", size=_half(scene, outline), material="brick")
+    else:
+        yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick")
+    for face in (face for face, i in faces.items() if scene.face_body[i] == j):
+        yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face]))
+    for i in np.flatnonzero(scene.point_body == j):
+        at = in_space(scene.point[i])
+        yield "    " + tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
+    yield from (f"    {site}" for site in sites(scene, j))
+    yield "  </body>"
+
+
+def _inertia(scene: Scene, j: int) -> dict[str, object]:
+    """Moments of inertia of a body: of the plane, those of a rectangle about the other two axes; any will do that can
+    be."""
+    if scene.freedom == PLANE:
+        mass, (width, height) = scene.mass[j], np.ptp(scene.outlines[j], axis=0)
+        across = [mass * (scene.length**2 + side**2) / 12 for side in (height, width)]
+        if not abs(across[0] - across[1]) <= scene.inertia[j] <= sum(across):
+            across = [scene.inertia[j]] * 2
+        return {"diaginertia": (across[0], scene.inertia[j], across[1])}
+    moments = np.diagonal(scene.inertia[j])
+    if not scene.products[j].any():
+        return {"diaginertia": moments}
+    return {"fullinertia": np.concatenate([moments, scene.products[j]])}
+
+
+def sites(scene: Scene, body: int) -> Iterator[str]:
+    """Ends of ties and points of forces on a body or on the ground, which is raised by the radius of the points."""
+    ends = (
+        (scene.tie_names, scene.tie_body, scene.tie_point),
+        ([f"{name}_anchor" for name in scene.tie_names], scene.anchor_body, scene.anchor),
+        (scene.damper_names, scene.damper_body, scene.damper_point),
+        ([f"{name}_anchor" for name in scene.damper_names], np.full(len(scene.damper_c), GROUND), scene.damper_anchor),
+        (scene.force_names, scene.force_body, scene.force_point),
+    )
+    raised = scene.radius if body == GROUND else 0.0
+    for names, bodies, places in ends:
+        for name, on, place in zip(names, bodies, places, strict=True):
+            if on == body:
+                yield tag("site", name=name, pos=in_space(place, raised))
+    if body == GROUND and scene.force_names:
+        yield tag("site", name="origin")
+
+
+def _ground(scene: Scene, name: str) -> Iterator[str]:
+    """A face of the ground as a plane. Level ground is seen as paving, any other face of the plane as a slab behind it.
+
+    In space no other face is seen."""
+    i = scene.face_names.index(name)
+    face, normal, radius = scene.face[i], scene.normal[i], scene.radius
+    at = in_space(face - radius * normal, radius)
+    if normal[-1] == 1:
+        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
+    elif scene.freedom == PLANE:
+        yield from _slab(scene, name, i, at)
+    else:
+        size = (scene.extent, scene.extent, 1.0)
+        yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=normal, group="3")
+
+
+def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[str]:
+    """The face of point i, which is not level, as a plane at a place, and the slab that is seen behind it."""
+    x, z = scene.face[i]
+    nx, nz = scene.normal[i]
+    met = np.array([face == name for face in scene.face_names])
+    along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
+    places = along @ np.array([nz, -nx])
+    half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())
+    x, z = x + middle * nz, z - middle * nx
+    size, axis = (half, 0.6 * scene.length, 1.0), (nx, 0.0, nz)
+    yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")
+    thick = 0.15 * half
+    slab, behind = (half, 0.6 * scene.length, thick), (x - thick * nx, 0.0, z - thick * nz)
+    yield "  " + tag("geom", name=f"{name}_wall", type="box", size=slab, pos=behind, zaxis=axis, material="plaster")
+
+
+def _plate(scene: Scene, i: int) -> dict[str, object]:
+    """The face of a body as a plate that is wider than any slip and thicker than any penetration.
+
+    It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
+    be at the origin, and a thinner plate of a square block would have its middle a radius away from there.
+    """
+    extent, deep, normal = scene.extent, 2 * scene.extent, scene.normal[i]
+    across = 0.6 * scene.length if scene.freedom == PLANE else 4 * extent
+    at = in_space(scene.face[i] - (deep + scene.radius) * normal)
+    return {"size": (4 * extent, across, deep), "pos": at, "zaxis": in_space(normal)}
+
+
+def meshes(scene: Scene) -> Iterator[str]:
+    """The bodies that are no boxes; those of the plane as prisms."""
+    for name, outline in zip(scene.names, scene.outlines, strict=True):
+        if not _is_box(outline):
+            vertices = outline
+            if scene.freedom == PLANE:
+                vertices = np.array([(x, y, z) for y in (-scene.length / 2, scene.length / 2) for x, z in outline])
+            yield tag("mesh", name=name, vertex=np.ravel(vertices))
+
+
+def _half(scene: Scene, outline: Array) -> tuple[float, ...]:
+    """Half the sizes of a box."""
+    size = np.ptp(outline, axis=0)
+    if scene.freedom == PLANE:
+        return size[0] / 2, scene.length / 2, size[1] / 2
+    return tuple(size / 2)
+
+
+def _is_box(outline: Array) -> bool:
+    """Whether vertices about a centroid are those of a box along the axes."""
+    half = np.ptp(outline, axis=0) / 2
+    return len(outline) == 2 ** len(half) and bool(np.allclose(np.abs(outline), half, rtol=1e-12))

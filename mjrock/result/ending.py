@@ -1,0 +1,55 @@
+"""How runs end, and the same in words."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+
+from ..problem.wall.case import Case
+from ..quantities import Array, named
+
+
+class Outcome(enum.Enum):
+    """How a run ended."""
+
+    AT_REST = "at rest"
+    OVERTURNED = "overturned"
+    TIME_ENDED = "time ended"
+
+
+def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:
+    """How a run on compliant contacts ended, and the same in words.
+
+    The wall is at rest when its energy above the settled wall no longer lifts an edge off the base. It has overturned
+    when it lies on its face or ends beyond the rotation from which weight, loads, thrusts and ties bring it back.
+    """
+    if not case.returns_from(theta[-1:])[0]:
+        outcome = Outcome.OVERTURNED
+    elif energy[-1] < uplift_energy:
+        outcome = Outcome.AT_REST
+    else:
+        outcome = Outcome.TIME_ENDED
+    return outcome, describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+
+
+def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
+    """The ending in words."""
+    share = abs(theta_end) / case.wall.alpha
+    match outcome:
+        case Outcome.AT_REST:
+            return f"The wall came to rest; last looked at {t_end:.4g} s."
+        case Outcome.OVERTURNED:
+            return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
+        case Outcome.TIME_ENDED:
+            return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
+
+
+def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, met: bool = False) -> tuple[Outcome, str]:
+    """How a run ended, and the same in words; `met` where blocks that fell meet others."""
+    if fallen:
+        unmet = "" if met else "; contacts other than those of the joints at rest are not in the model"
+        first = f"{len(fallen)} blocks fell, the first at {next(iter(fallen.values())):.4g} s: {named(list(fallen))}."
+        return Outcome.OVERTURNED, f"{first} The motion was followed for {t_end:.4g} s{unmet}."
+    if quiet:
+        return Outcome.AT_REST, f"The masonry came to rest; last looked at {t_end:.4g} s."
+    return Outcome.TIME_ENDED, f"The masonry was still moving when the asked {t_end:.4g} s ended."
