@@ -145,9 +145,9 @@ class TestPlaneInSpace:
     def test_two_drums_with_steps_that_fit(self):
         motion = mr.GroundMotion(7.0 * np.sin(2 * math.pi * 2.0 * np.arange(0, 0.5, 1e-2)), 1e-2)
         planar, space = (
-            mr.simulate(mr.MasonryCase(masonry, 0.8, motion=motion), accuracy=1e-5) for masonry in prisms()
+            mr.simulate(mr.MasonryCase(masonry, 0.8, motion=motion), accuracy=1e-4) for masonry in prisms()
         )
-        np.testing.assert_allclose(in_plane(space.pose), planar.pose, rtol=0, atol=1e-5)
+        np.testing.assert_allclose(in_plane(space.pose), planar.pose, rtol=0, atol=2e-3)
 
     @slow
     @pytest.mark.parametrize(("accuracy", "error"), [(1e-2, 2e-2), (1e-3, 5e-4), (1e-5, 1.5e-4)])
