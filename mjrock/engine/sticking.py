@@ -11,6 +11,8 @@ nothing at rest, such as a side stop, because that would put energy into its spr
 Friction acts halfway between the faces that overlap at the point, not at the point itself. Where that place does not
 slip, the point still moves along its face as the body turns, by half the penetration times the rotation. The place that
 is remembered moves with it.
+
+Bodies of space are not put back. Their edges drift by the two terms above.
 """
 
 from __future__ import annotations
