@@ -12,22 +12,24 @@ from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, named
 from .felt import Felt
 from .meeting import Pose
-from .springs import ACTUATOR, JOINT, TENDON, Springs
+from .numbers import rebound_at
+from .springs import ACTUATOR, JOINT, TENDON
 
 STIFF = 0.05
 """Stiffness beside that of the contact, as a share of it, from which it is named [-]."""
 SHIFTS = 0.02
-"""Change of the restitution from which a damper is named [-]."""
+"""Change of the restitution by dampers and dry friction from which they are named [-]."""
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
 
 
-def holding(pose: Pose, felt: Felt, k: float, xi: float, mass: float) -> Iterator[str]:
+def holding(pose: Pose, felt: Felt, k: float, xi: float, mass: float, speed: float = 1.0) -> Iterator[str]:
     """What holds the bodies of a contact besides, one sentence each.
 
     Args:
         pose: the model in its pose.
         felt: what the contact feels.
         k, xi, mass: stiffness of the whole contact [N/m], its damping ratio [-] and its mass [kg].
+        speed: speed of approach at which dry friction is judged [m/s].
     """
     model, data = pose.model, pose.data
     if felt.slides:
@@ -43,30 +45,48 @@ def holding(pose: Pose, felt: Felt, k: float, xi: float, mass: float) -> Iterato
     if felt.limits:
         rows = {_name(model, *_owner(data, row)) for row in felt.limits}
         yield f"{named(sorted(rows))} is at its limit in this pose, which holds the contact too; give mass"
-    yield from _beside(model, pose.springs, felt.motion, k, xi, mass)
+    yield from _beside(pose, felt.motion, k, xi, mass, speed)
 
 
-def _beside(model: mujoco.MjModel, springs: Springs, motion: Array, k: float, xi: float, mass: float) -> Iterator[str]:
-    """What springs and dampers do, where they do much."""
+def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: float) -> Iterator[str]:
+    """What springs, dampers and dry friction do, where they do much together.
+
+    A dry friction F that is small beside the force m omega v of the contact lowers e by F / (m omega v) times
+    2 sqrt(e) - 2 xi e, which is its work on the way in and out. MuJoCo's row of dry friction yields, and in a short
+    contact it pulls the bodies together on both ways, as gravity does. What it takes is at most the larger of both.
+    """
+    springs, e = pose.springs, rebound_restitution(xi)
     stiffness, damping = springs.along(motion)
+    friction = springs.friction(motion)
     added = float(stiffness.sum())
     if added > STIFF * k:
         yield (
-            f"{_names(model, springs, stiffness)} adds {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
+            f"{_names(pose, stiffness)} adds {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
             "approach, which changes its restitution"
         )
-    ratio = float(damping.sum()) / (2 * math.sqrt(k * mass))
-    if ratio > 0 and rebound_restitution(xi) - rebound_restitution(xi + ratio) > SHIFTS:
+    omega = math.sqrt(k / mass)
+    ratio, pull = float(damping.sum()) / (2 * mass * omega), float(friction.sum()) / (mass * omega * speed)
+    damped = e - rebound_restitution(xi + ratio) if ratio > 0 else 0.0
+    rubbed = (
+        min(e, max(pull * (2 * math.sqrt(e) - 2 * xi * e), e - rebound_at(1.0, xi, 1.0, pull))) if pull > 0 else 0.0
+    )
+    least = SHIFTS if damped + rubbed <= SHIFTS else 0.25 * SHIFTS
+    if damped > least:
         yield (
-            f"{_names(model, springs, damping)} adds a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
+            f"{_names(pose, damping)} adds a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
             "along the approach, which lowers its restitution"
+        )
+    if rubbed > least:
+        yield (
+            f"{_names(pose, friction)} adds a dry friction of {friction.sum():.3g} N along the approach, which "
+            f"lowers e = {e:.3g} by up to {rubbed:.2g} at {speed:g} m/s, and by more at a lower speed"
         )
 
 
-def _names(model: mujoco.MjModel, springs: Springs, shares: Array) -> str:
+def _names(pose: Pose, shares: Array) -> str:
     """Those that add nearly all of it, the largest first."""
     order = np.argsort(-shares, kind="stable")
-    return named([_name(model, *springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]])
+    return named([_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]])
 
 
 def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:

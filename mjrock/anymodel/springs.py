@@ -1,7 +1,8 @@
-"""The springs and dampers of a model in a pose: joints, tendons and servos, and what they add along an approach.
+"""The springs, dampers and dry friction of a model in a pose, and what they add along an approach.
 
 Along the approach a spring of the model adds u^T K u to the stiffness of the contact, and a damper u^T D u to its
-dashpot, with u the velocity of the joints for a unit speed of the contact.
+dashpot, with u the velocity of the joints for a unit speed of the contact. Dry friction, MuJoCo's `frictionloss`,
+resists with up to the sum of |u| times that of each joint.
 """
 
 from __future__ import annotations
@@ -23,12 +24,14 @@ class Springs:
     """The springs and dampers of a model in a pose.
 
     Args:
-        owners: all joints, then the tendons and actuators that have a spring or damper.
+        owners: all joints, then the tendons and actuators that have a spring, a damper or dry friction.
         joint_of: the joint of each degree of freedom, shape (nv,).
         joint_k: stiffness of each joint [N/m or N m], shape (njnt,).
         dof_c: damping of each degree of freedom [N s/m or N m s], shape (nv,).
         stretch: stretch of each tendon and actuator for a unit velocity of each degree of freedom, shape (n, nv).
         k, c: stiffness and damping of each tendon and actuator, shape (n,).
+        dof_dry: dry friction of each degree of freedom [N or N m], shape (nv,).
+        dry: dry friction of each tendon, and 0 of each actuator, shape (n,).
     """
 
     owners: tuple[Owner, ...]
@@ -38,6 +41,8 @@ class Springs:
     stretch: Array
     k: Array
     c: Array
+    dof_dry: Array
+    dry: Array
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Springs:
@@ -52,7 +57,8 @@ class Springs:
                 _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv),
             ]
         )
-        acts = (k > 0) | (c > 0)
+        dry = np.concatenate([_first(model.tendon_frictionloss, model.ntendon), np.zeros(model.nu)])
+        acts = (k > 0) | (c > 0) | (dry > 0)
         others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(model.nu)]
         return cls(
             owners=(*((JOINT, i) for i in range(model.njnt)), *(others[i] for i in np.flatnonzero(acts))),
@@ -62,6 +68,8 @@ class Springs:
             stretch=stretch[acts],
             k=k[acts],
             c=c[acts],
+            dof_dry=_first(model.dof_frictionloss, model.nv),
+            dry=dry[acts],
         )
 
     def along(self, motion: Array) -> tuple[Array, Array]:
@@ -75,6 +83,11 @@ class Springs:
         joint_k = self.joint_k * np.bincount(self.joint_of, squares, joints)
         joint_c = np.bincount(self.joint_of, self.dof_c * squares, joints)
         return np.concatenate([joint_k, self.k * moved]), np.concatenate([joint_c, self.c * moved])
+
+    def friction(self, motion: Array) -> Array:
+        """The dry friction of each owner along the approach of a contact [N], shape (owners,)."""
+        joints = np.bincount(self.joint_of, self.dof_dry * np.abs(motion), len(self.joint_k))
+        return np.concatenate([joints, self.dry * np.abs(self.stretch @ motion)])
 
 
 def _first(values: Array, count: int) -> Array:
