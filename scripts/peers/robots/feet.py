@@ -7,7 +7,8 @@ joints. Printed are the sum of k times penetration over its weight, and the larg
 foot from its force over k. Rebound: without gravity the robot falls at the given speed on one foot, and the others meet
 nothing. Printed is the speed with which that foot leaves over that with which it came, also with joints from
 which dry friction, dampers, springs, servos and limits are taken, and whether `contacts_for` warned. Together: all of
-them land at once, which couples them through the robot; a foot that does not leave has nan. Writes robot_feet.csv and robot_feet.txt.
+them land at once, which couples them through the robot; a foot that does not leave has nan. Writes
+robot_feet.csv and robot_feet.txt.
 """
 
 from __future__ import annotations
