@@ -89,6 +89,7 @@ class Scene:
             mujoco.mj_resetDataKeyframe(self.model, self.data, self.model.key(robot.keyframe).id)
         self.data.qvel[:] = 0
         self.data.qpos[2] -= min(self.gaps()) - 1e-6
+        self.start = np.array(self.data.qpos)
 
     def gaps(self) -> list[float]:
         """Distances of the feet from the floor [m]."""
@@ -98,6 +99,7 @@ class Scene:
 
     def rebound(self) -> list[float]:
         """Speed with which each foot leaves over that with which it comes [-]."""
+        self.data.qpos[:], self.data.qvel[:] = self.start, 0
         self.data.qvel[2] = -SPEED
         left, points = [np.nan] * len(self.geoms), [None] * len(self.geoms)
         for _ in range(int(0.2 / STEP)):
@@ -154,10 +156,10 @@ def lines(robot: Robot, path: Path, asked: Sequence[float]) -> Iterator[list[str
     for e in asked:
         together = Scene(robot, path, robot.feet, e).rebound()
         for foot, coupled in zip(robot.feet, together, strict=True):
-            scene, free = Scene(robot, path, [foot], e), Scene(robot, path, [foot], e)
-            free.let_joints_go()
-            contact = scene.contacts.contacts[0]
-            speeds = (scene.rebound()[0], free.rebound()[0], coupled)
+            scene = Scene(robot, path, [foot], e)
+            contact, own = scene.contacts.contacts[0], scene.rebound()[0]
+            scene.let_joints_go()
+            speeds = (own, scene.rebound()[0], coupled)
             figures = [f"{contact.k:g}", f"{contact.mass:.3f}", f"{e:g}", *(f"{speed:.3f}" for speed in speeds)]
             yield [robot.name, foot, *figures, "yes" if scene.warned else "no"]
 

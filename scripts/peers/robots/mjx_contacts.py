@@ -38,7 +38,7 @@ def scene(e: float, friction: float, falls: bool) -> tuple[dict[str, Any], float
         warnings.simplefilter("ignore")  # gravity on a small e
         contact = mr.contact_for(spec, "ball", "floor", k=K, restitution=e, friction=friction)
     contact.apply(spec)
-    steps = int(60 / contact.frequency / STEP)
+    steps = int(30 / contact.frequency / STEP)
     spec.compile()
     velocity = [0.0, 0.0, -1.0 if falls else 0.0, 0.0, 0.0, 0.0]
     return {"xml": spec.to_xml(), "velocity": velocity, "steps": steps}, contact.impratio
