@@ -17,6 +17,7 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
 
@@ -38,8 +39,12 @@ FREQUENCY = 300.0
 """The frequency that xi refers to where it is one for all walls [rad/s]."""
 PUSH = 5.0
 """Acceleration of the ground [m/s2]."""
-WALLS = (20, 50, 100, 200, 500, 1000, 2000, 4000)
-ARCHES = (20, 50, 100, 200, 500, 1000)
+SIZES = {
+    "wall, rigid": (20, 50, 100, 200, 500, 1000, 2000),
+    "wall, k_s = k_n": (20, 50, 100, 200, 500, 1000, 2000, 4000),
+    "wall, k_s = k_n, one c/k": (20, 50, 100, 200, 500, 1000),
+    "arch, rigid": (20, 50, 100, 200, 500),
+}
 """Numbers of blocks, about those of the walls and exactly those of the arches."""
 SPAN, SLENDER = 5.0, 0.15
 """Radius of the arches [m], and their thickness over it [-]."""
@@ -128,37 +133,38 @@ def drawn(points: Sequence[Point]) -> Figure:
     return figure
 
 
+def written(points: Sequence[Point], out: Path) -> None:
+    """Draw, print and write."""
+    plotting.save(drawn(points), out / "many_blocks.png")
+    header = ["scene", "blocks", "lines", "step [us]", "set-up [s]", "time of a step [ms]", "ns a step and line"]
+    header.append("s a simulated s")
+    rows, powers = [], []
+    for one in points:
+        times = f"{one.setting_up:.3g}", f"{1e3 * one.step:.3g}", f"{1e9 * one.step / one.lines:.0f}"
+        rows.append([one.scene, one.blocks, one.lines, f"{1e6 * one.h:.3g}", *times, f"{one.second:.3g}"])
+    for scene in dict.fromkeys(one.scene for one in points):
+        own = [one for one in points if one.scene == scene]
+        blocks = [one.blocks for one in own]
+        found = [exponent(blocks, [getattr(one, name) for one in own]) for name in ("setting_up", "step", "second")]
+        powers.append([scene, *(f"{one:.2f}" for one in found)])
+    exponents = cli.table(["exponent of the blocks", "set-up", "a step", "a simulated s"], powers)
+    cli.report(out / "many_blocks", cli.table(header, rows) + "\n\n" + exponents, header, rows)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Time every size, draw and print."""
     args = cli.parser(__doc__, "many_blocks").parse_args(argv)
     out = cli.folder(args.out)
-    sizes: dict[str, tuple[int, ...]] = {scene: ARCHES if scene.startswith("arch") else WALLS for scene in STYLES}
-    if args.quick:
-        sizes = dict.fromkeys(STYLES, (8, 16))
-    measured("wall, rigid", 4, 1e4), measured("wall, k_s = k_n", 4, 1e4)  # compiles what is not compiled yet
+    sizes = dict.fromkeys(SIZES, (8, 16)) if args.quick else SIZES
+    for joints in ("rigid", "k_s = k_n"):
+        measured(f"wall, {joints}", 4, 1e4)  # compiles what is not compiled yet
     points = []
     with tqdm(total=sum(map(sum, sizes.values())), unit="block", disable=None, leave=False) as bar:
         for scene, counts in sizes.items():
             for count in counts:
                 points.append(measured(scene, count, LINE_STEPS / 30 if args.quick else LINE_STEPS))
                 bar.update(count)
-    plotting.save(drawn(points), out / "many_blocks.png")
-    header = ["scene", "blocks", "lines", "step [us]", "set-up [s]", "time of a step [ms]", "ns a step and line"]
-    header.append("s a simulated s")
-    rows = []
-    for one in points:
-        times = f"{one.setting_up:.3g}", f"{1e3 * one.step:.3g}", f"{1e9 * one.step / one.lines:.0f}"
-        rows.append([one.scene, one.blocks, one.lines, f"{1e6 * one.h:.3g}", *times, f"{one.second:.3g}"])
-    powers = []
-    for scene in sizes:
-        own = [one for one in points if one.scene == scene]
-        blocks = [one.blocks for one in own]
-        found = [exponent(blocks, [getattr(one, name) for one in own]) for name in ("setting_up", "step", "second")]
-        powers.append([scene, *(f"{one:.2f}" for one in found)])
-    text = "\n\n".join(
-        [cli.table(header, rows), cli.table(["exponent of the blocks", "set-up", "a step", "a simulated s"], powers)]
-    )
-    cli.report(out / "many_blocks", text, header, rows)
+    written(points, out)
 
 
 if __name__ == "__main__":
