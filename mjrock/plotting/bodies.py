@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -97,15 +98,37 @@ class Bodies:
 
         The points are given about the centroid of the body at rest [m], shape (n, 2).
         """
-        x, z, theta = self.poses[frame, body]
-        sine, cosine = np.sin(theta), np.cos(theta)
-        turned = points @ np.array([[cosine, -sine], [sine, cosine]]) + (x, z)
-        shown: Array = self.rests[body] + points + self.magnify * (turned - points)
-        return shown
+        return self._drawn(self.poses[frame, body], self.rests[body], points)
+
+    def corners(self, frame: int) -> Array:
+        """Where the corners of all bodies are drawn at a frame [m], shape (bodies, corners, 2).
+
+        A body with fewer corners than another repeats its last one.
+        """
+        return self._drawn(self.poses[frame], self.rests, self._padded)
 
     def extent(self) -> tuple[Array, Array]:
         """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each."""
         some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int))
-        corners = [self.placed(i, j, outline) for i in some for j, outline in enumerate(self.outlines)]
-        points = np.concatenate([*corners, *self.fixed])
-        return points.min(axis=0), points.max(axis=0)
+        ends = [(points.min(axis=0), points.max(axis=0)) for points in self.fixed]
+        for frame in some if self.outlines else ():
+            corners = self.corners(int(frame))
+            ends.append((corners.min(axis=(0, 1)), corners.max(axis=(0, 1))))
+        low, high = np.transpose(ends, (1, 0, 2))
+        return low.min(axis=0), high.max(axis=0)
+
+    @cached_property
+    def _padded(self) -> Array:
+        """The outlines as one array, shape (bodies, corners, 2)."""
+        most = max(map(len, self.outlines), default=0)
+        padded = [np.concatenate([one, np.repeat(one[-1:], most - len(one), axis=0)]) for one in self.outlines]
+        return np.reshape(padded, (len(self.outlines), most, 2))
+
+    def _drawn(self, pose: Array, rest: Array, points: Array) -> Array:
+        """Points about centroids [m], shape (..., n, 2), drawn at poses of shape (..., 3)."""
+        x, z = points[..., 0], points[..., 1]
+        dx, dz, theta = np.moveaxis(pose[..., None], -2, 0)
+        sine, cosine = np.sin(theta), np.cos(theta)
+        turned = np.stack([x * cosine + z * sine + dx, z * cosine - x * sine + dz], axis=-1)
+        shown: Array = rest[..., None, :] + points + self.magnify * (turned - points)
+        return shown

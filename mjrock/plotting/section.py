@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 
 from ..problem.masonry.case import MasonryCase
@@ -19,6 +20,8 @@ STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
 """Colours of masonry, of what does not move, of ties, and of forces."""
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
+MANY = 100
+"""Number of bodies beyond which their edges are drawn thin."""
 FARTHEST = 0.5
 """Distance behind the wall up to which an anchor is shown, over the height of the wall [-]."""
 
@@ -30,20 +33,15 @@ def blocks(ax: Axes, bodies: Bodies) -> Update:
     """Draw the outlines of bodies true to scale."""
     for outline in bodies.fixed:
         ax.add_patch(Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8))
-    patches = []
-    for j, outline in enumerate(bodies.outlines):
-        patch = Polygon(
-            bodies.placed(0, j, outline), facecolor=STONE, edgecolor="0.15", linewidth=1.2, zorder=2, animated=True
-        )
-        ax.add_patch(patch)
-        patches.append(patch)
+    width = 1.2 if len(bodies.outlines) <= MANY else 0.4
+    moving = PolyCollection([], facecolor=STONE, edgecolor="0.15", linewidth=width, zorder=2, animated=True)
+    ax.add_collection(moving, autolim=False)
     ax.set_aspect("equal")
     ax.set_xlabel("$x$ [m]")
     ax.set_ylabel("$z$ [m]")
 
     def update(frame: int) -> None:
-        for j, (patch, outline) in enumerate(zip(patches, bodies.outlines, strict=True)):
-            patch.set_xy(bodies.placed(frame, j, outline))
+        moving.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
 
     return update
 

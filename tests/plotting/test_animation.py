@@ -153,6 +153,22 @@ def test_any_bodies_can_be_drawn(tmp_path):
         plotting.animate_bodies([0.0, 0.1, 0.2], [square], rests[:1], poses, tmp_path / "one.gif")
 
 
+def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
+    triangle, square = [[-1.0, 0.0], [1.0, 0.0], [0.0, 2.0]], [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
+    poses = np.random.default_rng(0).normal(size=(4, 2, 3))
+    ground = np.array([[-9.0, -2.0], [1.0, -2.0], [1.0, -1.0]])
+    bodies = Bodies(np.arange(4.0), (triangle, square), [[0.0, 0.5], [3.0, 1.5]], poses, 2.0, (ground,))
+    each = [[bodies.placed(i, j, one) for j, one in enumerate(bodies.outlines)] for i in range(4)]
+    for i, (three, four) in enumerate(each):
+        np.testing.assert_allclose(bodies.corners(i), [[*three, three[-1]], four])
+    points = np.concatenate([ground, *(corners for frame in each for corners in frame)])
+    np.testing.assert_allclose(bodies.extent(), [points.min(axis=0), points.max(axis=0)])
+    figure, update = animation.scene(bodies, [], None)
+    update(3)
+    drawn = [path.vertices[:4] for path in figure.axes[0].collections[0].get_paths()]
+    np.testing.assert_allclose(drawn, bodies.corners(3))
+
+
 def test_blocks_of_masonry_are_drawn_where_they_are():
     """A case that holds blocks, one of them fixed, as masonry does."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])
