@@ -74,6 +74,10 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/drums.py --out docs/figures
 	$(BIN)/python scripts/studies/panel.py --out docs/figures
 	$(BIN)/python scripts/studies/solvers_of_masonry.py --out docs/figures
+	$(BIN)/python scripts/studies/many_blocks.py --out docs/figures
+	$(BIN)/python scripts/studies/many_records.py --out docs/figures
+	$(BIN)/python scripts/studies/joint_stiffness.py --out docs/figures
+	$(BIN)/python scripts/studies/two_storeys.py --out docs/figures
 	$(BIN)/python scripts/studies/heap.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures

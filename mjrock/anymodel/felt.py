@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import mujoco
 import numpy as np
@@ -25,6 +26,8 @@ HOLDS = 1.0
 """The same from which it is taken as rigid. A slower one is taken to add the inertia of its row only."""
 TIED = 0.05
 """A point of which friction leaves less than this share of its freedom along the normal slides as it lands [-]."""
+FIXED = 1e-10
+"""A point of which rigid constraints leave less than this share of its freedom cannot approach [-]; it is rounding."""
 MATTERS = 0.02
 """A constraint that changes the mass by less than this share is left out of what is said [-]."""
 LIMITS = (int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT), int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON))
@@ -54,7 +57,8 @@ class Felt:
 
 def felt(
     pair: GeomPair,
-    data: mujoco.MjData,
+    held: Held,
+    away: Array,
     points: tuple[Array, Array],
     *,
     friction: float = 0.0,
@@ -65,40 +69,41 @@ def felt(
 
     Args:
         pair: the geoms.
-        data: the pose, see `state_of`.
+        held: the pose, and its constraints.
+        away: unit vector along which the first geom parts from the second, shape (3,).
         points: the contact point on each of the geoms, in the world's frame [m].
         friction: coefficient of friction [-], with which the point sticks as long as it can.
         frequency: circular frequency of the contact [rad/s]; or
         k: its stiffness [N/m], which gives it. Without either every equality constraint is rigid.
     """
-    model = pair.model
+    model, data = held.model, held.data
     jacobian = np.zeros((3, model.nv))
     for body, point, sign in zip(pair.bodies, points, (1.0, -1.0), strict=True):
         rows = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, rows, None, point, body)
         jacobian += sign * rows
-    away = pair.apart(data)[0]
     rows = _frame(away) @ jacobian
     if not np.any(np.abs(rows[0]) > 1e-9):
         return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
-    held = Held.of(model, data)
-    soft = held.answer(rows, held.softness, held.equality)
+    free = held.free(rows)
+    soft = held.answer(free, held.softness, held.equality)
     mass = _mass(soft, rows, friction)[0]
     if frequency is None:
         frequency = math.sqrt(k / mass) if k is not None and mass < math.inf else 0.0
     softness = np.where((held.rate < HOLDS * frequency) | held.limit, held.softness, 0.0)
-    answer = held.answer(rows, softness, held.equality)
+    answer = held.answer(free, softness, held.equality)
+    if not _free(answer, rows) > FIXED * _free(free, rows):
+        return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     mass, impulse = _mass(answer, rows, friction)
     slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * TIED > _stuck(answer, rows))
     if slides:
         mass, impulse = 1 / _free(answer, rows), np.array((1.0, 0.0, 0.0))
     motion = answer @ impulse
     motion = motion / float(rows[0] @ motion)
-    alone = held.answer(rows, softness, np.zeros_like(held.equality))
     yields = (held.rate < RIGID * frequency) & held.equality
-    matters = not math.isclose(_free(alone, rows), _free(answer, rows), rel_tol=MATTERS)
+    matters = not math.isclose(_free(free, rows), _free(answer, rows), rel_tol=MATTERS)
     pressed = held.limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
-    limited = held.answer(rows, softness, held.equality | pressed)
+    limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer
     stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
     return Felt(
         mass=mass,
@@ -161,15 +166,23 @@ class Held:
             np.array(data.qfrc_gravcomp) - bias,
         )
 
-    def answer(self, rows: Array, softness: Array, counted: Flags) -> Array:
-        """Change of the joints' velocity for a unit impulse on each row, with the constraints that count, (nv, n)."""
-        held = self.rows[counted]
-        stacked = np.ascontiguousarray(np.vstack([rows, held]))
-        moved = np.zeros_like(stacked)
-        mujoco.mj_solveM(self.model, self.data, moved, stacked)
-        free, own = moved[: len(rows)].T, moved[len(rows) :].T
-        if not len(held):
-            return np.array(free)
+    @cached_property
+    def moved(self) -> Array:
+        """Change of the joints' velocity for a unit impulse on each constraint, shape (nv, n)."""
+        return self.free(self.rows)
+
+    def free(self, rows: Array) -> Array:
+        """Change of the joints' velocity for a unit impulse on each row where no constraint holds, shape (nv, n)."""
+        moved = np.zeros_like(rows)
+        if len(rows):
+            mujoco.mj_solveM(self.model, self.data, moved, np.ascontiguousarray(rows))
+        return np.array(moved.T)
+
+    def answer(self, free: Array, softness: Array, counted: Flags) -> Array:
+        """The same with the constraints that count, shape (nv, n); `free` is that without them."""
+        if not counted.any():
+            return free
+        held, own = self.rows[counted], self.moved[:, counted]
         inner = held @ own + np.diag(softness[counted])
         scale = np.abs(inner).max(initial=1e-300)
         solved = np.linalg.lstsq(inner / scale, held @ free / scale, rcond=1e-10)[0]
@@ -178,10 +191,11 @@ class Held:
 
 def _frame(normal: Array) -> Array:
     """The normal and two tangents, as rows."""
-    helper = np.eye(3)[np.abs(normal).argmin()]
-    first = np.cross(normal, helper)
-    first /= np.linalg.norm(first)
-    return np.array([normal, first, np.cross(normal, first)])
+    x, y, z = normal.tolist()
+    least = min(abs(x), abs(y), abs(z))
+    first = (0.0, z, -y) if abs(x) == least else (-z, 0.0, x) if abs(y) == least else (y, -x, 0.0)
+    a, b, c = (part / math.hypot(*first) for part in first)
+    return np.array([(x, y, z), (a, b, c), (y * c - z * b, z * a - x * c, x * b - y * a)])
 
 
 def _free(answer: Array, rows: Array) -> float:
@@ -213,9 +227,16 @@ def _mass(answer: Array, rows: Array, friction: float) -> tuple[float, Array]:
 
 def _slipping(weight: Array, friction: float) -> Array:
     """The impulse, with a normal part of 1, whose friction is opposite to the slip that it leaves."""
-    direction = weight[1:, 0] / max(float(np.linalg.norm(weight[1:, 0])), 1e-300)
+    (first, second), ((a, b), (c, d)) = weight[1:, 0].tolist(), weight[1:, 1:].tolist()
+    x, y = _unit(first, second)
     for _ in range(100):
-        slip = weight[1:, 0] - friction * weight[1:, 1:] @ direction
-        new = 0.5 * (direction + slip / max(float(np.linalg.norm(slip)), 1e-300))
-        direction = new / max(float(np.linalg.norm(new)), 1e-300)
-    return np.array((1.0, *(-friction * direction)))
+        slip_x, slip_y = _unit(first - friction * (a * x + b * y), second - friction * (c * x + d * y))
+        before, (x, y) = (x, y), _unit(0.5 * (x + slip_x), 0.5 * (y + slip_y))
+        if abs(x - before[0]) + abs(y - before[1]) < 1e-15:
+            break
+    return np.array((1.0, -friction * x, -friction * y))
+
+
+def _unit(x: float, y: float) -> tuple[float, float]:
+    size = max(math.hypot(x, y), 1e-300)
+    return x / size, y / size

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from functools import cached_property
 
 import mujoco
 import numpy as np
@@ -133,7 +134,7 @@ class GeomPair:
         first, second = (mujoco.mj_id2name(self.model, BODY, body) or f"[{body}]" for body in self.bodies)
         return first, second
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[int, int]:
         """The numbers of the bodies."""
         first, second = (int(self.model.geom_bodyid[geom]) for geom in self.geoms)
@@ -144,11 +145,12 @@ class GeomPair:
         """The number of the chosen explicit pair of these geoms, or -1."""
         return self.chosen if self.chosen is not None else next(iter(self.listed), -1)
 
-    @property
+    @cached_property
     def listed(self) -> tuple[int, ...]:
         """The numbers of all explicit pairs of these geoms. MuJoCo makes a contact of each."""
-        ends = zip(self.model.pair_geom1, self.model.pair_geom2, strict=True)
-        return tuple(i for i, (a, b) in enumerate(ends) if {int(a), int(b)} == set(self.geoms))
+        first, second = self.model.pair_geom1, self.model.pair_geom2
+        a, b = self.geoms
+        return tuple(np.flatnonzero((first == a) & (second == b) | (first == b) & (second == a)).tolist())
 
     @property
     def inverse_weight(self) -> float:

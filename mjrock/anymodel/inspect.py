@@ -206,7 +206,7 @@ def _notes(
         )
         return
     if found.k > 0:
-        yield from holding(pair.model, pose.data, met.felt, found.k * met.points, found.xi, found.mass)
+        yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
         mu = row.mixed.friction[0] if row.mixed.condim > 1 else 0.0
         foreign = elsewhere(pair, pose, met, contacts, mu)

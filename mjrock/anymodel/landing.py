@@ -27,10 +27,12 @@ class Landing:
     """Where two geoms meet.
 
     Args:
+        away: unit vector along which the first geom parts from the second.
         first, second: the points of the contact, on each of the geoms where it is now, in the world's frame [m], shape
             (n, 3). They are the same points once the geoms have met.
     """
 
+    away: Array
     first: Array
     second: Array
 
@@ -80,11 +82,12 @@ class Ground:
         self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
         try:
             mujoco.mj_collision(self.model, self.data)
-            met = [contact.pos.copy() for contact in self.data.contact if {*map(int, contact.geom)} == {*geoms}]
+            contact = self.data.contact
+            met = contact.pos[(np.sort(contact.geom, axis=1) == sorted(geoms)).all(axis=1)]
         finally:
             self.data.geom_xpos[geoms[moves]] = place
             self._let_meet(geoms, bodies, 0)
-        points = np.array(met).reshape(-1, 3)[:: max(1, len(pair.listed))]
+        points = met[:: max(1, len(pair.listed))]
         return points + shift if moves == 0 else points
 
     def _let_meet(self, geoms: list[int], bodies: list[int], value: int) -> None:
@@ -104,8 +107,8 @@ def landing(pair: GeomPair, data: mujoco.MjData, ground: Ground | None = None) -
     if pair.makes_several_points:
         points = (ground or Ground(pair.model, data)).points(pair, away, distance)
         if len(points):
-            return Landing(points, points - distance * away)
+            return Landing(away, points, points - distance * away)
     if ends is None:
         centres = [pair.centre(data, body) for body in pair.bodies]
-        return Landing(centres[0][None, :], centres[1][None, :])
-    return Landing(ends[0][None, :], ends[1][None, :])
+        return Landing(away, centres[0][None, :], centres[1][None, :])
+    return Landing(away, ends[0][None, :], ends[1][None, :])

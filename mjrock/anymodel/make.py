@@ -222,7 +222,7 @@ def _remarks(pair: GeomPair, pose: Pose, asked: Asked, met: Meeting, k: float, c
     if asked.mass is not None or not met.felt.mass < math.inf:
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
-    found = list(holding(pair.model, pose.data, met.felt, k * met.points, xi, met.felt.mass))
+    found = list(holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0)))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
         found += filter(None, [elsewhere(pair, pose, met, contacts, mu)])

@@ -10,7 +10,7 @@ from typing import Any
 
 import mujoco
 
-from ..quantities import Array, named, require_flag, require_kind, shown
+from ..quantities import Array, named, require_flag, shown
 from .contact import PairContact, document, write
 from .geoms import BODY, GEOM, GeomPair, compiled, geom_id
 from .make import Asked, contact_of
@@ -91,7 +91,11 @@ def contacts_for(
         UserWarning: as `contact_for` does, each sentence once, with the geoms that it is about.
     """
     whole = compiled(model)
-    require_kind("pairs", pairs, Mapping)
+    if not isinstance(pairs, Mapping):
+        raise TypeError(
+            f"pairs = {shown(pairs)} has to be a dictionary, such as "
+            '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
+        )
     pose = Pose(whole, keyframe, qpos)
     contacts: dict[frozenset[int], PairContact] = {}
     for key, values in pairs.items():

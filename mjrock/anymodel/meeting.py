@@ -9,9 +9,10 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, require_array, shown
-from .felt import Felt, felt
+from .felt import Felt, Held, felt
 from .geoms import FARTHEST, GeomPair
 from .landing import Ground, landing
+from .springs import Springs
 from .state import keyframe_names, state_of
 
 FOREIGN = 1.2
@@ -38,6 +39,16 @@ class Pose:
     def ground(self) -> Ground:
         """A copy of the model in which geoms are tried against each other."""
         return Ground(self.model, self.data)
+
+    @cached_property
+    def held(self) -> Held:
+        """The constraints of the pose."""
+        return Held.of(self.model, self.data)
+
+    @cached_property
+    def springs(self) -> Springs:
+        """The springs and dampers of joints, tendons and actuators."""
+        return Springs.of(self.model, self.data)
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
@@ -98,7 +109,7 @@ def meeting(
         places = (first, second)
     count = landed.count if contacts is None else contacts
     whole = None if k is None else k * count
-    return Meeting(count, felt(pair, pose.data, places, friction=friction, frequency=frequency, k=whole))
+    return Meeting(count, felt(pair, pose.held, landed.away, places, friction=friction, frequency=frequency, k=whole))
 
 
 def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> str | None:

@@ -94,7 +94,7 @@ class Row:
         if self.constant or self.spring == 0:
             return self.k
         low, high = 0.0, max(load / (self._stiffness(0.0)), load / self._stiffness(self.solimp[2]))
-        for _ in range(60):
+        for _ in range(50):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if middle * self._stiffness(middle) < load else (low, middle)
         return self._stiffness(0.5 * (low + high))

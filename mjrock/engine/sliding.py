@@ -141,15 +141,15 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         meets = where_friction_acts(places, meeting(places, i, frames))
         if meets.gap > -ROUNDING:
             continue
-        mu, slip = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity).speed
+        mu, now = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
         inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
-        stopping = inertia * abs(slip) / memory.options[TIMESTEP]
+        stopping = inertia * abs(now.speed) / memory.options[TIMESTEP]
         pressing = normal_force(memory, points, i, meets, frames)
         beyond = memory.options[IMPRATIO] * stopping > sliding.method.slides * mu * pressing
         if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
-            sliding.force[i] = -math.copysign(mu * pressing, slip)
-            take_way(memory, places, sliding, i, meets, frames)
+            sliding.force[i] = -math.copysign(mu * pressing, now.speed)
+            turned_to(sliding, i, now.way)
             memory.dimension[i] = SMOOTH
     return any_slides
 

@@ -11,6 +11,8 @@ nothing at rest, such as a side stop, because that would put energy into its spr
 Friction acts halfway between the faces that overlap at the point, not at the point itself. Where that place does not
 slip, the point still moves along its face as the body turns, by half the penetration times the rotation. The place that
 is remembered moves with it.
+
+Bodies of space are not put back. Their edges drift by the two terms above.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import jitable
-from ..geometry.frames import take_frames
+from ..geometry.frames import PLANE, take_frames
 from ..geometry.kinematics import Places, along, depth, gap, meeting
 from ..geometry.vectors import scaled, tangent
 from ..quantities import Array, Integers
@@ -48,13 +50,13 @@ class Joints(NamedTuple):
 
     @classmethod
     def of_scene(cls, scene: Scene) -> Joints:
-        """The joints of a scene in which every body stands on one other body or on the ground; else none."""
+        """The joints of a planar scene in which every body stands on one other body or on the ground; else none."""
         rough = (scene.friction > 0) & (scene.bears > 0)
         below = {
             int(body): set(scene.face_body[rough & (scene.point_body == body)]) for body in scene.point_body[rough]
         }
         order: list[int] = []
-        if all(len(bodies) == 1 for bodies in below.values()):
+        if scene.freedom == PLANE and all(len(bodies) == 1 for bodies in below.values()):
             order = sorted(below, key=lambda body: _height(body, below))
         of = np.full(len(scene.k), -1)
         for joint, body in enumerate(order):

@@ -52,7 +52,7 @@ def masonry_mjcf(case: MasonryCase, timestep: float, *, newmark_beta: float = 0.
     """The model of masonry as MJCF text, see `mjcf_of`.
 
     Names: bodies and geoms as the blocks that are not fixed; contact points `a|b_0`, `a|b_1`, ... of the joint between
-    the blocks a and b; joints `a_x`, `a_z`, `a_theta`.
+    the blocks a and b; joints `a_x`, `a_z`, `a_theta`, and in space `a_x`, `a_y`, `a_z` and the ball `a_turn`.
     """
     require_kind("case", case, MasonryCase)
     return mjcf_of(case, None, timestep, newmark_beta=newmark_beta)

@@ -266,10 +266,7 @@ class Scene:
 
     @cached_property
     def highest_frequency(self) -> float:
-        """The highest natural frequency with every contact closed and free to slide [rad/s].
-
-        No contact state of a run vibrates faster: opening a contact or holding it sideways only lowers it.
-        """
+        """The highest natural frequency with every contact closed and free to slide [rad/s]."""
         return highest_frequency(self.potential, self.principal)
 
     @cached_property

@@ -6,6 +6,7 @@ import pytest
 from pairs import FLAT_BOX, ON_A_PLANE, made_for
 
 import mjrock as mr
+from mjrock.anymodel.felt import _slipping
 from scripts.models import inspect_contacts as script
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>
@@ -257,3 +258,27 @@ def test_the_script_prints_the_table(tmp_path, capsys):
     assert "no contact" in capsys.readouterr().out
     with pytest.raises(FileNotFoundError, match="is no file"):
         script.main([str(tmp_path / "none.xml")])
+
+
+@pytest.mark.parametrize("height", [0.3, 0.7])
+def test_bodies_that_a_rigid_constraint_holds_cannot_approach(height):
+    """What the constraint leaves of their freedom is rounding, of either sign or none."""
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="1e-4"/><worldbody><geom name="wall" type="box" pos="1 0 {height}" size=".1 1 1"/>
+        <body><joint axis="0 1 0"/><geom size=".05" mass="1"/><body pos=".3 0 {height}"><joint axis="0 1 0"/>
+        <geom size=".05" mass="1.3"/><body name="tip" pos=".3 0 .1"><joint axis="0 1 0"/><geom size=".05" mass=".7"/>
+        </body></body></body></worldbody><equality><connect body1="tip" anchor="0 0 0" body2="world" solref="2e-3 1"/>
+        </equality></mujoco>"""
+    )
+    found = mr.inspect_contacts(model)
+    assert [contact.mass for contact in found] == [np.inf] * 3
+    assert all("cannot approach each other" in " ".join(contact.notes) for contact in found)
+
+
+def test_friction_is_opposite_to_the_slip_that_it_leaves():
+    """A weight of which one direction is free of rounding only, as of a fish that lies in its plane of symmetry."""
+    weight = np.array([[171.7, -46.1, 0.0], [-46.1, 44.1, 0.0], [6.6e-34, -6.8e-34, 2177.1]])
+    _, first, second = impulse = _slipping(weight, 1.0)
+    slip = weight[1:] @ impulse
+    assert np.hypot(first, second) == pytest.approx(1)
+    assert -(slip @ (first, second)) == pytest.approx(np.linalg.norm(slip))

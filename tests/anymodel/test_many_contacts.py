@@ -79,7 +79,7 @@ def test_wildcards_among_bodies_and_among_each_other():
             {("foot*", "floor"): {"k": 1e6, "c": 1.0}, ("foot0", 0): {"k": 1e6, "c": 1.0}},
             "pairs name the geoms .* twice",
         ),
-        ([("foot0", "floor")], "pairs = .* is not a Mapping"),
+        ([("foot0", "floor")], "pairs = .* has to be a dictionary, such as"),
     ],
 )
 def test_what_cannot_be_is_refused(pairs, complaint):

@@ -39,12 +39,30 @@ def test_its_lines_run():
     """The calls that stand in one line each."""
     found = mr.measured_contact([[1.0, 0.36], [1.0, 0.35]], mass=0.2, contact_times=[9e-3, 8.7e-3])
     assert found.restitution == pytest.approx(0.596, abs=1e-3)
+    assert found.k == pytest.approx(20635, rel=1e-4)
+    assert _bounced(found) == pytest.approx((0.353, 8.9e-3), rel=2e-3)
     assert mr.hertz_stiffness(0.02, 2.1e11, 0.3, mass=0.05, speed=1.0) > 1e7
     for call in (
         "measured_contact([[1.0, 0.36], [1.0, 0.35]], mass=0.2",
         "hertz_stiffness(0.02, 2.1e11, 0.3, mass=0.05",
     ):
         assert call in PAGE
+
+
+def _bounced(found):
+    """How high a ball bounces that is dropped from 1 m [m], and for how long it touches [s]."""
+    spec = mujoco.MjSpec.from_string(study.model_text(
+        '<body pos="0 0 1.03"><freejoint/><geom name="ball" size=".03" mass=".2"/></body>', 1e-4
+    ))  # fmt: skip
+    mr.contact_for(spec, "ball", "floor", k=found.k, restitution=found.restitution, speed=4.43).apply(spec)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    touching, steps = 0, 0
+    while steps < 4600 or data.qvel[2] > 0:
+        mujoco.mj_step(model, data)
+        touching += bool(data.ncon and data.efc_force[0] > 0)
+        steps += 1
+    return float(data.qpos[2]) - 0.03, 1e-4 * touching
 
 
 def test_it_is_short():

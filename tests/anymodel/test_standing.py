@@ -265,3 +265,29 @@ def test_what_cannot_move_is_said():
     named = scene(FLOOR, '<body name="arm"><freejoint/><geom size=".1" mass="2"/></body>')
     assert mr.inspect_contacts(spec_of(named))[0].geom2 == "arm[1]"
     assert mr.inspect_contacts(spec_of(named))[0].bodies == ("world", "arm")
+
+
+def test_dry_friction_of_a_joint_is_named_with_what_it_takes():
+    """A foot on a slide joint with frictionloss, at 1 m/s and without gravity."""
+    text = """<mujoco><option timestep="1e-5" gravity="0 0 0"/><worldbody><geom name="floor" type="plane" size="1 1 1"/>
+        <body pos="0 0 .1005"><joint name="strut" type="slide" axis="0 0 1" frictionloss="{loss}"/>
+        <geom name="foot" size=".1" mass="1"/></body></worldbody></mujoco>"""
+    left = []
+    for loss in (0, 10):
+        spec = mujoco.MjSpec.from_string(text.format(loss=loss))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            contact = mr.contact_for(spec, "foot", "floor", k=1e5, restitution=0.5)
+        assert len(caught) == (loss > 0)
+        contact.apply(spec)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        data.qvel[0] = -1
+        while data.qvel[0] < 0 or (data.ncon and data.efc_force.max() > 0):
+            mujoco.mj_step(model, data)
+        left.append(float(data.qvel[0]))
+    said = str(caught[0].message)
+    assert said.startswith(
+        "joint strut adds a dry friction of 10 N along the approach, which lowers e = 0.5 by up to 0.037"
+    )
+    assert 0.008 < left[0] - left[1] < 0.037

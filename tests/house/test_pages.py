@@ -53,7 +53,7 @@ def run(page: Path, names: dict[str, object], most: int | None = None) -> list[t
 
 LINES = 185
 """Most lines of a page that is to be read from its beginning to its end."""
-REFERENCE = {"damping.md", "api.md"}
+REFERENCE = {"damping.md", "api.md", "gallery.md"}
 """Pages to look things up in."""
 LINK = re.compile(r"\[[^\]]*\]\(([^)#]+)[^)]*\)")
 

@@ -40,6 +40,11 @@ WRITES = {
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
+    "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},
+    "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
+    "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
+    "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
+    | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
     "facade_in_space": {f"facade_in_space.{ending}" for ending in ("png", "gif", "csv", "txt")},
@@ -104,6 +109,10 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "corner_block",
     "law_in_space",
     "dome",
+    "many_blocks",
+    "many_records",
+    "joint_stiffness",
+    "two_storeys",
 }
 """Scripts that take a while even with --quick."""
 

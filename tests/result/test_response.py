@@ -4,8 +4,8 @@ import pytest
 import mjrock as mr
 from mjrock.geometry.kinematics import gaps
 from mjrock.problem.damping.uplift import Uplift
-from mjrock.result.history import rocking_history
 from mjrock.result.ending import ending
+from mjrock.result.history import rocking_history
 from mjrock.result.rocking import peak_energies, restitution_of
 from mjrock.scene.wall import wall_scene
 from scripts.shared.paper import K_N

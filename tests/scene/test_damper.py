@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from everyday import among, slow
 from scenes import course, fixed_steps, stock_takes
 
 import mjrock as mr
@@ -24,7 +25,7 @@ def sliding(c):
     return scene, course(scene, [[0.5, 0.0, 0.0]], 1.0)
 
 
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("accuracy", among([1e-2, 1e-3, 1e-4], 1e-3))
 def test_a_damper_slows_a_mass_down_as_a_dashpot_does(accuracy):
     """v = v0 exp(-c t / m), and what it has taken is what the block has lost."""
     scene, slides = sliding(2 * BLOCK.mass)
@@ -43,7 +44,9 @@ def wall_case(c=C, *, side_stop=True, duration=1.0):
 
 
 @pytest.mark.parametrize("side_stop", [True, False])
-@pytest.mark.parametrize(("options", "within"), [({}, 2e-4), ({"accuracy": 1e-4}, 4e-5), ({"timestep": 1e-4}, 2e-3)])
+@pytest.mark.parametrize(
+    ("options", "within"), [slow(({}, 2e-4)), ({"accuracy": 1e-4}, 4e-5), slow(({"timestep": 1e-4}, 2e-3))]
+)
 def test_a_damped_wall_is_that_of_scipy(side_stop, options, within):
     contacts = mr.Contacts.from_law(WALL, E, k_base=5e8, k_side=5e8)
     case = wall_case(side_stop=side_stop, duration=1.0 if side_stop else 2.0)

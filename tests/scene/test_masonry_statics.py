@@ -41,6 +41,7 @@ def test_an_arch_of_the_least_thickness():
     assert bracket(lambda x: stands(-x), -0.9, -0.3, 9) / -5 == pytest.approx(0.1075, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_springs_hardly_change_the_least_thickness():
     """Sixteen voussoirs: 0.1071 of rigid blocks, and a thousandth more on springs of 1e10 N/m3."""
 

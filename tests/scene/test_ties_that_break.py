@@ -139,6 +139,7 @@ def test_a_release_that_has_broken_the_tie(wall, contacts, e):
     assert engine.ledger.broken["tie_0"].max() == engine.ledger.ties["tie_0"].max() == 0
 
 
+@pytest.mark.slow
 def test_the_push_over_curve_falls_to_that_without_the_tie(wall, contacts):
     tie = brittle(wall)
     case, bare = mr.Case(wall, 0.0, 1.0, effects=tie), mr.Case(wall, 0.0, 1.0)

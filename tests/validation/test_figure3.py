@@ -5,6 +5,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from everyday import among
 
 import mjrock as mr
 from mjrock.method import METHOD
@@ -47,7 +48,7 @@ class TestVerification:
             assert found.restitution[0, 1] == pytest.approx(found.restitution[0, 0], rel=tolerance)
             assert found.rms <= 0.003
 
-    @pytest.mark.parametrize("slenderness", [4, 10, 15])
+    @pytest.mark.parametrize("slenderness", among([4, 10, 15], 10))
     @pytest.mark.parametrize("xi_base", [0.0, 0.02])
     def test_soft_bases(self, slenderness, xi_base):
         """Where both edges stay closed over a large rotation, friction is not to work against itself."""

@@ -1,0 +1,1 @@
+"""Robots that public packages carry: their contacts, their feet, and their contacts in MJX."""
