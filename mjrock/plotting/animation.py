@@ -1,4 +1,4 @@
-"""Pictures that move: a wall or blocks in section, true to scale, beside the history of the rotation."""
+"""Pictures that move: a wall or blocks in section or in space, true to scale, beside the history of the rotation."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ from tqdm import tqdm
 from ..files import replacing
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array, require_path, require_text, require_within
+from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
 from .bodies import Bodies
 from .film import GifWriter, PageWriter, Stage
 from .histories import acceleration, rotation, ties
 from .page import standalone
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry
+from .solids import Solids
+from .view import fill, solids, ties_in_view
 
 ENDINGS = (".gif", ".mp4", ".html")
 """Endings of the files that are written."""
@@ -44,12 +46,13 @@ def animate(
     magnify: float = 1.0,
     title: str = "",
     dpi: float = 100.0,
+    camera: Sequence[float] | None = None,
 ) -> Path:
     """Write the motion of a response as a moving picture.
 
     It shows the wall with its base, pivots, side stop, ties, openings, loads, thrusts and masses, and beside it the
     rotation over time, the motion of the ground and the forces of the ties where there are any. Of masonry it shows
-    the blocks and their ties.
+    the blocks and their ties, in space without what has sunk below the ground.
 
     Args:
         response: of any solver.
@@ -60,6 +63,8 @@ def animate(
         magnify: factor on all displacements [-], 0.01 to 10000; 1 is true to scale. The picture says it.
         title: what stands above, at most 1000 characters.
         dpi: resolution [1/inch], 20 to 600; the picture is 8 inches wide.
+        camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
+            None is (18, 35), from outside.
 
     Returns:
         The path that was written.
@@ -68,9 +73,15 @@ def animate(
         ValueError: for another ending, a value outside its range, or more than 20,000 frames.
         RuntimeError: for an .mp4 where there is no ffmpeg.
     """
+    require_kind("response", response, Response)
+    if response.in_space:
+        solid = Solids.of(response, require_within("magnify", magnify, 0.01, 1e4), camera)
+        return _film(solid, path, [], response.case, speed=speed, fps=fps, title=title, dpi=dpi)
+    if camera is not None:
+        raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     bodies = Bodies.of(response, magnify)
     drawn: list[Callable[[Axes], object]] = []
-    if isinstance(response, Response) and isinstance(case := response.case, Case):
+    if isinstance(case := response.case, Case):
         if case.shaken:
             drawn.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
         drawn.append(lambda ax: rotation(ax, [response]))
@@ -107,7 +118,7 @@ def animate_bodies(
 
 
 def _film(
-    bodies: Bodies,
+    bodies: Bodies | Solids,
     path: str | Path,
     histories: Sequence[Callable[[Axes], object]],
     case: Case | MasonryCase | None,
@@ -172,7 +183,7 @@ def frame_times(t: Array, step: float) -> Array:
 
 
 def scene(
-    bodies: Bodies,
+    bodies: Bodies | Solids,
     histories: Sequence[Callable[[Axes], object]],
     case: Case | MasonryCase | None,
     *,
@@ -189,15 +200,9 @@ def scene(
     """
     figure = Figure(figsize=(8.0, 4.5), layout="constrained")
     halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.5)) if histories else None
-    ax: Axes = figure.subplots() if halves is None else halves[0].subplots()
-    updates = [blocks(ax, bodies)]
-    if case is None:
-        frame_view(ax, bodies)
-    elif isinstance(case, Case):
-        updates.append(surroundings(ax, case, bodies))
-    else:
-        frame_view(ax, bodies)
-        updates.append(ties_of_masonry(ax, case, bodies))
+    depth = {"projection": "3d"} if isinstance(bodies, Solids) else None
+    ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
+    updates = _standing(ax, bodies, case)
     scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)
@@ -212,6 +217,8 @@ def scene(
     figure.suptitle(title, fontsize=10)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
+    if isinstance(bodies, Solids):
+        fill(ax)
 
     def update(frame: int) -> None:
         clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")
@@ -220,6 +227,18 @@ def scene(
 
     update(0)
     return figure, update
+
+
+def _standing(ax: Axes, bodies: Bodies | Solids, case: Case | MasonryCase | None) -> list[Update]:
+    """Draw bodies and what they meet."""
+    if isinstance(bodies, Solids):
+        assert isinstance(case, MasonryCase)
+        return [solids(ax, bodies), ties_in_view(ax, case, bodies)]
+    updates = [blocks(ax, bodies)]
+    if isinstance(case, Case):
+        return [*updates, surroundings(ax, case, bodies)]
+    frame_view(ax, bodies)
+    return updates if case is None else [*updates, ties_of_masonry(ax, case, bodies)]
 
 
 def _marker(ax: Axes, times: Array) -> Update:

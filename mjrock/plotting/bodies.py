@@ -9,9 +9,22 @@ from typing import Any
 
 import numpy as np
 
+from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..quantities import Array, keep, require_array, require_kind, require_reals, require_row, require_within, shown
 from ..result.response import Response
+
+
+def require_masonry(what: str, response: Response) -> Masonry:
+    """The masonry of a response.
+
+    Raises:
+        ValueError: for a response of a wall, with what takes masonry alone.
+    """
+    masonry = getattr(response.case, "masonry", None)
+    if not isinstance(masonry, Masonry):
+        raise ValueError(f"{what} takes masonry or a response of it, and this response is one of a wall")
+    return masonry
 
 
 def _outlines(name: str, given: object) -> tuple[Array, ...]:
@@ -73,6 +86,8 @@ class Bodies:
             wall = case.wall
             rests = np.array([[wall.centroid_offset, wall.centroid_height]])
             return cls(response.t, (wall.outline,), rests, response.pose, magnify)
+        if response.in_space:
+            case.masonry.require_plane("Bodies")
         blocks = case.masonry.blocks
         free = [block for block in blocks if not block.fixed]
         return cls(

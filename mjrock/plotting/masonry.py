@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +12,10 @@ from numpy.typing import ArrayLike
 
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, require_array, require_kind, require_within
+from ..result.response import Response
+from .bodies import require_masonry
+from .solids import Solids
+from .view import solids
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
 
@@ -23,23 +28,39 @@ def moved(corners: Array, centroid: Array, pose: Array) -> Array:
 
 
 def blocks(
-    ax: Axes, masonry: Masonry, pose: ArrayLike | None = None, *, magnified: float = 1.0, joints: bool = True
+    ax: Axes,
+    masonry: Masonry | Response,
+    pose: ArrayLike | None = None,
+    *,
+    magnified: float = 1.0,
+    joints: bool = True,
+    camera: Sequence[float] | None = None,
 ) -> Axes:
     """The blocks of masonry to scale, fixed ones in grey, where they rest or at a pose.
 
+    Blocks in space need an `ax` of three dimensions, `figure.add_subplot(projection="3d")`.
+
     Args:
         ax: where to draw.
-        masonry: the masonry.
-        pose: x, z and theta of each block that is not fixed [m, m, rad], shape (bodies, 3), such as `answer.pose[-1]`;
-            None draws it at rest.
+        masonry: the masonry, or a response of it, which is drawn as it was in the end.
+        pose: x, z and theta of each block that is not fixed [m, m, rad], shape (bodies, 3), in space (bodies, 7), such
+            as `answer.pose[-1]`; None draws masonry at rest.
         magnified: factor on the pose, to show a small motion, 0 to 1e6.
-        joints: whether to draw the joints as lines, where no pose is given.
+        joints: whether to draw the joints as lines, in the plane and where no pose is given.
+        camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
+            None is (18, 35), from outside.
 
     Raises:
-        ValueError: for a pose of another shape, or a factor outside its range.
+        ValueError: for a pose of another shape, a value outside its range, or axes of two dimensions for blocks in
+            space.
     """
+    if isinstance(masonry, Response):
+        pose = masonry.pose[-1] if pose is None else pose
+        masonry = require_masonry("blocks", masonry)
     require_kind("masonry", masonry, Masonry)
     magnified = require_within("magnified", magnified, 0.0, 1e6)
+    if masonry.in_space:
+        return _blocks_in_space(ax, masonry, pose, magnified, camera)
     bodies = (len(masonry.free), 3)
     at = np.zeros(bodies) if pose is None else magnified * require_array("pose", pose, bodies)
     where = dict(zip(masonry.free, at, strict=True))
@@ -53,4 +74,15 @@ def blocks(
     ax.set_aspect("equal")
     ax.set_xlabel("$x$ [m]")
     ax.set_ylabel("$z$ [m]")
+    return ax
+
+
+def _blocks_in_space(
+    ax: Axes, masonry: Masonry, pose: ArrayLike | None, magnified: float, camera: Sequence[float] | None
+) -> Axes:
+    """Blocks in space at rest or at a pose."""
+    shape = (len(masonry.free), 7)
+    rest = np.tile([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (shape[0], 1))
+    at = rest if pose is None else require_array("pose", pose, shape)
+    solids(ax, Solids(masonry, np.zeros(1), at[None], magnified, camera), animated=False)(0)
     return ax

@@ -20,6 +20,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DO
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
 RUNS = ["stiffness.md", "law_and_step.md", "solvers.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "impacts.md"]
+LONG += ["space.md"]
 """Pages whose lines run."""
 
 
@@ -52,7 +53,7 @@ def run(page: Path, names: dict[str, object], most: int | None = None) -> list[t
 
 LINES = 185
 """Most lines of a page that is to be read from its beginning to its end."""
-REFERENCE = {"damping.md", "api.md"}
+REFERENCE = {"damping.md", "api.md", "gallery.md"}
 """Pages to look things up in."""
 LINK = re.compile(r"\[[^\]]*\]\(([^)#]+)[^)]*\)")
 

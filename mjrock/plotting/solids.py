@@ -1,0 +1,214 @@
+"""Blocks in space in motion, as a picture needs them: their faces, and where they are drawn and seen from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from heapq import heapify, heappop, heappush
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.frames import SPACE, frames_of
+from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.polyhedron import Polyhedron
+from ..problem.wall.effects import Effect
+from ..quantities import Array, Integers, keep, require_array, require_within
+from ..result.response import Response
+from ..scene.masonry import laden
+
+CAMERA = (18.0, 35.0)
+"""Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""
+TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
+"""Colours of blocks, which take turns so that neighbours are told apart."""
+FIXED = "#bdbdbd"
+"""Colour of fixed blocks that are no ground."""
+
+
+class Facets(NamedTuple):
+    """The faces of bodies.
+
+    Args:
+        corners: of each face about the centroid of its body, at rest [m], shape (faces, most, 3). A face with fewer
+            corners than another repeats its last one.
+        body: number of the body of each face, shape (faces,).
+        counts: number of corners of each face, shape (faces,).
+    """
+
+    corners: Array
+    body: Integers
+    counts: Integers
+
+
+@dataclass(frozen=True, eq=False)
+class Solids:
+    """Masonry in space and its motion.
+
+    Args:
+        masonry: the blocks.
+        t: times [s], shape (n,), increasing.
+        poses: displacement of each centroid from rest [m] and unit quaternion, w first, of each block that is not
+            fixed, shape (n, bodies, 7).
+        magnify: factor on the displacement of every point [-], 0 to 1e6; 1 is true to scale.
+        camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
+        effects: of the case. The pose of a block with added masses is that of their common centroid.
+
+    Raises:
+        ValueError: for poses of another shape, or a value outside its range.
+    """
+
+    masonry: Masonry
+    t: Array
+    poses: Array
+    magnify: float = 1.0
+    camera: Sequence[float] | None = None
+    effects: tuple[Effect, ...] = ()
+
+    def __post_init__(self) -> None:
+        elevation, azimuth = require_array("camera", CAMERA if self.camera is None else self.camera, (2,))
+        elevation = require_within("elevation of the camera", elevation, -90.0, 90.0, "degrees")
+        keep(
+            self,
+            camera=(elevation, require_within("azimuth of the camera", azimuth, -360.0, 360.0, "degrees")),
+            magnify=require_within("magnify", self.magnify, 0.0, 1e6),
+            poses=require_array("poses", self.poses, (len(self.t), len(self.masonry.free), SPACE.nq)),
+        )
+
+    @classmethod
+    def of(cls, response: Response, magnify: float = 1.0, camera: Sequence[float] | None = None) -> Solids:
+        """The blocks of a response in space."""
+        case = response.case
+        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects)
+
+    def at(self, times: Array) -> Solids:
+        """The same blocks at other times, their poses interpolated linearly."""
+        columns = self.poses.reshape(len(self.t), -1).T
+        poses = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1).reshape(len(times), -1, 7)
+        poses[..., 3:] /= np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
+        return replace(self, t=times, poses=poses)
+
+    @cached_property
+    def eye(self) -> Array:
+        """Unit vector to the camera, shape (3,)."""
+        elevation, azimuth = np.radians(np.asarray(self.camera))
+        level = np.cos(elevation)
+        return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
+
+    @cached_property
+    def shown(self) -> tuple[int, ...]:
+        """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
+        return tuple(i for i, block in enumerate(self.masonry.blocks) if not self._is_ground(block))
+
+    @property
+    def ground(self) -> list[Polyhedron]:
+        """The fixed blocks below all that move."""
+        return [block for block in self.masonry.blocks if self._is_ground(block)]
+
+    def _is_ground(self, block: Polyhedron) -> bool:
+        return block.fixed and bool(block.corners[:, 2].max() <= self._lowest + 1e-3)
+
+    @cached_property
+    def _lowest(self) -> float:
+        """The lowest z of the blocks that move, at rest [m]."""
+        return min(float(self.masonry.blocks[i].corners[:, 2].min()) for i in self.masonry.free)
+
+    @property
+    def colours(self) -> list[str]:
+        """Colour of each facet."""
+        tints = [FIXED if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
+        return [tints[body] for body in self.facets.body]
+
+    @cached_property
+    def rests(self) -> Array:
+        """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
+        rests: Array = laden(self.masonry, self.effects)[1][list(self.shown)]
+        return rests
+
+    @cached_property
+    def facets(self) -> Facets:
+        """The faces of the blocks that are shown."""
+        blocks = [self.masonry.blocks[i] for i in self.shown]
+        counts = np.array([len(face) for block in blocks for face in block.faces])
+        body = np.repeat(np.arange(len(blocks)), [len(block.faces) for block in blocks])
+        corners = np.empty((len(counts), counts.max(), 3))
+        bodies = zip(blocks, self.rests, strict=True)
+        about = [(block.corners - rest)[list(face)] for block, rest in bodies for face in block.faces]
+        for row, face in zip(corners, about, strict=True):
+            row[:] = face[-1]
+            row[: len(face)] = face
+        return Facets(corners, body, counts)
+
+    def displaced(self, frame: int, block: int | None, point: Array) -> Array:
+        """Where a point of a block, given at rest [m], shape (3,), is drawn at a frame; one of the ground stays."""
+        if block not in self.shown:
+            return point
+        body = self.shown.index(block)
+        drawn: Array = self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0]
+        return drawn
+
+    def corners(self, frame: int) -> Array:
+        """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
+        return self._drawn(frame, self.facets.body, self.facets.corners)
+
+    def order(self, frame: int) -> Integers:
+        """The bodies from the farthest to the nearest, shape (shown,).
+
+        Of two with a joint the one on the far side comes first. Among those that hide no other the one with the
+        farthest centroid is next.
+        """
+        frames = self._frames(frame)
+        nearness = (self.rests + frames[:, :3]) @ self.eye
+        waits, hidden = np.zeros(len(nearness), dtype=int), [list[int]() for _ in nearness]
+        for below, above, normal in self._pairs:
+            turned = normal + frames[below, 3:].reshape(3, 3) @ normal
+            behind, before = (below, above) if turned @ self.eye > 0 else (above, below)
+            hidden[behind].append(before)
+            waits[before] += 1
+        ready = [(float(nearness[i]), int(i)) for i in np.flatnonzero(waits == 0)]
+        heapify(ready)
+        left, order = set(range(len(nearness))), []
+        while left:
+            body = heappop(ready)[1] if ready else min(left, key=nearness.__getitem__)  # a ring of joints is cut there
+            if body not in left:
+                continue
+            left.discard(body)
+            order.append(body)
+            for before in hidden[body]:
+                waits[before] -= 1
+                if waits[before] == 0:
+                    heappush(ready, (float(nearness[before]), before))
+        return np.array(order)
+
+    def extent(self) -> tuple[Array, Array]:
+        """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
+
+        What goes farther than one extent of the blocks at rest is outside.
+        """
+        rest = self.facets.corners + self.rests[self.facets.body, None]
+        low, high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
+        room = float((high - low).max())
+        some = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int))
+        corners = np.concatenate([self.corners(int(frame)).reshape(-1, 3) for frame in some])
+        return np.maximum(corners.min(axis=0), low - room), np.minimum(corners.max(axis=0), high + room)
+
+    @cached_property
+    def _pairs(self) -> list[tuple[int, int, Array]]:
+        """Bodies below and above each joint between two that are shown, and its normal at rest."""
+        body = {block: i for i, block in enumerate(self.shown)}
+        joints = [joint for joint in self.masonry.joints if joint.below in body and joint.above in body]
+        return [(body[joint.below], body[joint.above], joint.normal) for joint in joints]
+
+    def _frames(self, frame: int) -> Array:
+        """Displacement and R - 1 of each body at a frame, shape (shown, 12)."""
+        frames, free = np.zeros((len(self.shown), 12)), list(self.masonry.free)
+        moves = [i for i, block in enumerate(self.shown) if block in free]
+        frames[moves] = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
+        return frames
+
+    def _drawn(self, frame: int, body: Integers, points: Array) -> Array:
+        """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
+        frames = self._frames(frame)[body]
+        moved = frames[:, None, :3] + points @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
+        drawn: Array = self.rests[body, None] + points + self.magnify * moved
+        return drawn

@@ -1,0 +1,189 @@
+"""A view of blocks in space: the camera, the light, the ground, and blocks that hide those behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.ticker import MultipleLocator
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
+
+from ..geometry import convex
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects_in_space import anchored_at, held_at
+from ..problem.wall.effects import Tie
+from ..quantities import Array
+from ..result.ties_in_space import elongation_in_space
+from .solids import Solids
+
+GROUND, STEEL = "#e6e6e2", "#12406b"
+LIGHT = np.array([0.62, -0.25, 0.74])
+"""Where the light comes from."""
+DARKEST = 0.62
+"""Brightness of a face that is turned away from the light [-]."""
+MARGIN = 0.15
+"""Width of the ground around the blocks, over their largest extent [-]."""
+ZOOM = 1.15
+"""Size of the picture, over that which leaves room for labels on every side [-]."""
+FILLED = (0.84, 0.74)
+"""Share of the width and of the height of a figure that moving blocks and their ground fill [-]."""
+
+Update = Callable[[int], None]
+
+
+class Faces(PolyCollection):
+    """Faces in space, drawn in the order given and not by their depth."""
+
+    corners: Sequence[Array] = ()
+    """Corners of each face [m], shape (n, 3)."""
+
+    def do_3d_projection(self) -> float:
+        """Bring the faces into the plane of the picture, whenever the axes are drawn."""
+        if len(self.corners):
+            space: Any = self.axes
+            x, y, _ = proj_transform(*np.concatenate(self.corners).T, space.M)
+            ends = np.cumsum([len(face) for face in self.corners])[:-1]
+            self.set_verts(np.split(np.column_stack([x, y]), ends))
+        return 0.0
+
+
+def in_three(ax: Axes) -> Any:
+    """Axes of three dimensions.
+
+    Raises:
+        ValueError: for axes of two.
+    """
+    if not isinstance(ax, Axes3D):
+        raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
+    return ax
+
+
+def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
+    """Draw blocks in space, true to scale, and the ground below them.
+
+    Blocks are drawn from the farthest to the nearest. Of two with a joint the one on the far side of it comes first,
+    and otherwise the one with the farther centroid; blocks that have moved far can hide what lies before them. What has
+    sunk below the ground is left out.
+    """
+    space = in_three(ax)
+    low, high = bodies.extent()
+    margin = MARGIN * float((high - low).max())
+    around = margin * np.array([1.0, 1.0, 0.0])
+    low, high = low - around, high + around
+    level = _ground(space, bodies, (low, high))
+    if level is not None:
+        low[2] = level
+    _frame(space, (low, high), bodies)
+    tints = np.array([to_rgb(colour) for colour in bodies.colours])
+    moving = Faces([], linewidths=0.4, edgecolors="0.2", zorder=2, animated=animated, clip_on=False)
+    space.add_collection(moving, autolim=False)
+
+    def update(frame: int) -> None:
+        corners = bodies.corners(frame)
+        normals = _normals(corners)
+        seen = normals @ bodies.eye > 0
+        if level is not None and bodies.eye[2] > 0:
+            seen &= corners[..., 2].mean(axis=1) > level
+        place = np.argsort(bodies.order(frame))  # of each body in the order
+        number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.body[seen]], kind="stable")]
+        counts, colours = bodies.facets.counts[number], cast(Any, _lit(tints[number], normals[number]))
+        moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]
+        moving.set_facecolor(colours)
+        if space.M is not None:
+            moving.do_3d_projection()
+
+    return update
+
+
+def fill(ax: Axes) -> None:
+    """Enlarge a view until it fills its figure, which has been laid out."""
+    space = in_three(ax)
+    figure: Any = ax.get_figure(root=True)
+    limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
+    corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
+    x, y, _ = proj_transform(*corners, space.get_proj())
+    spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0) / figure.bbox.size
+    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array(FILLED) / spans).min()))
+    figure.draw_without_rendering()
+
+
+def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
+    """Ties of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
+    gone once it broke."""
+    space, moves = in_three(ax), []
+    for tie in (effect for effect in case.effects if isinstance(effect, Tie)):
+        elongation = elongation_in_space(case, tie, bodies.poses)
+        yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+        ends = [(held_at(tie), tie.block), (anchored_at(tie), tie.anchor_block)]
+        (line,) = space.plot([], [], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
+        moves.append((line, tie, ends, elongation, yielded))
+
+    def update(frame: int) -> None:
+        for line, tie, ends, elongation, yielded in moves:
+            points = [bodies.displaced(frame, block, point) for point, block in ends]
+            line.set_data_3d(*np.transpose(points))
+            line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
+            line.set_visible(bool(yielded[frame] <= tie.breaks_at))
+
+    return update
+
+
+def _frame(ax: Axes3D, extent: tuple[Array, Array], bodies: Solids) -> None:
+    """Set limits and labels in m, of the same scale along every axis, and the camera."""
+    low, high = extent
+    size: Array = high - low
+    for name, a, b in zip("xyz", low, high, strict=True):
+        getattr(ax, f"set_{name}lim")(a, b)
+        getattr(ax, f"set_{name}label")(f"${name}$ [m]", fontsize=8)
+        getattr(ax, f"{name}axis").set_major_locator(_locator(float(size.max())))
+    ax.tick_params(labelsize=7, pad=0)
+    ax.set_box_aspect(size, zoom=ZOOM)
+    ax.set_proj_type("ortho")
+    ax.view_init(*np.asarray(bodies.camera))
+    ax.computed_zorder = False  # the ground lies behind
+    ax.grid(False)
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+
+
+def _locator(extent: float) -> MultipleLocator:
+    """Ticks some five to the largest extent [m], at the same spacing on every axis."""
+    rough = extent / 5
+    power = 10.0 ** np.floor(np.log10(rough))
+    return MultipleLocator(power * min((1, 2, 5, 10), key=lambda step: abs(step * power - rough)))
+
+
+def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | None:
+    """Draw the upper faces of the fixed blocks below all others, as far as the picture goes; their highest z [m]."""
+    (left, near), (right, far) = extent[0][:2], extent[1][:2]
+    window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
+    for block in bodies.ground:
+        level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
+        for face in (block.corners[list(face)] for face in block.faces):
+            plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
+            if len(plan) > 2:
+                patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
+                ground = Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5, clip_on=False)
+                ax.add_collection3d(ground)
+    return level
+
+
+def _normals(corners: Array) -> Array:
+    """Unit normals out of faces, shape (faces, 3)."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    unit: Array = normals / np.where(length > 0, length, 1.0)
+    return unit
+
+
+def _lit(colours: Array, normals: Array) -> Array:
+    """Colours of faces in the light, shape (faces, 3)."""
+    bright = DARKEST + (1 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
+    shown: Array = colours * bright[:, None]
+    return shown

@@ -1,0 +1,148 @@
+"""Pictures of blocks in space: where blocks are drawn, which hide which, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.plotting import animation
+from mjrock.plotting.solids import Solids
+from mjrock.plotting.view import Faces
+
+GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
+PAIR = (mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), name="front"), mr.Polyhedron.box((1, 1, 1), (-0.5, 0, 0.5)))
+MASONRY = mr.Masonry((GROUND, *PAIR), xi=0)
+REST = np.tile([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (2, 1))
+
+
+def axes():
+    return Figure().add_subplot(projection="3d")
+
+
+def faces_of(ax):
+    (faces,) = (child for child in ax.collections if isinstance(child, Faces))
+    return faces
+
+
+def moved(angle=math.pi / 2, place=(0.0, 0.0, 0.0)):
+    """The front block turned about the vertical and displaced."""
+    pose = REST.copy()
+    pose[0] = [*place, math.cos(0.5 * angle), 0.0, 0.0, math.sin(0.5 * angle)]
+    return pose
+
+
+def test_blocks_are_drawn_where_a_pose_has_brought_them():
+    """A quarter turn about x brings the corner (1/2, 1/2, 1/2) of the front block to (1/2, -1/2, 1/2)."""
+    pose = REST.copy()
+    pose[0] = [3.0, 1.0, 0.5, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0]
+    solids = Solids(MASONRY, np.zeros(1), pose[None], 2.0)
+    at_rest = np.array([1.0, 0.5, 1.0])
+    np.testing.assert_allclose(
+        solids.displaced(0, 1, at_rest),
+        at_rest + 2 * np.array([3.0, 1.0, 0.5]) + 2 * np.array([0, -1.0, 0]),
+        atol=1e-12,
+    )
+    corners = solids.corners(0)[solids.facets.body == 0].reshape(-1, 3)
+    assert np.abs(corners - solids.displaced(0, 1, at_rest)).sum(axis=1).min() < 1e-12
+    np.testing.assert_array_equal(solids.displaced(0, None, at_rest), at_rest)
+
+
+def test_a_picture_has_the_faces_that_are_seen_and_the_same_scale_along_every_axis():
+    ax = axes()
+    assert plotting.blocks(ax, MASONRY) is ax
+    assert len(faces_of(ax).corners) == 6  # three of each box
+    assert (ax.get_xlabel(), ax.get_zlabel()) == ("$x$ [m]", "$z$ [m]")
+    limits = [getattr(ax, f"get_{name}lim")() for name in "xyz"]
+    aspect = ax._box_aspect / np.ptp(limits, axis=1)
+    assert aspect.max() == pytest.approx(aspect.min())
+    colours = faces_of(ax).get_facecolor()
+    assert len(np.unique(colours.round(6), axis=0)) == 6  # lit by their direction, and tinted by their block
+
+
+@pytest.mark.parametrize(("azimuth", "last"), [(35.0, 0), (-145.0, 1)])
+def test_the_nearer_of_two_blocks_hides_the_other(azimuth, last):
+    assert Solids(MASONRY, np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0)[-1] == last
+
+
+def test_a_low_block_before_a_high_one_is_drawn_later_though_its_centroid_is_farther():
+    high = mr.Polyhedron.box((1, 1, 9), (-0.5, 0, 4.5))
+    low = mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5))
+    solids = Solids(mr.Masonry((GROUND, low, high), xi=0), np.zeros(1), REST[None], camera=(60.0, 0.0))
+    assert (solids.rests @ solids.eye)[0] < (solids.rests @ solids.eye)[1]
+    assert solids.order(0).tolist() == [1, 0]
+
+
+def test_what_has_sunk_below_the_ground_is_left_out_and_fixed_blocks_are_grey():
+    ax = axes()
+    plotting.blocks(ax, MASONRY, moved(place=(0.0, 0.0, -3.0)))
+    assert len(faces_of(ax).corners) == 3
+    pier = mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), fixed=True)
+    plotting.blocks(ax := axes(), mr.Masonry((GROUND, pier, PAIR[1]), xi=0))
+    red, green, blue, _ = faces_of(ax).get_facecolor()[-1]
+    assert red == green == blue
+
+
+def test_a_response_is_drawn_as_it_ended_and_moves(tmp_path):
+    tie = mr.Tie(at=(-0.25, 0, 1.8), stiffness=1e4, block=1, length=0.8)
+    masonry = mr.Masonry.box((0.5, 0.5, 2.0), k_n=1e8)
+    case = mr.MasonryCase(masonry, 0.05, velocity=[(0.2, 0.2, 0, 0.6, 1, 0.5)], effects=(tie,))
+    response = mr.solve_explicit(case, output_step=1e-2)
+    plotting.blocks(ax := axes(), response)
+    plotting.blocks(same := axes(), masonry, response.pose[-1])
+    np.testing.assert_allclose(np.concatenate(faces_of(ax).corners), np.concatenate(faces_of(same).corners))
+    solids = Solids.of(response)
+    figure, update = animation.scene(solids, [], case)
+    before = np.concatenate(faces_of(figure.axes[0]).corners)
+    update(len(response.t) - 1)
+    assert np.abs(np.concatenate(faces_of(figure.axes[0]).corners) - before).max() > 0.01
+    (line,) = figure.axes[0].lines
+    np.testing.assert_allclose(np.transpose(line.get_data_3d())[1], (-1.05, 0, 1.8))
+    assert plotting.animate(response, tmp_path / "rock.gif", dpi=20, fps=20, camera=(30.0, 60.0)).exists()
+    halfway = solids.at(np.array([0.005]))
+    assert np.linalg.norm(halfway.poses[0, 0, 3:]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (lambda: plotting.blocks(Figure().subplots(), MASONRY), "ax has two dimensions, and the masonry is in space"),
+        (lambda: plotting.blocks(axes(), MASONRY, [[0.0] * 3] * 2), r"pose has the shape \(2, 3\); \(2, 7\) is needed"),
+        (lambda: plotting.blocks(axes(), MASONRY, camera=(91.0, 0.0)), "elevation of the camera = 91 degrees"),
+        (lambda: plotting.blocks(axes(), MASONRY, camera=(1.0,)), r"camera has the shape \(1,\)"),
+    ],
+)
+def test_what_cannot_be_drawn(call, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        call()
+
+
+def test_what_takes_the_plane_alone_says_so(one_sided, e, tmp_path):
+    response = mr.solve_explicit(mr.MasonryCase(mr.Masonry.box((0.5, 0.5, 2.0), k_n=1e8), 0.01))
+    with pytest.raises(ValueError, match="Bodies takes blocks in the plane"):
+        plotting.bodies.Bodies.of(response)
+    with pytest.raises(AttributeError, match="no theta"):
+        plotting.rotation(Figure().subplots(), [response])
+    wall = mr.solve_analytical(one_sided, e)
+    with pytest.raises(ValueError, match="blocks takes masonry or a response of it"):
+        plotting.blocks(axes(), wall)
+    with pytest.raises(ValueError, match=r"camera = .* is for masonry in space"):
+        plotting.animate(wall, tmp_path / "a.gif", camera=(10.0, 10.0))
+
+
+def test_a_block_that_has_flown_far_does_not_shrink_the_picture():
+    solids = Solids(MASONRY, np.zeros(1), moved(place=(500.0, 0.0, 2.0))[None])
+    low, high = solids.extent()
+    np.testing.assert_allclose(low, [-1.0, -0.5, 0.0], atol=1e-12)
+    np.testing.assert_allclose(high, [3.0, 0.5, 3.0], atol=1e-12)
+
+
+def test_a_moving_picture_fills_its_figure():
+    case = mr.MasonryCase(MASONRY, 1.0)
+    figure, _ = animation.scene(Solids(MASONRY, np.zeros(1), REST[None]), [], case)
+    ax = figure.axes[0]
+    width, height = np.ptp(np.concatenate([path.vertices for c in ax.collections for path in c.get_paths()]), axis=0)
+    drawn = np.ptp(ax.transData.transform([(0, 0), (width, height)]), axis=0) / figure.bbox.size
+    assert 0.6 < max(drawn / (0.84, 0.74)) < 1.01
