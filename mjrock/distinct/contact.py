@@ -120,14 +120,15 @@ def add_force(body: Row, rx: float, rz: float, fx: float, fz: float) -> None:
 
 @inlined
 def sprung_friction(line: Row, push: float, slip: float, h: float) -> float:
-    """Force of the shear spring with its slider and dashpot [N]. The last velocity has stretched the spring."""
+    """Force of the shear spring with its slider and dashpot [N]. The last velocity has stretched the spring.
+
+    The slider shortens the spring to what friction can hold, and then spring and dashpot together pull no more than
+    that. A dashpot that alone exceeds it stretches no spring, which would put energy in.
+    """
     most = line.friction * push
-    stretched = line.grip + h * slip
-    drag: float = -line.k_s * stretched - line.c_s * slip
-    if abs(drag) > most:
-        drag = math.copysign(most, drag)
-        stretched = -drag / line.k_s
-    line.grip = stretched
+    longest = most / line.k_s
+    line.grip = min(max(line.grip + h * slip, -longest), longest)
+    drag: float = min(max(-line.k_s * line.grip - line.c_s * slip, -most), most)
     return drag
 
 

@@ -238,3 +238,11 @@ def test_bad_options():
         mr.solve_explicit(mr.MasonryCase(CUBE, 0.1), ledger=3)
     with pytest.raises(ValueError, match="k_s = 1 N/m3 is outside the valid range"):
         mr.Masonry(CUBE.blocks, k_s=1.0)
+
+
+def test_the_shear_dashpot_of_a_landing_block_stretches_no_spring():
+    masonry = mr.Masonry([GROUND, box(-0.3, 0.3, 0, 0.5)], k_n=1e9, k_s=1e8, friction=0.5, frequency=200.0, xi=0.5)
+    run = solve(masonry, 0.2, velocity=[(1.0, 0.3, 0.2)], ledger=True)
+    rubbed = np.diff(run.ledger.friction)
+    assert rubbed.max() > 1.0
+    assert rubbed.min() > -1e-9

@@ -130,8 +130,16 @@ def carried(point: Row, supports: Supports, way: Vector) -> float:
 
 
 @inlined
+def shortened(vector: Vector, most: float) -> Vector:
+    """A vector that is no longer than a length."""
+    square = dot(vector, vector)
+    return vector if square <= most * most else scaled(most / math.sqrt(square), vector)
+
+
+@inlined
 def sprung_friction(bodies: Rows, point: Row, normal: Vector, slip: Vector, limits: tuple[float, float]) -> Vector:
-    """Force of the shear spring with its slider and dashpot [N]. The last velocity has stretched the spring.
+    """Force of the shear spring with its slider and dashpot [N], as in the plane. The last velocity has stretched the
+    spring.
 
     Limits are the force that presses, and the length of the last step.
     """
@@ -141,11 +149,8 @@ def sprung_friction(bodies: Rows, point: Row, normal: Vector, slip: Vector, limi
         grip = in_world(bodies[point.face], grip)
     grip = plus(grip, scaled(h, slip))
     grip = minus(grip, scaled(dot(grip, normal), normal))
-    drag = minus(scaled(-point.k_s, grip), scaled(point.c_s, slip))
-    square = dot(drag, drag)
-    if square > most * most:
-        drag = scaled(most / math.sqrt(square), drag)
-        grip = scaled(-1 / point.k_s, drag)
+    grip = shortened(grip, most / point.k_s)
+    drag = shortened(minus(scaled(-point.k_s, grip), scaled(point.c_s, slip)), most)
     if point.face >= 0:
         grip = in_body(bodies[point.face], grip)
     keep_grip(point, grip)
