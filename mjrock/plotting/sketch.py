@@ -131,15 +131,17 @@ def _effects(case: Case, *, arguments: bool) -> list[tuple[tuple[float, float], 
 
 
 def _elevation(ax: Axes, case: Case) -> None:
-    """The wall from outside, with its openings."""
+    """The wall from outside, with its openings. Those of one sill are drawn at equal distances."""
     wall = case.block
     height, length = 2 * wall.h, wall.length
     ax.add_patch(Rectangle((-0.5 * length, 0.0), length, height, facecolor=STONE, edgecolor="0.15"))
-    for opening in wall.openings:
-        place = -0.5 * opening.width, opening.sill
+    sills = [opening.sill for opening in wall.openings]
+    for i, opening in enumerate(wall.openings):
+        middle = length * ((sills[:i].count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5)
+        place = middle - 0.5 * opening.width, opening.sill
         ax.add_patch(Rectangle(place, opening.width, opening.height, facecolor="white", edgecolor="0.35"))
         size = f"{opening.width:.3g} x\n{opening.height:.3g}\nsill {opening.sill:.3g}"
-        ax.text(0.0, opening.sill + 0.5 * opening.height, size, fontsize=6, ha="center", va="center")
+        ax.text(middle, opening.sill + 0.5 * opening.height, size, fontsize=6, ha="center", va="center")
     below = -0.05 * height
     _across(ax, (-0.5 * length, below), (0.5 * length, below), f"{length:g} m")
     ax.plot([-0.62 * length, 0.62 * length], [0.0, 0.0], color="0.15", linewidth=1.0)

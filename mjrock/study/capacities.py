@@ -19,8 +19,8 @@ from .fragility import FEWEST_GROUPS, Fragility, labels_of
 def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
     """Whether each run of a campaign lost its wall, for `fit_fragility`; shape (n,).
 
-    A wall is lost if it overturned. It is lost too if the time ended after it had leaned by alpha or more: ties alone
-    held it, and a wall that leans on ties that yield does not survive. A wall that still rocks below alpha stands.
+    A wall is lost if it overturned. One with ties is lost too if the time ended after it had leaned by alpha or more:
+    ties alone held it, and a wall that leans on ties that yield does not survive. A wall that still rocks stands.
 
     Args:
         rows: rows of walls, as `Store.rows` gives them.
@@ -37,7 +37,8 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
         outcome, peak = row.get("outcome"), row.get("peak_over_alpha")
         if outcome is None or peak is None:
             raise ValueError(f"rows[{i}] has outcome = {outcome!r} and peak_over_alpha = {peak!r}: no result of a wall")
-        leans = outcome == Outcome.TIME_ENDED.value and peak >= 1.0
+        tied = any(name.startswith("tie_") and value is not None for name, value in row.items())
+        leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
         found.append(outcome == Outcome.OVERTURNED.value or leans)
     return np.array(found, dtype=bool)
 

@@ -308,3 +308,13 @@ def test_an_arch_in_the_plane_and_in_space_with_rigid_friction():
     run, spatial = (solve(masonry, 0.4, mr.GroundMotion.sine(4.0, 0.6)) for masonry in (plane, space))
     assert run.peak.max() > 5e-3
     assert np.abs(angles(spatial) - run.theta).max() < 1e-3 * run.peak.max()
+
+
+def test_a_block_that_has_turned_over_falls_freely():
+    """Its points would meet their face again from behind, after a whole turn below the ground."""
+    block = mr.Masonry.box((0.3, 0.3, 1.0), k_n=1e9, friction=0.7, xi=0.05)
+    case = mr.MasonryCase(block, 3.0, mr.GroundMotion(np.full(5, -6.0), 1.0))
+    response = mr.solve_explicit(case, ledger=True)
+    assert list(response.fallen) == ["block"]
+    assert np.abs(response.velocity[..., :3]).max() < 3.0 * mr.GRAVITY
+    assert np.abs(response.energy_residual).max() < 1e-4 * response.energy.max()

@@ -17,8 +17,9 @@ CAPACITIES = 0.8 * np.exp(0.3 * RNG.normal(size=40))
 
 def test_a_wall_that_leans_on_its_ties_is_lost():
     rows = [("overturned", math.inf), ("at rest", 0.4), ("time ended", 1.4), ("time ended", 0.4), ("at rest", 1.2)]
-    found = mr.lost([{"outcome": outcome, "peak_over_alpha": peak} for outcome, peak in rows])
-    assert found.tolist() == [True, False, True, False, False]
+    untied = [{"outcome": outcome, "peak_over_alpha": peak} for outcome, peak in rows]
+    assert mr.lost([row | {"tie_0_force_N": 2e4} for row in untied]).tolist() == [True, False, True, False, False]
+    assert mr.lost([row | {"tie_0_force_N": None} for row in untied]).tolist() == [True, False, False, False, False]
     with pytest.raises(ValueError, match=r"rows\[0\] has outcome = None and peak_over_alpha = None: no result"):
         mr.lost([{"status": "failed", "outcome": None}])
     with pytest.raises(TypeError, match="rows = 3 of type int are no rows of a campaign"):

@@ -5,7 +5,8 @@ spring vector of stiffness k_s, kept in the axes of the face, slips where its fo
 point sticks rigidly, see `friction`.
 
 A point beyond the outline of its face has moved past an edge of it. The nearest place of the outline then presses on
-the face of the block that carries the point, and past the outline of that face too nothing is left of the contact.
+the face of the block that carries the point, and past the outline of that face too nothing is left of the contact. Nor
+is anything left of it once the two faces are turned away from each other.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ from .system import (
 )
 from .turning import in_body, in_world, swung
 
+TURNED_OVER = 2 * OPEN
+"""Gap of a point whose block has turned over [m]. The contact is gone for good."""
 ROUNDS = 3
 """Rounds over the edges of a face in the search for the nearest place of its outline. One is enough for a rectangle."""
 
@@ -71,6 +74,8 @@ def meeting(system: System, point: Row) -> Meeting:
     elif point.support >= 0:
         across = minus(across, displaced_support(system.supports, point.support))
     gap = dot(normal, across)
+    if gap < 0 and dot(normal, in_world(body, normal_of(point))) < 0:
+        return Meeting(TURNED_OVER, normal, arm, face_arm)
     if gap < 0 and dot(across, across) - gap * gap > point.margin:
         return at_the_end(system, point, across, Meeting(gap, normal, arm, face_arm))
     return Meeting(gap, normal, arm, face_arm)
@@ -174,7 +179,9 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
     for p in range(len(lines)):
         point = lines[p]
         meet = meeting(system, point)
-        if meet.gap >= 0:
+        if meet.gap == TURNED_OVER:
+            point.k = point.c = point.friction = 0.0
+        elif meet.gap >= 0:
             point.widest = max(point.widest, meet.gap)
             if point.push == 0 and point.pressed == 0:  # nor was there friction
                 keep_grip(point, (0.0, 0.0, 0.0))

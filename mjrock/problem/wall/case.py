@@ -208,10 +208,19 @@ class Case:
         moment = self.restoring.outer
         if not self.pulls:
             return max(moment.alpha, 0.0)
-        phi = np.linspace(0.0, ON_ITS_FACE, 2001)[1:]
-        held = moment.at(phi) + sum(pull.moment(phi) for pull in self.pulls)
-        back = np.flatnonzero(held > 0)
-        return float(phi[back[-1]]) if back.size else 0.0
+
+        def held(phi: Array) -> Flags:
+            return np.asarray(moment.at(phi) + sum(pull.moment(phi) for pull in self.pulls) > 0)
+
+        phi = np.linspace(0.0, ON_ITS_FACE, 2001)
+        back = 1 + np.flatnonzero(held(phi[1:]))
+        if not back.size or back[-1] == len(phi) - 1:
+            return float(phi[back[-1]]) if back.size else 0.0
+        low, high = (float(phi[back[-1] + i]) for i in (0, 1))
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if held(np.array([middle]))[0] else (low, middle)
+        return low
 
     def returns_from(self, theta: Array) -> Flags:
         """Whether the wall may still come back from rotations of either sign [rad], shape (n,)."""
