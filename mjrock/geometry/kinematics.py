@@ -2,8 +2,8 @@
 
 A contact is a point of one body and a face of another body or of the ground. Everything about it at a pose follows from
 where the two meet: the gap, the normal of the face, and the arms from the two centroids to the point. Rates follow from
-the velocity of the point over the body of the face, in which the face is at rest. This package is the only place where
-these formulas stand, apart from the independent solvers in `mjrock.reference`.
+the velocity of the point over the body of the face, in which the face is at rest. The independent solvers in
+`mjrock.reference` and `mjrock.distinct` have formulas of their own.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers
 from .joint_motion import AT_ONCE, Followed
-from .joints import LOST
+from .joints import LOST, joint_numbers
 
 
 def joint_motion_in_space(
@@ -31,8 +31,7 @@ def joint_motion_in_space(
         pose: of the steps or samples, shape (steps, 7 n).
     """
     joints = masonry.joints
-    number = {joint.name: i for i, joint in enumerate(joints)}
-    of, widths = np.array([number[name] for name in group]), np.array([joint.width for joint in joints])
+    of, widths = joint_numbers(masonry, group), np.array([joint.width for joint in joints])
     opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
     lost, faces = np.zeros((len(pose), len(joints)), dtype=bool), faces_of_joints(masonry)
     frames = frames_of(start, places.freedom)
