@@ -75,6 +75,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/panel.py --out docs/figures
 	$(BIN)/python scripts/studies/solvers_of_masonry.py --out docs/figures
 	$(BIN)/python scripts/studies/heap.py --out docs/figures
+	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py

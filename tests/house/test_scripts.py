@@ -40,6 +40,7 @@ WRITES = {
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
+    "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
@@ -96,6 +97,7 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "sliding",
     "solvers_of_masonry",
     "four_solvers",
+    "columns_in_space",
 }
 """Scripts that take a while even with --quick."""
 
