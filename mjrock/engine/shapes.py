@@ -39,9 +39,12 @@ def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
 def world(scene: Scene) -> Iterator[str]:
     """The faces of the ground, and each body with its faces and its contact points."""
     faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
+    paved: set[float] = set()
     for name in sorted(faces, key=faces.__getitem__):
         if scene.face_body[faces[name]] == GROUND:
-            yield from _ground(scene, name)
+            height = float(scene.face[faces[name]][-1])
+            yield from _ground(scene, name, hidden=scene.freedom != PLANE and height in paved)
+            paved.add(height)
     shades = tints(scene)
     for j in range(len(scene.names)):
         yield from _body(scene, j, faces, shades[j])
@@ -120,15 +123,17 @@ def sites(scene: Scene, body: int) -> Iterator[str]:
         yield tag("site", name="origin")
 
 
-def _ground(scene: Scene, name: str) -> Iterator[str]:
+def _ground(scene: Scene, name: str, *, hidden: bool) -> Iterator[str]:
     """A face of the ground as a plane. Level ground is seen as paving, any other face of the plane as a slab behind it.
 
-    In space no other face is seen."""
+    In space no other face is seen, and of several faces at one height, which would flicker, only the first.
+    """
     i = scene.face_names.index(name)
     face, normal, radius = scene.face[i], scene.normal[i], scene.radius
     at = in_space(face - radius * normal, radius)
+    layer = {"group": "3"} if hidden else {}
     if normal[-1] == 1:
-        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
+        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving", **layer)
     elif scene.freedom == PLANE:
         yield from _slab(scene, name, i, at)
     else:
