@@ -79,6 +79,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/joint_stiffness.py --out docs/figures
 	$(BIN)/python scripts/studies/two_storeys.py --out docs/figures
 	$(BIN)/python scripts/studies/heap.py --out docs/figures
+	$(BIN)/python scripts/studies/columns_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/four_solvers.py --out docs/figures
 	$(BIN)/python scripts/studies/facade_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/corner_block.py --out docs/figures

@@ -7,6 +7,7 @@ import warnings
 
 import numpy as np
 
+from ..geometry.frames import PLANE
 from ..problem.masonry.masonry import Masonry
 from ..scene.scene import Scene
 
@@ -19,6 +20,12 @@ or strikes, and where much does. Columns of 16 and 64 blocks take 1.2e-6 and 0.7
 (`scripts/studies/solvers_of_masonry.py`)."""
 SPRUNG, RIGID = 50e-9, 110e-9
 """Time of an explicit step a line, with shear springs and with rigid friction [s], by the same script."""
+WEAK_IN_SPACE, STRONG_IN_SPACE = 1.5e-6, 140e-6
+"""`WEAK` and `STRONG` for points in space [s2]. A column of 12 drums takes 2e-6 to 3e-6, a facade with return walls
+1e-5 under a weak sine and 1.4e-4 under a strong one (`scripts/studies/columns_in_space.py`)."""
+SPRUNG_IN_SPACE, RIGID_IN_SPACE = 120e-9, 800e-9
+"""`SPRUNG` and `RIGID` for a point in space [s]. The same script finds 65e-9 to 280e-9 and 300e-9 to 1600e-9, with how
+busy the machine is."""
 SHARE = 0.4
 """Explicit step over the longest stable one that `solve_explicit` takes [-]."""
 WORTH_SAYING = 3.0
@@ -33,13 +40,15 @@ def explicit_seconds(scene: Scene, masonry: Masonry) -> float:
     omega = scene.highest_frequency * math.sqrt(stiffer)
     xi = 0.5 * omega * float((scene.c / scene.k).max())
     step = SHARE * 2 / omega * (math.sqrt(1 + xi**2) - xi)
-    return lines * (SPRUNG if sprung else RIGID) / step
+    of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if masonry.in_space else (SPRUNG, RIGID)
+    return lines * (of_springs if sprung else of_friction) / step
 
 
 def fitted_seconds(scene: Scene) -> tuple[float, float]:
     """Time of a second by steps that fit the motion [s], where little slides or strikes and where much does."""
     unit = len(scene.k) * scene.highest_frequency
-    return WEAK * unit, STRONG * unit
+    weak, strong = (WEAK, STRONG) if scene.freedom == PLANE else (WEAK_IN_SPACE, STRONG_IN_SPACE)
+    return weak * unit, strong * unit
 
 
 def warn_if_slow(scene: Scene, masonry: Masonry) -> None:

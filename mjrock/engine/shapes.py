@@ -18,6 +18,16 @@ BALL = (("x", "slide", "1 0 0"), ("y", "slide", "0 1 0"), ("z", "slide", "0 0 1"
 HINGE = (("x", "slide", "1 0 0"), ("z", "slide", "0 0 1"), ("theta", "hinge", "0 1 0"))
 """The joints of a body of the plane."""
 
+TINTS = (
+    (0.70, 0.33, 0.23, 1.0),
+    (0.79, 0.47, 0.33, 1.0),
+    (0.60, 0.27, 0.19, 1.0),
+    (0.74, 0.40, 0.25, 1.0),
+    (0.65, 0.36, 0.29, 1.0),
+    (0.83, 0.53, 0.40, 1.0),
+)
+"""Colours of the blocks of masonry in space, of which MuJoCo draws no edges."""
+
 
 def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
     """A vector of the plane or of space in MuJoCo's world, raised by a length."""
@@ -29,14 +39,35 @@ def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
 def world(scene: Scene) -> Iterator[str]:
     """The faces of the ground, and each body with its faces and its contact points."""
     faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
+    paved: set[float] = set()
     for name in sorted(faces, key=faces.__getitem__):
         if scene.face_body[faces[name]] == GROUND:
-            yield from _ground(scene, name)
+            height = float(scene.face[faces[name]][-1])
+            yield from _ground(scene, name, hidden=scene.freedom != PLANE and height in paved)
+            paved.add(height)
+    shades = tints(scene)
     for j in range(len(scene.names)):
-        yield from _body(scene, j, faces)
+        yield from _body(scene, j, faces, shades[j])
 
 
-def _body(scene: Scene, j: int, faces: dict[str, int]) -> Iterator[str]:
+def tints(scene: Scene) -> list[dict[str, object]]:
+    """Colours of the bodies: in space, where there are several, another one than those of the blocks they touch."""
+    if scene.freedom == PLANE or len(scene.names) == 1:
+        return [{}] * len(scene.names)
+    touching: list[set[int]] = [set() for _ in scene.names]
+    for body, face in zip(scene.point_body.tolist(), scene.face_body.tolist(), strict=True):
+        if face != GROUND:
+            touching[body].add(face)
+            touching[face].add(body)
+    chosen: list[int] = []
+    for j, near in enumerate(touching):
+        taken = {chosen[i] for i in near if i < j}
+        order = [(j + k) % len(TINTS) for k in range(len(TINTS))]
+        chosen.append(next((tint for tint in order if tint not in taken), order[0]))
+    return [{"rgba": TINTS[tint]} for tint in chosen]
+
+
+def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) -> Iterator[str]:
     """A body with its joints, its shape, its faces by their first points, and its contact points."""
     name, radius, outline = scene.names[j], scene.radius, scene.outlines[j]
     prefix = "" if len(scene.names) == 1 else f"{name}_"
@@ -47,9 +78,9 @@ def _body(scene: Scene, j: int, faces: dict[str, int]) -> Iterator[str]:
     if scene.freedom != PLANE:
         yield "    " + tag("joint", name=f"{prefix}turn", type="ball")
     if _is_box(outline):
-        yield "    " + tag("geom", name=name, type="box", size=_half(scene, outline), material="brick")
+        yield "    " + tag("geom", name=name, type="box", size=_half(scene, outline), material="brick", **tint)
     else:
-        yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick")
+        yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick", **tint)
     for face in (face for face, i in faces.items() if scene.face_body[i] == j):
         yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face]))
     for i in np.flatnonzero(scene.point_body == j):
@@ -92,15 +123,17 @@ def sites(scene: Scene, body: int) -> Iterator[str]:
         yield tag("site", name="origin")
 
 
-def _ground(scene: Scene, name: str) -> Iterator[str]:
+def _ground(scene: Scene, name: str, *, hidden: bool) -> Iterator[str]:
     """A face of the ground as a plane. Level ground is seen as paving, any other face of the plane as a slab behind it.
 
-    In space no other face is seen."""
+    In space no other face is seen, and of several faces at one height, which would flicker, only the first.
+    """
     i = scene.face_names.index(name)
     face, normal, radius = scene.face[i], scene.normal[i], scene.radius
     at = in_space(face - radius * normal, radius)
+    layer = {"group": "3"} if hidden else {}
     if normal[-1] == 1:
-        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving")
+        yield "  " + tag("geom", name=name, type="plane", size=(0, 0, 1), pos=at, material="paving", **layer)
     elif scene.freedom == PLANE:
         yield from _slab(scene, name, i, at)
     else:

@@ -13,6 +13,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from scripts.shared import cli
+from scripts.shared.models_in_space import IN_SPACE
 from scripts.shared.paper import FIGURE_3, K_N, TABLE_2
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -281,7 +282,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     options = cli.parser(__doc__, "models")
     options.set_defaults(out=MODELS)
     args = options.parse_args(argv)
-    for model in tqdm(ALL[:1] if args.quick else (*ALL, *MASONRY), desc="models", disable=None):
+    for model in tqdm(ALL[:1] if args.quick else (*ALL, *MASONRY, *IN_SPACE), desc="models", disable=None):
         out = cli.folder(args.out / model.name)
         for name, text in model.files().items():
             cli.write_text(out / name, text)

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.estimate import RIGID, SHARE, SPRUNG, explicit_seconds, fitted_seconds, warn_if_slow
+from mjrock.engine.estimate import (
+    RIGID,
+    RIGID_IN_SPACE,
+    SHARE,
+    SPRUNG,
+    SPRUNG_IN_SPACE,
+    explicit_seconds,
+    fitted_seconds,
+    warn_if_slow,
+)
 from scripts.measure.masonry_precision import PULSE, column
 
 ARCH = mr.Masonry.arch(5.0, 0.75, voussoirs=12)
@@ -59,3 +68,18 @@ def test_the_estimate_grows_with_dashpots():
     times = [explicit_seconds(mr.masonry_scene(mr.MasonryCase(one, 0.1)), one) for one in (weak, strong)]
     assert times[1] > 2 * times[0]
     assert np.isfinite(times).all()
+
+
+@pytest.mark.parametrize("k_s", [None, 4e8])
+def test_a_facade_in_space_is_sent_to_explicit_steps_and_a_column_is_not(k_s):
+    facade = mr.Masonry.facade(1.5, 0.75, 0.5, (0.5, 0.25), k_n=1e9, k_s=k_s, frequency=100.0)
+    case = mr.MasonryCase(facade, 0.001)
+    scene, run = mr.masonry_scene(case), mr.solve_explicit(case)
+    with pytest.warns(UserWarning, match="explicit steps would take"):
+        warn_if_slow(scene, facade)
+    each = explicit_seconds(scene, facade) / len(scene.k) * SHARE * run.stats["stable_timestep"]
+    assert each == pytest.approx(RIGID_IN_SPACE if k_s is None else SPRUNG_IN_SPACE, rel=0.3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        short = mr.Masonry.column(0.6, 3.0, 3, k_n=1e9)
+        warn_if_slow(mr.masonry_scene(mr.MasonryCase(short, 0.001)), short)

@@ -270,3 +270,12 @@ def test_a_fallen_block_is_named_and_ends_the_run():
     assert list(answer.fallen) == ["block"]
     assert answer.t[-1] < 2.0
     assert answer.tilt[-1, 0] == pytest.approx(math.pi / 2, abs=0.02)
+
+
+@slow
+def test_a_step_too_long_for_masonry_that_falls_apart_is_refused_by_name():
+    walls = mr.Masonry.facade(1.5, 0.75, 0.5, (0.5, 0.25), k_n=1e9, frequency=100.0)
+    motion = mr.GroundMotion.sine(9.0, 0.3)
+    refused = pytest.raises(mr.SimulationError, match="joints that slide are unstable at a fixed step beyond")
+    with pytest.warns(UserWarning, match="does not resolve"), refused:
+        mr.simulate(mr.MasonryCase(walls, 0.3, motion=motion), timestep=4e-3)

@@ -13,8 +13,8 @@ from scripts.models import make_models
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
-EVERY_DAY = {"figure3_one_sided"}
-"""The model that the everyday tests run. The long tests run the others."""
+EVERY_DAY = {"figure3_one_sided", "corner_block"}
+"""The models that the everyday tests run. The long tests run the others."""
 
 
 def models(these):
@@ -27,7 +27,9 @@ def reference(folder):
     return rows[0], np.array(rows[1:], dtype=float)
 
 
-@pytest.mark.parametrize("model", models([*make_models.ALL, *make_models.MASONRY]), ids=lambda m: m.name)
+@pytest.mark.parametrize(
+    "model", models([*make_models.ALL, *make_models.MASONRY, *make_models.IN_SPACE]), ids=lambda m: m.name
+)
 def test_a_model_is_what_the_script_makes(model):
     folder = make_models.MODELS / model.name
     made = model.files()
@@ -130,7 +132,35 @@ def test_stock_mujoco_repeats_masonry_and_follows_its_reference(model):
     assert np.abs(stepped(model, every + 1, cold=True)[1][-1] - exact[1]).max() > 0.01 * np.abs(exact).max()
 
 
+@pytest.mark.parametrize("model", models(make_models.IN_SPACE), ids=lambda m: m.name)
+def test_stock_mujoco_repeats_masonry_in_space(model):
+    """Every step of the text is that of `simulate`, and its step costs little accuracy."""
+    engine = mujoco.MjModel.from_xml_path(str(make_models.MODELS / model.name / "scene.xml"))
+    data = mujoco.MjData(engine)
+    mujoco.mj_resetDataKeyframe(engine, data, engine.key("release").id)
+    run = model.run(model.timestep)
+    pose = np.empty((len(run.t), engine.nq))
+    for own in pose:
+        own[:] = data.qpos
+        mujoco.mj_step(engine, data)
+    np.testing.assert_allclose(pose, run.pose.reshape(len(pose), -1), rtol=0, atol=1e-9)
+    _, stored = reference(make_models.MODELS / model.name)
+    every = round((stored[1, 0] - stored[0, 0]) / model.timestep)
+    places = pose.reshape(len(pose), -1, 7)[::every, :, :3].reshape(len(stored), -1)
+    assert np.abs(places - stored[:, 1:-1]).max() < 2e-2 * np.abs(stored[:, 1:-1]).max()
+    assert np.abs(stored[:, 1:-1]).max() > 5e-3
+
+
+def test_neighbours_have_other_tints():
+    engine = mujoco.MjModel.from_xml_path(str(make_models.MODELS / "facade_return_walls" / "scene.xml"))
+    masonry = next(m for m in make_models.IN_SPACE if m.name == "facade_return_walls").case.masonry
+    pairs = [joint.name.split("|") for joint in masonry.joints]
+    tints = {masonry.names[i]: tuple(engine.geom(masonry.names[i]).rgba) for i in masonry.free}
+    assert len(set(tints.values())) > 2
+    assert all(tints[a] != tints[b] for a, b in pairs if a in tints and b in tints)
+
+
 def test_the_folder_holds_nothing_else():
     assert {p.name for p in make_models.MODELS.iterdir() if p.is_dir()} == {
-        m.name for m in (*make_models.ALL, *make_models.MASONRY)
+        m.name for m in (*make_models.ALL, *make_models.MASONRY, *make_models.IN_SPACE)
     }

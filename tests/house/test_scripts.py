@@ -45,6 +45,7 @@ WRITES = {
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
     | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
+    "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
     "solvers_of_masonry": {f"solvers_of_masonry.{ending}" for ending in ("png", "csv", "txt")},
     "four_solvers": {"four_solvers.csv", "four_solvers.txt", "shear_stiffness.csv", "shear_stiffness.png"},
     "facade_in_space": {f"facade_in_space.{ending}" for ending in ("png", "gif", "csv", "txt")},
@@ -113,6 +114,7 @@ LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "val
     "many_records",
     "joint_stiffness",
     "two_storeys",
+    "columns_in_space",
 }
 """Scripts that take a while even with --quick."""
 
