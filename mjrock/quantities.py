@@ -116,7 +116,7 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
 
 def is_iterable(values: object) -> bool:
     """Whether values can be gone through one by one. A text is one value, and so is an array without dimensions."""
-    if isinstance(values, str | bytes) or (isinstance(values, np.ndarray) and values.ndim == 0):
+    if isinstance(values, str | bytes) or (isinstance(values, np.ndarray | np.generic) and values.ndim == 0):
         return False
     return isinstance(values, Iterable) or hasattr(type(values), "__getitem__")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ...quantities import keep, require_whole, require_within
-from .in_space import LATER, Point, height_of, point_or_none
+from .in_space import LATER, Point, height_of, point_or_none, written
 from .limits import BLOCKS
 
 
@@ -35,6 +35,8 @@ class Damper:
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
     anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
+
+    __repr__ = written
 
     def __post_init__(self) -> None:
         at, anchor = point_or_none("at of the damper", self.at), point_or_none("anchor of the damper", self.anchor)

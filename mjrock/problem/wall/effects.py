@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from ...quantities import keep, require_real, require_whole, require_within
 from .damper import Damper
-from .in_space import LATER, Point, direction_or_none, height_of, point_or_none
+from .in_space import LATER, Point, direction_or_none, height_of, point_or_none, written
 from .limits import BLOCKS, HIGHEST
 
 
@@ -53,6 +53,8 @@ class Tie:
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
     anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
+
+    __repr__ = written
 
     def __post_init__(self) -> None:
         keep(self, at=point_or_none("at of the tie", self.at), anchor=point_or_none("anchor of the tie", self.anchor))
@@ -126,6 +128,8 @@ class Thrust:
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
     direction: Point | None = field(default=None, kw_only=True, metadata=LATER)
 
+    __repr__ = written
+
     def __post_init__(self) -> None:
         direction = direction_or_none("direction of the thrust", self.direction)
         keep(self, at=point_or_none("at of the thrust", self.at), direction=direction)
@@ -157,6 +161,8 @@ class Load:
     offset: float = 0.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+
+    __repr__ = written
 
     def __post_init__(self) -> None:
         keep(self, at=point_or_none("at of the load", self.at))
@@ -190,6 +196,8 @@ class AddedMass:
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
 
+    __repr__ = written
+
     def __post_init__(self) -> None:
         keep(self, at=point_or_none("at of the added mass", self.at))
         keep(
@@ -213,6 +221,8 @@ class SideStop:
     """
 
     top: float
+
+    __repr__ = written
 
     def __post_init__(self) -> None:
         keep(self, top=require_within("top of the side stop", self.top, 0.01, HIGHEST, "m"))

@@ -21,6 +21,13 @@ LATER = {"later": True}
 """Metadata of a field that came later. It is given by keyword, and None unless it is set."""
 
 
+def written(effect: Any) -> str:
+    """An effect as it would be written, without what is said in space alone where it is not said."""
+    shown = ((field, getattr(effect, field.name)) for field in fields(effect))
+    said = (f"{field.name}={value!r}" for field, value in shown if not (field.kw_only and value is None))
+    return f"{type(effect).__name__}({', '.join(said)})"
+
+
 def point_or_none(name: str, value: Any) -> Point | None:
     """A point in space as a tuple, or None.
 
