@@ -166,5 +166,8 @@ def _asked(demand: Demand, period: float, damping: float) -> float:
     if isinstance(demand, GroundMotion):
         periods = np.geomspace(min(0.05, period), max(period, SHORTEST), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
-    asked = require_real("demand(T, xi)", demand(period, damping))
+    try:
+        asked = require_real("demand(T, xi)", demand(period, damping))
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"demand = {shown(demand)} gives no displacement for T, xi: {error}") from None
     return require_within("demand(T, xi)", asked, 0.0, 1e3, "m")

@@ -344,7 +344,7 @@ def test_a_call_is_answered_or_refused_by_name(call):
 
 @pytest.mark.slow
 @given(calls())
-@settings(max_examples=10_000, deadline=None, derandomize=False, suppress_health_check=HEALTH)
+@settings(max_examples=10_000, deadline=None, derandomize=True, suppress_health_check=HEALTH)
 def test_ten_thousand_calls(call):
     is_answered(call)
 

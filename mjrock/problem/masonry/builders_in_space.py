@@ -88,7 +88,7 @@ def whole_units(name: str, extent: float, unit: float, most: int) -> int:
         ValueError: unless it is a whole number of them, from 1 to `most`.
     """
     count = require_real(name, extent) / unit
-    if not abs(count - round(count)) <= WHOLE or not 1 <= round(count) <= most:
+    if not 0 < count < most + 1 or not abs(count - round(count)) <= WHOLE or not 1 <= round(count) <= most:
         raise ValueError(
             f"{name} = {extent:g} m is not a whole number of units of {unit:g} m; the valid range is 1 to {most} units"
         )

@@ -64,7 +64,7 @@ def height_of(kind: str, height: float | None, at: Point | None) -> float:
     """
     if at is None:
         return require_within(f"height of the {kind}", height, 0.0, HIGHEST, "m")
-    if height not in (None, at[2]):
+    if height is not None and require_within(f"height of the {kind}", height, -FARTHEST, FARTHEST, "m") != at[2]:
         raise ValueError(f"height of the {kind} = {height} m is given with at = {at} m; leave it out")
     return at[2]
 
