@@ -84,8 +84,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     for points in list(POINTS)[: 1 if args.quick else 2]:
         plane = in_plane(points)
         for name, masonry in (
-            (f"plane, {points} lines", plane),
-            (f"space, {points} x {points} points", in_space(plane)),
+            (f"plane {points} lines", plane),
+            (f"space {points} x {points} points", in_space(plane)),
         ):
             answers[name] = set_rocking(masonry, 0.2 if args.quick else DURATION)
     plotting.save(drawn(answers), out / "law_in_space.png")
