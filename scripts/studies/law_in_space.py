@@ -91,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(drawn(answers), out / "law_in_space.png")
     e = mr.Restitution.from_geometry(WALL).base
     shares = {name: kept(answer) for name, answer in answers.items()}
-    header = ["", *(f"impact {i + 1}" for i in range(IMPACTS))]
+    header = ["base", *(f"impact {i + 1}" for i in range(IMPACTS))]
     rows = [
         [name, *(f"{share:.4f}" for share in values), *[""] * (IMPACTS - len(values))]
         for name, values in shares.items()
