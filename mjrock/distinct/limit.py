@@ -1,13 +1,11 @@
-"""The longest stable step of the explicit scheme.
+"""The longest stable step of a system.
 
-A mode of the frequency omega and the damping ratio xi is stable up to h = (2 / omega) (sqrt(1 + xi^2) - xi), since the
-dashpots take the velocity half a step before the pose. The bound here takes the highest eigenvalues of stiffness and
-of damping with every contact closed, which need not belong to one mode.
+The bound takes the highest eigenvalues of stiffness and of damping with every contact closed, which need not belong to
+one mode.
 """
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -15,11 +13,9 @@ from scipy.sparse import csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
 from ..quantities import Array, Integers
+from ..scene.explicit_step import stable_step
 from .system import Rows, System
 
-SHARE, SHARE_OF_A_WALL = 0.4, 0.02
-"""Step that is taken for masonry, and for a wall, over the longest stable one [-]. A touch inside a step is met up to
-half a step late, which scatters |e| of a wall by some 2 % with 0.1 and by 0.2 % with 0.02."""
 SMALL = 20
 """Number of springs up to which the eigenvalues are those of a full matrix."""
 ALLOWANCE = 1.01
@@ -44,7 +40,7 @@ def longest_step(system: System) -> float:
     shear = [np.where(sprung, lines[name], 0.0) for name in ("k_s", "c_s")]
     bodies = system.bodies
     ease = np.column_stack([1 / bodies["mass"], 1 / bodies["mass"], bodies["ease"]]).ravel()
-    return stable_step(
+    return step_on_springs(
         rates,
         np.concatenate([lines["k"], shear[0], ties["k"], dampers["k"]]),
         np.concatenate([lines["c"], shear[1], ties["c"], dampers["c"]]),
@@ -52,13 +48,12 @@ def longest_step(system: System) -> float:
     )
 
 
-def stable_step(rates: csr_array, k: Array, c: Array, root: Any) -> float:
+def step_on_springs(rates: csr_array, k: Array, c: Array, root: Any) -> float:
     """The longest stable step [s] on springs k and dashpots c, whose lengths have these rates.
 
     The masses come in as a matrix whose product with its transpose is their inverse.
     """
-    stiffness, damping = (highest(rates, weights, root) for weights in (k, c))
-    return math.inf if stiffness == 0 else (math.sqrt(damping**2 + 4 * stiffness) - damping) / stiffness
+    return stable_step(highest(rates, k, root), highest(rates, c, root))
 
 
 def highest(rates: csr_array, weights: Array, root: Any) -> float:

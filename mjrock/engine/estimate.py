@@ -9,6 +9,7 @@ import numpy as np
 
 from ..geometry.frames import PLANE
 from ..problem.masonry.masonry import Masonry
+from ..scene.explicit_step import SHARE, stable_step
 from ..scene.scene import Scene
 
 FEW = 8
@@ -26,8 +27,6 @@ WEAK_IN_SPACE, STRONG_IN_SPACE = 1.5e-6, 140e-6
 SPRUNG_IN_SPACE, RIGID_IN_SPACE = 120e-9, 800e-9
 """`SPRUNG` and `RIGID` for a point in space [s]. The same script finds 65e-9 to 280e-9 and 300e-9 to 1600e-9, with how
 busy the machine is."""
-SHARE = 0.4
-"""Explicit step over the longest stable one that `solve_explicit` takes [-]."""
 WORTH_SAYING = 3.0
 """How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
 
@@ -37,9 +36,8 @@ def explicit_seconds(scene: Scene, masonry: Masonry) -> float:
     ratio, lines = masonry.joint_shear / masonry.joint_stiffness, len(scene.k)
     sprung = bool(np.isfinite(ratio).any())
     stiffer = float(np.max(ratio[np.isfinite(ratio)], initial=1.0))  # of the springs along normal and face
-    omega = scene.highest_frequency * math.sqrt(stiffer)
-    xi = 0.5 * omega * float((scene.c / scene.k).max())
-    step = SHARE * 2 / omega * (math.sqrt(1 + xi**2) - xi)
+    stiffness = stiffer * scene.highest_frequency**2
+    step = SHARE * stable_step(stiffness, stiffness * float((scene.c / scene.k).max()))
     of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if masonry.in_space else (SPRUNG, RIGID)
     return lines * (of_springs if sprung else of_friction) / step
 

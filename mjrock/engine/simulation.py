@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import Any
 
 from ..method import METHOD, Method
@@ -99,7 +98,7 @@ def simulate(
     scene = scene_of(case, contacts, method)
     course = course_of(case, scene)
     if state is not None:
-        course = replace(course, pose=state[0], velocity=state[1], released=False)
+        course = course.continued(*state)
     asked: Asked = AskedMasonry(case) if isinstance(case, MasonryCase) else AskedWall(case, contacts)  # type: ignore[arg-type]
     if options.timestep is None:
         if isinstance(case, MasonryCase):

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..quantities import Array, keep, require_array, require_kind, require_reals, require_row, require_within, shown
@@ -88,12 +89,12 @@ class Bodies:
             return cls(response.t, (wall.outline,), rests, response.pose, magnify)
         if response.in_space:
             case.masonry.require_plane("Bodies")
-        blocks = case.masonry.blocks
-        free = [block for block in blocks if not block.fixed]
+        blocks, free = case.masonry.blocks, list(case.masonry.free)
+        rests = laden(case.masonry, case.effects)[1][free]
         return cls(
             response.t,
-            tuple(block.corners - block.centroid for block in free),
-            np.array([block.centroid for block in free]),
+            tuple(blocks[i].corners - rest for i, rest in zip(free, rests, strict=True)),
+            rests,
             response.pose,
             magnify,
             tuple(block.corners for block in blocks if block.fixed),

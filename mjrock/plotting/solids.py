@@ -11,12 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.frames import SPACE, frames_of
+from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.wall.effects import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
-from ..scene.masonry import laden
 
 CAMERA = (18.0, 35.0)
 """Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +33,22 @@ class Followed(NamedTuple):
     lost: Flags
 
 
+def in_parts(pose: Array, joints: int, look: Callable[[Array], Followed]) -> Followed:
+    """What joints did at poses, looked at a part of the steps at a time.
+
+    `look` takes the poses of some steps and gives what the joints do at each: opening, sliding and lost have the shape
+    (steps, joints).
+    """
+    opening, sliding, deepest = np.zeros(joints), np.zeros(joints), 0.0
+    lost = np.zeros((len(pose), joints), dtype=bool)
+    size = max(1, AT_ONCE // max(1, joints))
+    for first in range(0, len(pose), size):
+        seen = look(np.ascontiguousarray(pose[first : first + size]))
+        opening, sliding = np.maximum(opening, seen.opening.max(axis=0)), np.maximum(sliding, seen.sliding.max(axis=0))
+        lost[first : first + size], deepest = seen.lost, max(deepest, seen.deepest)
+    return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
+
+
 def joint_motion(masonry: Masonry, places: Places, group: Sequence[str], start: Array, pose: Array) -> Followed:
     """What the joints of masonry did.
 
@@ -44,18 +60,15 @@ def joint_motion(masonry: Masonry, places: Places, group: Sequence[str], start: 
     """
     joints = masonry.joints
     of, widths = joint_numbers(masonry, group), np.array([joint.width for joint in joints])
-    opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
-    lost, (back, forth) = np.zeros((len(pose), len(joints)), dtype=bool), np.array([j.travel for j in joints]).T
-    frames = frames_of(start, places.freedom)
+    (back, forth), frames = np.array([joint.travel for joint in joints]).T, frames_of(start, places.freedom)
     at_rest = np.array([along(places, i, frames, start).place for i in range(len(of))])  # of each line on its face
-    size = max(1, AT_ONCE // max(1, len(joints)))
-    for first in range(0, len(pose), size):
-        some = np.ascontiguousarray(pose[first : first + size])
-        room = np.empty((2, len(some), len(joints)))
-        deepest = max(deepest, _look(places, Lines(of, at_rest), some, frames, np.empty(len(joints)), *room))
-        opening, sliding = np.maximum(opening, room[0].max(axis=0)), np.maximum(sliding, np.abs(room[1]).max(axis=0))
-        lost[first : first + size] = (room[0] > LOST * widths) | (room[1] > forth) | (room[1] < -back)
-    return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
+
+    def look(some: Array) -> Followed:
+        opened, slid = np.empty((2, len(some), len(joints)))
+        deepest = _look(places, Lines(of, at_rest), some, frames, np.empty(len(joints)), opened, slid)
+        return Followed(opened, np.abs(slid), deepest, (opened > LOST * widths) | (slid > forth) | (slid < -back))
+
+    return in_parts(pose, len(joints), look)
 
 
 class Lines(NamedTuple):

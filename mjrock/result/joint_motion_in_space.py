@@ -13,7 +13,7 @@ from ..geometry.vectors import Vector, minus, plus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers
-from .joint_motion import AT_ONCE, Followed
+from .joint_motion import Followed, in_parts
 from .joints import LOST, joint_numbers
 
 
@@ -32,26 +32,22 @@ def joint_motion_in_space(
     """
     joints = masonry.joints
     of, widths = joint_numbers(masonry, group), np.array([joint.width for joint in joints])
-    opening, sliding, deepest = np.zeros(len(joints)), np.zeros(len(joints)), 0.0
-    lost, faces = np.zeros((len(pose), len(joints)), dtype=bool), faces_of_joints(masonry)
-    frames = frames_of(start, places.freedom)
+    faces, frames = faces_of_joints(masonry), frames_of(start, places.freedom)
     at_rest = np.array([_along(places, i, frames) for i in range(len(of))])
     free = np.array(masonry.free)
     above = np.array([joint.above for joint in joints])[of] == free[places.body]
     at_rest_and_sign = np.column_stack([at_rest, np.where(above, 1.0, -1.0)])
-    size = max(1, AT_ONCE // max(1, len(joints)))
-    for first in range(0, len(pose), size):
-        some = np.ascontiguousarray(pose[first : first + size])
+
+    def look(some: Array) -> Followed:
         opened, slid = np.empty((len(some), len(joints))), np.empty((len(some), len(joints), 3))
-        deepest = max(deepest, _look(places, of, at_rest_and_sign, some, (frames, np.empty(len(joints))), opened, slid))
-        far = np.linalg.norm(slid, axis=2)
-        opening, sliding = np.maximum(opening, opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
-        gone = opened > LOST * widths
+        deepest = _look(places, of, at_rest_and_sign, some, (frames, np.empty(len(joints))), opened, slid)
+        far, gone = np.linalg.norm(slid, axis=2), opened > LOST * widths
         for joint in np.flatnonzero((far >= widths).any(axis=0)):
             ways = slid[:, joint] / np.maximum(far[:, joint], widths[joint])[:, None]
             gone[:, joint] |= (far[:, joint] >= widths[joint]) & (far[:, joint] > travels(faces[joint], ways))
-        lost[first : first + size] = gone
-    return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
+        return Followed(opened, far, deepest, gone)
+
+    return in_parts(pose, len(joints), look)
 
 
 @jitable

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.frames import SPACE
+from ..problem.masonry.effects import laden, placed
 from ..problem.wall.case import Case
-from ..problem.wall.effects import AddedMass, Tie
+from ..problem.wall.effects import Tie
 from ..quantities import Array
 from .ties_in_space import elongation_in_space
 
@@ -104,14 +105,8 @@ def held_by(case: Any, tie: Tie) -> tuple[int, Array, Array]:
     if isinstance(case, Case):
         wall = case.wall
         return 0, np.array([-case.block.b, tie.height]), np.array([wall.centroid_offset, wall.centroid_height])
-    block, masonry = case.masonry.blocks[tie.block], case.masonry
-    held = np.array([block.left_at(tie.height), tie.height])
-    masses, moments = block.mass, block.mass * np.asarray(block.centroid)
-    for effect in case.effects:
-        if isinstance(effect, AddedMass) and effect.block == tie.block:
-            masses = masses + effect.mass
-            moments = moments + effect.mass * np.array([block.centroid[0] + effect.offset, effect.height])
-    return list(masonry.free).index(tie.block), held, moments / masses
+    masonry, held = case.masonry, np.array(placed(case.masonry, tie))
+    return masonry.free.index(tie.block), held, laden(masonry, case.effects)[1][tie.block]
 
 
 def told_of_ties(plastic: Mapping[str, Plastic]) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects import laden
 from ..problem.masonry.effects_in_space import anchored_at, held_at
-from ..problem.wall.effects import AddedMass, Tie
+from ..problem.wall.effects import Tie
 from ..quantities import Array
 
 
@@ -22,23 +23,12 @@ def elongation_in_space(case: MasonryCase, tie: Tie, pose: Array) -> Array:
 
 def _displaced(case: MasonryCase, block: int, point: Array, pose: Array) -> Array:
     """Displacement of a point of a block from rest [m], zero of a fixed one, shape (n, 3)."""
-    free = list(case.masonry.free)
+    free = case.masonry.free
     if block not in free:
         return np.zeros((len(pose), 3))
     moved = pose[:, free.index(block)]
-    w, v, arm = moved[:, 3:4], moved[:, 4:], point - _centroid(case, block)
+    w, v, arm = moved[:, 3:4], moved[:, 4:], point - laden(case.masonry, case.effects)[1][block]
     # (R - 1) r = 2 w v x r + 2 v x (v x r)
     turned = np.cross(v, np.broadcast_to(arm, v.shape))
     displaced: Array = moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned)
     return displaced
-
-
-def _centroid(case: MasonryCase, block: int) -> Array:
-    """Centroid of a block at rest, with the masses added to it [m], shape (3,)."""
-    body = case.masonry.blocks[block]
-    masses, moments = body.mass, body.mass * body.centroid
-    for effect in case.effects:
-        if isinstance(effect, AddedMass) and effect.block == block:
-            masses, moments = masses + effect.mass, moments + effect.mass * held_at(effect)
-    centroid: Array = moments / masses
-    return centroid

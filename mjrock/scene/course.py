@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..problem.ground.motion import GroundMotion
 from ..quantities import Array
@@ -29,6 +29,10 @@ class Course:
     vertical: GroundMotion | None = None
     released: bool = True
     transverse: GroundMotion | None = None
+
+    def continued(self, pose: Array, velocity: Array) -> Course:
+        """The same from another state, in which an earlier run ended."""
+        return replace(self, pose=pose, velocity=velocity, released=False)
 
     @property
     def ground(self) -> Ground:

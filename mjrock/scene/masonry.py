@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects_in_space import applied_in_space, held_at
+from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.lines import Lines
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.statics import falling, friction_lacking, slippery
-from ..problem.wall.damper import Damper
-from ..problem.wall.effects import AddedMass, Effect, Load, Thrust, Tie
-from ..quantities import GRAVITY, Array, Integers, named, require_kind
+from ..problem.wall.effects import Effect, Tie
+from ..quantities import Array, Integers, named, require_kind
 from .arrays import GROUND
 from .course import Course
 from .effects import attachments
@@ -69,51 +68,6 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
             f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
             "raise k_n"
         ) from None
-
-
-def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
-    """Where an effect acts on its block, from the origin of the world [m]."""
-    if masonry.in_space:
-        return tuple(held_at(effect).tolist())
-    block = masonry.blocks[effect.block]
-    if isinstance(effect, Tie | Damper):
-        return block.left_at(effect.height), effect.height
-    return float(block.centroid[0]) + getattr(effect, "offset", 0.0), effect.height
-
-
-def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
-    """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them."""
-    if masonry.in_space:
-        return applied_in_space(masonry, effects)
-    total = np.zeros((len(masonry.free), 3))
-    for one in effects:
-        if not isinstance(one, Tie):
-            row = masonry.free.index(one.block)
-            x, z = np.array(placed(masonry, one)) - masonry.blocks[one.block].centroid
-            across = one.force if isinstance(one, Thrust) else 0.0
-            down = one.force if isinstance(one, Load) else GRAVITY * one.mass if isinstance(one, AddedMass) else 0.0
-            total[row] += across, -down, across * z + down * x
-    return total
-
-
-def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
-    """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, as those of a `Scene`."""
-    mass = np.array([block.mass for block in masonry.blocks])
-    inertia, centroids = np.array([block.inertia for block in masonry.blocks]), np.array(masonry.centroids)
-    for one in effects:
-        if isinstance(one, AddedMass) and one.mass > 0:
-            i = one.block
-            apart, total = np.array(placed(masonry, one)) - centroids[i], mass[i] + one.mass
-            inertia[i] += mass[i] * one.mass / total * _second(apart)
-            centroids[i] += one.mass / total * apart
-            mass[i] = total
-    return mass, centroids, inertia
-
-
-def _second(apart: Array) -> float | Array:
-    """Moment or tensor of inertia of a unit mass at a distance [m2]."""
-    square = float(apart @ apart)
-    return square if len(apart) == 2 else square * np.eye(3) - np.outer(apart, apart)
 
 
 @lru_cache(maxsize=16)

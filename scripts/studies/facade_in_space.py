@@ -103,7 +103,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     plotting.save(drawn(answer, moment), out / "facade_in_space.png")
     last = moment + round(AFTER / 0.01)
     film = replace(answer, t=answer.t[:last], pose=answer.pose[:last])
-    path = plotting.animate(film, out / "facade_in_space.gif", speed=0.5, fps=20, dpi=80, camera=(20.0, 38.0))
+    path = plotting.animate(film, out / "facade_in_space.gif", speed=0.5, fps=12, dpi=80, camera=(20.0, 38.0))
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]
     rows = [cost(0.4, 2)] if args.quick else [cost(*size) for size in SIZES]
     each = 1e9 * stats["stepping_time"] / stats["steps"] / len(masonry.lines.k)

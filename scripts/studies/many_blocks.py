@@ -29,7 +29,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct import explicit
-from mjrock.distinct.limit import SHARE
+from mjrock.scene.explicit_step import SHARE
 from scripts.shared import cli
 
 UNIT = (0.4, 0.2)

@@ -1,7 +1,6 @@
 import dataclasses
 import re
 import shutil
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -169,24 +168,22 @@ def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     np.testing.assert_allclose(drawn, bodies.corners(3))
 
 
-def test_blocks_of_masonry_are_drawn_where_they_are():
-    """A case that holds blocks, one of them fixed, as masonry does."""
+@pytest.mark.parametrize("mass", [0.0, 500.0])
+def test_blocks_of_masonry_are_drawn_where_they_are(mass):
+    """Blocks, one of them fixed, the upper one with a mass on it, which a pose counts from the common centroid."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])
-
-    def block(height, fixed):
-        return SimpleNamespace(
-            corners=corners + np.array([0, height]), centroid=np.array([0.5, 1.0 + height]), fixed=fixed
-        )
-
-    response = theory()
-    case = SimpleNamespace(masonry=SimpleNamespace(blocks=[block(-2.0, True), block(0.0, False), block(2.0, False)]))
-    poses = np.zeros((len(response.t), 2, 3))
+    blocks = [mr.Polygon(corners + np.array([0, z]), fixed=z < 0) for z in (-2.0, 0.0, 2.0)]
+    case = mr.MasonryCase(
+        mr.Masonry(tuple(blocks), 1e9, friction=0.7, xi=0.02), 1.0, effects=(mr.AddedMass(mass, 4.0, block=2),)
+    )
+    poses = np.zeros((5, 2, 3))
     poses[-1, 1] = [0.1, 0.0, np.pi / 2]
-    stacked = dataclasses.replace(response, case=case, pose=poses)
-    bodies = Bodies.of(stacked)
-    np.testing.assert_array_equal(bodies.fixed[0], corners - np.array([0, 2]))
+    bodies = Bodies.of(dataclasses.replace(theory(), t=np.linspace(0, 1, 5), case=case, pose=poses))
+    np.testing.assert_array_equal(bodies.fixed[0], corners - [0, 2])
     np.testing.assert_allclose(bodies.placed(-1, 0, bodies.outlines[0]), corners, atol=1e-12)
-    fallen = [[-0.4, 3.5], [-0.4, 2.5], [1.6, 2.5], [1.6, 3.5]]
+    centroid = np.array([0.5, 3.0 + mass / (mass + blocks[2].mass)])
+    from_it = corners + np.array([0, 2]) - centroid
+    fallen = centroid + np.array([0.1, 0.0]) + np.column_stack([from_it[:, 1], -from_it[:, 0]])
     np.testing.assert_allclose(bodies.placed(-1, 1, bodies.outlines[1]), fallen, atol=1e-12)
 
 

@@ -10,6 +10,7 @@ import warnings
 
 import numpy as np
 import pytest
+from everyday import slow
 from explicit_blocks import explicit
 from masonry_blocks import GROUND, box
 
@@ -31,9 +32,9 @@ def lost(pile, pose):
     ("blocks", "matched", "expected"),
     [
         (2, False, 1.0398),
-        pytest.param(2, True, 0.9966, marks=pytest.mark.slow),
-        pytest.param(4, True, 0.9949, marks=pytest.mark.slow),
-        pytest.param(7, False, 1.2307, marks=pytest.mark.slow),
+        slow((2, True, 0.9966)),
+        slow((4, True, 0.9949)),
+        slow((7, False, 1.2307)),
     ],
 )
 def test_two_solvers_agree_on_what_a_stack_loses(blocks, matched, expected):

@@ -22,6 +22,7 @@ from .friction import list_rigid
 from .system import (
     System,
     add_force,
+    add_moment,
     at_of,
     displaced_support,
     grip_of,
@@ -74,10 +75,11 @@ def meeting(system: System, point: Row) -> Meeting:
     elif point.support >= 0:
         across = minus(across, displaced_support(system.supports, point.support))
     gap = dot(normal, across)
-    if gap < 0 and dot(normal, in_world(body, normal_of(point))) < 0:
-        return Meeting(TURNED_OVER, normal, arm, face_arm)
-    if gap < 0 and dot(across, across) - gap * gap > point.margin:
-        return at_the_end(system, point, across, Meeting(gap, normal, arm, face_arm))
+    if gap < 0:
+        if dot(normal, in_world(body, normal_of(point))) < 0:
+            return Meeting(TURNED_OVER, normal, arm, face_arm)
+        if dot(across, across) - gap * gap > point.margin:
+            return at_the_end(system, point, across, Meeting(gap, normal, arm, face_arm))
     return Meeting(gap, normal, arm, face_arm)
 
 
@@ -222,12 +224,8 @@ def push_apart(bodies: Rows, point: Row, meet: Meeting, force: Vector, turning: 
     """Add a force and a moment on the body of a point, and their reaction on the body of the face."""
     body = bodies[point.body]
     add_force(body, meet.arm, force)
-    body.moment_x += turning[0]
-    body.moment_y += turning[1]
-    body.moment_z += turning[2]
+    add_moment(body, turning)
     if point.face >= 0:
         face = bodies[point.face]
         add_force(face, meet.face_arm, scaled(-1.0, force))
-        face.moment_x -= turning[0]
-        face.moment_y -= turning[1]
-        face.moment_z -= turning[2]
+        add_moment(face, scaled(-1.0, turning))

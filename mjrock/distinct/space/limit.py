@@ -8,7 +8,7 @@ from scipy.sparse import csr_array, vstack
 from ...linear import entries
 from ...problem.masonry.joints_in_space import axes_across
 from ...quantities import Array, Integers
-from ..limit import stable_step
+from ..limit import step_on_springs
 from ..system import Rows
 from .columns import root_of_masses, vectors
 from .system import System
@@ -29,7 +29,7 @@ def longest_step(system: System) -> float:
         return np.concatenate([lines[along], shear, shear, system.ties[along], system.dampers[along]])
 
     masses = root_of_masses(system.bodies)
-    return stable_step(csr_array(vstack([*rates, *links])), weights("k", "k_s"), weights("c", "c_s"), masses)
+    return step_on_springs(csr_array(vstack([*rates, *links])), weights("k", "k_s"), weights("c", "c_s"), masses)
 
 
 def link_rates(links: Rows, bodies: int) -> csr_array:

@@ -14,10 +14,10 @@ from ...problem.wall.damper import Damper
 from ...problem.wall.effects import Effect
 from ...quantities import named
 from ...result.response import State
+from ...scene.explicit_step import SHARE
 from ...scene.masonry import masonry_course, standing_masonry
 from ...scene.scene import Scene
 from ..following import Setup
-from ..limit import SHARE
 from .assembly import copied, masonry_system, moved_by, started
 from .columns import PLACE, QUATERNION, stacked
 from .limit import longest_step
@@ -34,7 +34,7 @@ def setup_in_space(case: MasonryCase, state: State | None) -> Setup:
     scene, at_rest = standing(case.masonry, case.effects)
     course = masonry_course(case, scene)
     if state is not None:
-        course = replace(course, pose=state[0], velocity=state[1], released=False)
+        course = course.continued(*state)
     system = moved_by(copied(at_rest), scene, case.masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
     return Setup(scene, course, system, advance, longest_step(system), SHARE, freedom=SPACE)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector
+from ...geometry.vectors import Vector, moment
 from ...scene.ground import Ground
 from ..system import Row, Rows, Supports
 
@@ -183,9 +183,15 @@ def add_force(body: Row, arm: Vector, force: Vector) -> None:
     body.fx += force[0]
     body.fy += force[1]
     body.fz += force[2]
-    body.moment_x += arm[1] * force[2] - arm[2] * force[1]
-    body.moment_y += arm[2] * force[0] - arm[0] * force[2]
-    body.moment_z += arm[0] * force[1] - arm[1] * force[0]
+    add_moment(body, moment(arm, force))
+
+
+@inlined
+def add_moment(body: Row, turning: Vector) -> None:
+    """Add a moment on a body [N m]."""
+    body.moment_x += turning[0]
+    body.moment_y += turning[1]
+    body.moment_z += turning[2]
 
 
 @inlined
