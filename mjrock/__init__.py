@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from .anymodel.make import contact_for
     from .anymodel.many import PairContacts, contacts_for
     from .distinct.explicit import solve_explicit
-    from .engine.contact import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.model import SimulationError
     from .engine.simulation import automatic_timestep, simulate
+    from .engine.solref import ContactParameters, ManyContactParameters, contact_parameters, contact_stiffness
     from .engine.text import masonry_mjcf, mjcf_of, wall_mjcf
     from .problem.damping.contacts import Contacts
     from .problem.damping.forms import PowerLaw
@@ -197,7 +197,7 @@ HOMES = {
     "anymodel.make": "contact_for",
     "anymodel.many": "PairContacts contacts_for",
     "distinct.explicit": "solve_explicit",
-    "engine.contact": "ContactParameters ManyContactParameters contact_parameters contact_stiffness",
+    "engine.solref": "ContactParameters ManyContactParameters contact_parameters contact_stiffness",
     "engine.model": "SimulationError",
     "engine.simulation": "automatic_timestep simulate",
     "engine.text": "masonry_mjcf mjcf_of wall_mjcf",

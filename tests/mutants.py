@@ -28,12 +28,14 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 MARKS = b"\n@compiled\n", b"\n@jitable\n", b"\n@inlined\n"
 """What stands before a compiled function."""
-OTHERS = ("engine/contact.py", "engine/run.py", "scene/equilibrium.py", "scene/masonry.py", "result/history.py")
+OTHERS = ("engine/solref.py", "engine/run.py", "scene/equilibrium.py", "scene/masonry.py", "result/history.py")
 """Modules of the method without compiled functions."""
 TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
+STEPS = ("contact", "friction", "links", "loop")
+"""Modules of the explicit steps, in the plane and in space, whose tests are their own."""
 OWN = {
-    **{f"anymodel/{name}.py": ("contact", "pair", "pairing", "inspection", "standing") for name in TOOLS},
+    **{f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing") for name in TOOLS},
     "geometry/frames.py": ("frames", "kinematics"),
     "geometry/kinematics.py": ("kinematics", "frames", "slipping"),
     "geometry/vectors.py": ("frames", "kinematics"),
@@ -43,7 +45,11 @@ OWN = {
     "scene/potential.py": ("potential", "kinematics", "masonry_statics", "scene_in_space"),
     "scene/masses.py": ("scene_in_space",),
     "geometry/poses.py": ("scene_in_space",),
-    "engine/joint_motion.py": ("masonry_motion", "masonry"),
+    **{f"distinct/{name}.py": ("explicit", "encounters") for name in STEPS},
+    "distinct/encounters.py": ("encounters",),
+    **{f"distinct/space/{name}.py": ("explicit_in_space",) for name in (*STEPS, "system", "turning")},
+    "result/joint_motion.py": ("masonry_motion", "masonry"),
+    "result/joint_motion_in_space.py": ("masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
     "problem/masonry/polygon.py": ("polygon",),
@@ -58,7 +64,7 @@ OWN = {
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 ROUNDS = (
-    ("1", ("kinematics", "contact", "pace", "touches", "accounts", "scene", "ties_and_forces")),
+    ("1", ("kinematics", "solref", "pace", "touches", "accounts", "scene", "ties_and_forces")),
     ("0", ("response", "ledger", "stepping", "simulation", "inset", "hard_cases", "sliding", "masonry_motion")),
 )
 """What NUMBA_DISABLE_JIT is, and the tests that run, in each round."""
@@ -85,7 +91,7 @@ def modules() -> tuple[str, ...]:
     package = ROOT / "mjrock"
     hold = [path for path in package.rglob("*.py") if any(mark in path.read_bytes() for mark in MARKS)]
     found = {*OTHERS, *OWN, *(path.relative_to(package).as_posix() for path in hold)}
-    return tuple(sorted(name for name in found if (package / name).is_file()))
+    return tuple(sorted(found))
 
 
 class Mutant(NamedTuple):

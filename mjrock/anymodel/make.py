@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import mujoco
 
-from ..engine.contact import WITHIN, inertia_of, longest_step, pair_values, row
+from ..engine.solref import WITHIN, inertia_of, longest_step, pair_values, row
 from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping

@@ -12,7 +12,7 @@ from decimal import ROUND_DOWN, Context
 import mujoco
 import numpy as np
 
-from ..engine.contact import inertia_of
+from ..engine.solref import inertia_of
 from ..problem.damping.rebound import rebound_restitution
 from .geoms import GeomPair
 from .mixing import Mixed

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..engine.contact import IMPEDANCE_RANGE
+from ..engine.solref import IMPEDANCE_RANGE
 from .geoms import GeomPair
 from .mixing import Mixed
 

@@ -50,7 +50,7 @@ def kinetic(masses: Array, products: Array, v: Array) -> float:
 
 
 @jitable
-def fallen(q: Array, axes: tuple[int, ...]) -> bool:
+def lies_on_its_face(q: Array, axes: tuple[int, ...]) -> bool:
     """Whether a body lies on its face. A NaN counts."""
     if len(axes) == 2:
         for j in range(2, len(q), 3):
@@ -231,7 +231,7 @@ def fitted_loop(
             set_step(memory, points, pace, now)
         record.t[n], record.h[n] = t, now
         make_step(memory, setting, sliding, state.frames, record, n)
-        ended = t >= setting.duration or fallen(record.pose[n], axes) or out_of_reach(points.reach, openings)
+        ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
         turned = sliding_changed(sliding)
         change = change_of_acceleration(memory, setting, state, last, now, fresh or turned) / energy
         abrupt = change > pace.method.abrupt**2
@@ -264,6 +264,6 @@ def fixed_loop(
             take_frames(memory.pose, frames, setting.points.places.axes)
         record.t[n], record.h[n] = h * (first + n), h
         make_step(memory, setting, sliding, frames, record, n)
-        if first + n >= last or fallen(record.pose[n], setting.points.places.axes):
+        if first + n >= last or lies_on_its_face(record.pose[n], setting.points.places.axes):
             return True, n + 1
     return False, len(record.t)

@@ -77,7 +77,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
     Args:
         scene: the scene.
         timestep: MuJoCo's step, on which the contact rows depend [s].
-        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.contact.row`.
+        newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.solref.row`.
         keyframe: of the release. None stands for the scene at rest.
     """
     corners = np.concatenate([rest + outline for rest, outline in zip(scene.rest, scene.outlines, strict=True)])

@@ -15,10 +15,10 @@ import numpy as np
 from ..quantities import Flags
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .contact import body_weight
 from .memory import Memory
 from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
 from .record import Record
+from .solref import body_weight
 
 CHUNK = 1_000
 """Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""

@@ -29,9 +29,9 @@ from ..quantities import Array
 from ..scene.course import Course
 from ..scene.dampers import damping_rate
 from ..scene.scene import Scene
-from .contact import longest_step
 from .points import Reach, inverse_weights, points_of
 from .rows import Step
+from .solref import longest_step
 from .touches import Openings
 
 LIGHTEST = {2: 6, 3: 7}
@@ -94,7 +94,7 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     """The step that resolves the stiffest spring and the strongest dashpot to `accuracy` [s].
 
     A dashpot that would ask for less than an eighth of the spring's step acts at the end of the step instead, see
-    `mjrock.engine.contact.row`. It stops what it meets, and how it does so no longer matters.
+    `mjrock.engine.solref.row`. It stops what it meets, and how it does so no longer matters.
     """
     spring = min(method.most, math.sqrt(method.short * accuracy)) / scene.highest_frequency
     strongest = float(np.max(scene.c * inverse_weights(scene)))

@@ -12,8 +12,8 @@ from ..method import METHOD, Method
 from ..quantities import Array, Flags
 from ..scene.arrays import frozen
 from ..scene.scene import Scene
-from .contact import body_weight
 from .rows import Law, RowInertia
+from .solref import body_weight
 
 
 class Reach(NamedTuple):

@@ -15,10 +15,11 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
 from ..result.ending import Outcome, ending, masonry_ending
+from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joint_motion_in_space import joint_motion_in_space
-from ..result.joints import JointMotion, fallen_blocks
+from ..result.joints import JointMotion
 from ..result.rocking import Rocking
 from ..scene.course import Course
 from ..scene.scene import Scene

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..compiled import jitable
 from ..quantities import Array
-from .contact import pair_values, row
+from .solref import pair_values, row
 
 
 class Law(NamedTuple):

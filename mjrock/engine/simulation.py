@@ -66,7 +66,7 @@ def simulate(
         timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.engine.stepping`.
         accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1. A run in
             which energy appears from nowhere is discarded and repeated with a tenth of it, twice at most.
-        newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.contact`.
+        newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.solref`.
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them

@@ -23,10 +23,10 @@ from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apar
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, tangent
 from ..method import METHOD, Method
 from ..quantities import Array, Flags
-from .contact import inertia_of
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .points import Points
 from .setting import Setting, push
+from .solref import inertia_of
 from .touches import ROUNDING
 
 SMOOTH, ROUGH = 1, 3

@@ -24,8 +24,8 @@ def mjcf_of(case: Case | MasonryCase, contacts: Contacts | None, timestep: float
         case: the wall or the masonry, and its release.
         contacts: the interfaces of a wall; None for masonry.
         timestep: MuJoCo's step, on which the contact rows depend [s], 1e-9 to 1.
-        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.contact`. Rows that MuJoCo
-            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.contact.row`.
+        newmark_beta: Newmark's beta of the contact rows [-], 0 to 10, see `mjrock.engine.solref`. Rows that MuJoCo
+            would clamp, or whose dashpot is stiff for the step, get more inertia, see `mjrock.engine.solref.row`.
 
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, or for a value outside its

@@ -12,7 +12,8 @@ from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import Places, along, depth
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from .joints import LOST, joint_numbers
+from .fallen import LOST
+from .joints import joint_numbers
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""

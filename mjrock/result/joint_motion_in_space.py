@@ -13,8 +13,9 @@ from ..geometry.vectors import Vector, minus, plus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers
+from .fallen import LOST
 from .joint_motion import Followed, in_parts
-from .joints import LOST, joint_numbers
+from .joints import joint_numbers
 
 
 def joint_motion_in_space(

@@ -1,4 +1,4 @@
-"""What the joints of masonry did, and which blocks fell."""
+"""What is read from the joints of masonry in a run."""
 
 from __future__ import annotations
 
@@ -7,14 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem.masonry.joints import Joint
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Flags, Integers
-
-LOST = 0.7
-"""Opening of a joint, over its width, beyond which it holds no longer [-]: the blocks have turned by 45 degrees."""
-DROPPED = 1.0
-"""Drop of a centroid, over the largest distance of a corner from it, beyond which a block has fallen [-]."""
+from ..quantities import Array, Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,40 +40,3 @@ def joint_numbers(masonry: Masonry, group: Sequence[str]) -> Integers:
     """Number of the joint of each contact line, from its name, shape (m,)."""
     number = {joint.name: i for i, joint in enumerate(masonry.joints)}
     return np.array([number[name] for name in group], dtype=np.int64)
-
-
-def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[str, float]:
-    """When each block that fell did [s], by its name, the first first.
-
-    Args:
-        masonry: the masonry.
-        t: times [s], shape (n,).
-        lost: whether each joint has ceased to hold by then, shape (n, joints).
-        drop: how far the centroid of each free block has dropped from rest [m], shape (n, bodies).
-    """
-    gone: dict[int, float] = {}
-    for body, block in enumerate(masonry.free):
-        late = np.flatnonzero(drop[:, body] / masonry.blocks[block].size > DROPPED)
-        if late.size:
-            gone[block] = float(t[late[0]])
-    for step in np.flatnonzero(np.diff(lost.sum(axis=1), prepend=0)):
-        held = [joint for joint, over in zip(masonry.joints, lost[step], strict=True) if not over]
-        for block in _cut_off(masonry, held):
-            gone[block] = min(gone.get(block, np.inf), float(t[step]))
-    return {masonry.names[block]: gone[block] for block in sorted(gone, key=gone.__getitem__)}
-
-
-def _cut_off(masonry: Masonry, held: Sequence[Joint]) -> list[int]:
-    """Blocks that no joint in `held` connects with a fixed block."""
-    beside: dict[int, list[int]] = {}
-    for joint in held:
-        beside.setdefault(joint.below, []).append(joint.above)
-        if not masonry.blocks[joint.below].fixed:
-            beside.setdefault(joint.above, []).append(joint.below)
-    reached = {i for i, block in enumerate(masonry.blocks) if block.fixed}
-    waiting = list(reached)
-    while waiting:
-        new = [block for block in beside.get(waiting.pop(), []) if block not in reached]
-        reached.update(new)
-        waiting += new
-    return [block for block in masonry.free if block not in reached]

@@ -27,10 +27,10 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.engine import loop, stepping
-from mjrock.engine.contact import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
 from mjrock.engine.points import inverse_weights
 from mjrock.engine.record import StepError
+from mjrock.engine.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.stepping import fixed_steps
 from mjrock.result.history import rocking_history
 from mjrock.result.response import Response

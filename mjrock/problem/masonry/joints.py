@@ -90,7 +90,7 @@ def names_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[str, ...]:
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
 
 
-def find_joints(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...]:
+def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...]:
     """The joints between blocks, in the order of the blocks.
 
     Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance. The joint

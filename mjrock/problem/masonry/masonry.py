@@ -19,7 +19,7 @@ from ..wall.effects import SideStop
 from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
 from .exchange import Exchange
 from .forms_in_space import FormsInSpace
-from .joints import find_joints, names_of
+from .joints import joints_in_plane, names_of
 from .joints_in_space import joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
 from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
@@ -259,7 +259,7 @@ class Masonry(FormsInSpace, Exchange):
     @cached_property
     def joints(self) -> tuple[Any, ...]:
         """The joints, in the order of the blocks: `Joint`, or `SpaceJoint` of blocks in space."""
-        return (joints_in_space if self.in_space else find_joints)(self.blocks, self.tolerance)
+        return (joints_in_space if self.in_space else joints_in_plane)(self.blocks, self.tolerance)
 
     @cached_property
     def joint_stiffness(self) -> Array:
