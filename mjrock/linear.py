@@ -77,14 +77,19 @@ def sprung(rates: csr_array | Array, springs: Array) -> csr_array | Array:
     return csr_array(rates.T @ diags_array(springs) @ rates)
 
 
-def balance(stiffness: csr_array | Array, grip: csr_array, force: Array) -> tuple[Array, Array]:
+def balance(
+    stiffness: csr_array | Array, grip: csr_array, force: Array, near: Array | None = None
+) -> tuple[Array, Array]:
     """The motion in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
 
-    Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none.
+    Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none. Of
+    many, what holds yields to the change of its forces from `near`, which an earlier balance has left, by `YIELDING`.
+    Slips of bonded units that have turned a little nearly depend on one another, and held without any compliance they
+    would lock a free motion with enormous forces.
     """
     n, held = stiffness.shape[0], grip.shape[0]
     if not isinstance(stiffness, np.ndarray):
-        return _Balance(stiffness, grip, LOOSE)(force)
+        return _Balance(stiffness, grip, LOOSE)(force, near)
     rows = grip.toarray()
     matrix = np.block([[stiffness, rows.T], [rows, np.zeros((held, held))]])
     solution = np.linalg.lstsq(matrix, np.append(force, np.zeros(held)), rcond=1e-14)[0]
@@ -97,21 +102,25 @@ class _Balance:
     def __init__(self, stiffness: csr_array, grip: csr_array, loose: float) -> None:
         own = np.maximum(stiffness.diagonal(), DEPENDENT * float(stiffness.diagonal().max()))
         self.stiffness, self.grip, self.back = stiffness, grip, csr_array(grip.T)
-        yielding = diags_array(-YIELDING * (grip.power(2) @ (1 / own)))
-        near = block_array([[stiffness + diags_array(loose * own), self.back], [grip, yielding]], format="csc")
+        self.yielding = YIELDING * (grip.power(2) @ (1 / own))
+        near = block_array(
+            [[stiffness + diags_array(loose * own), self.back], [grip, diags_array(-self.yielding)]], format="csc"
+        )
         self.factors = _factors(near)
 
-    def __call__(self, force: Array) -> tuple[Array, Array]:
+    def __call__(self, force: Array, near: Array | None = None) -> tuple[Array, Array]:
         """As `balance`: what the solution of the near matrix leaves is balanced in turn."""
         n, held = self.grip.shape[1], self.grip.shape[0]
-        left, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
-        motion, holding = np.zeros(n), np.zeros(held)
+        before, kept = (np.zeros(held), 0.0) if near is None else (near, self.yielding)
+        motion, holding, slip, scale = np.zeros(n), before, np.inf, float(np.abs(force).max())
+        left = np.append(force - self.back @ holding, np.zeros(held))
         for _ in range(REFINEMENTS):
             added = self.factors.solve(left)
             motion, holding = motion + added[:n], holding + added[n:]
-            left = np.append(force - self.stiffness @ motion - self.back @ holding, -(self.grip @ motion))
-            last, error = error, float(np.abs(left).max())
-            if error < REFINED * scale or error > 0.5 * last:
+            slips = kept * (holding - before) - self.grip @ motion
+            left = np.append(force - self.stiffness @ motion - self.back @ holding, slips)
+            last, slip = slip, float(np.abs(slips).max(initial=0.0))
+            if np.abs(left[:n]).max() < REFINED * scale and (slip < REFINED * scale or slip > 0.5 * last):
                 break
         return motion, holding
 

@@ -2,14 +2,19 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from everyday import slow
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 
 import mjrock as mr
+from mjrock.problem.masonry.effects import applied
 from mjrock.problem.masonry.statics import falling, friction_lacking
-from mjrock.scene.masonry import applied, require_standing, standing_masonry
+from mjrock.scene.equilibrium import held_slips
+from mjrock.scene.masonry import require_standing, standing_masonry
+from scripts.studies import two_storeys
 
 
 def rigid(masonry):
@@ -138,3 +143,20 @@ def test_what_settles_is_in_equilibrium():
     assert turned[left, 1].sum() == pytest.approx(weight / 2, rel=1e-4)  # the springings are level
     assert turned[right, 1].sum() == pytest.approx(weight / 2, rel=1e-4)
     assert scene.at_rest[:, 0] == pytest.approx(-scene.at_rest[::-1, 0], abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("height", "storeys", "gap"), [(2.4, 1, 0.0), (3.2, 1, 0.002), slow((6.4, 2, 0.0)), slow((6.4, 2, 0.002))]
+)
+def test_a_wall_with_openings_settles(height, storeys, gap, monkeypatch):
+    """Slips of its units depend on one another as drawn, and nearly so once the units have turned."""
+    monkeypatch.setattr(two_storeys, "OPEN", gap)
+    openings = (two_storeys.Opening(2.0, 3.2, 0.0, 2.2), two_storeys.Opening(2.0, 3.2, 4.0, 5.2))[:storeys]
+    scene = standing_masonry(two_storeys.wall(replace(two_storeys.QUICK, length=5.2, height=height, openings=openings)))
+    pose, potential = scene.at_rest.ravel(), scene.potential
+    residual = potential.load(pose) + potential.rates(pose).T @ (scene.k * potential.pressed(pose))
+    closed = potential.openings(pose) < 0
+    slips = held_slips(potential, scene.friction, closed, pose).toarray()
+    missing = residual - slips.T @ np.linalg.lstsq(slips.T, residual, rcond=None)[0]
+    assert np.abs(missing).max() < 1e-8 * mr.GRAVITY * scene.mass.max()
+    assert np.abs(scene.at_rest).max() < 0.01
