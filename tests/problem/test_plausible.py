@@ -26,6 +26,12 @@ def contacts(**options):
     return mr.Contacts.from_law(WALL, E, k_base=1e9, k_side=1e9, **options)
 
 
+def against(share, solve=mr.simulate, **options):
+    """A wall let go against a stop that reaches up to a share of its height."""
+    held = mr.Contacts.from_damping(SMALL, k_base=1e9, xi_base=0.05, k_side=1e9, xi_side=0.05, **options)
+    return solve(mr.Case(SMALL, 0.02, 0.05, side_stop=mr.SideStop(share * 4.0)), held)
+
+
 MISUSE = {
     "theta0 0.5 deg": (lambda: mr.Case(WALL, 0.5, 3.0), "theta0 = 0.5 rad is 6.68 alpha: .* rotations are radians"),
     "theta0 0.1 deg": (lambda: mr.Case(WALL, 0.1, 3.0), "theta0 = 0.1 rad is 1.34 alpha"),
@@ -74,6 +80,11 @@ MISUSE = {
         lambda: mr.wall_scene(mr.Case(WALL, 0.01, 1.0, side_stop=mr.SideStop(9.0)), contacts()),
         "the damping was chosen for a side stop up to 12 m, and that of the case reaches 9 m",
     ),
+    "a low stop on a base that holds": (
+        lambda: against(0.55),
+        r"the side stop reaches 2.2 m, and one below 2.5\d+ m pushes the base outwards; .* friction 0.6",
+    ),
+    "a low stop in the contact law": (lambda: against(0.55, mr.solve_compliant), "the side stop reaches 2.2 m"),
     "e of another wall": (
         lambda: mr.Analysis(case(), "analytical", e=mr.Restitution.from_geometry(SMALL)),
         r"of a wall of alpha = 0.2213 rad, and this one has 0.07486 rad",
@@ -100,6 +111,13 @@ def test_misuse_is_said_once_with_both_numbers(name):
     with pytest.warns(UserWarning, match=text) as caught:
         call()
     assert len(caught) == 1, [str(one.message) for one in caught]
+
+
+def test_a_low_stop_is_no_doubt_on_a_base_that_slides_nor_is_a_higher_one():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        against(0.55, friction=0.6)
+        against(0.7)
 
 
 def test_low_scales_of_a_study_are_meant():
