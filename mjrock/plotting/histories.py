@@ -17,12 +17,16 @@ from .style import style_of, styles_of
 BEYOND = 1.2
 """Rotation up to which a wall that overturns is shown, in multiples of alpha [-]."""
 
+DIFFERS = 0.01
+"""Difference of the rotation that overturns a wall from alpha that is drawn [-]."""
+
 
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Rotation in multiples of alpha against time.
 
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. The picture
-    says when that was. Responses have the lines of their solvers, or with `labels` colours of their own.
+    says when that was. Responses have the lines of their solvers, or with `labels` colours of their own. A dotted line
+    is the rotation that overturns a wall whose effects move it from alpha, where it is not far beyond the motion.
     """
     fallen = [overturned_at(response) for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
@@ -31,6 +35,10 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
+    for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
+        if abs(limit - 1) > DIFFERS and limit < max(BEYOND, 1.05 * max(reached)):
+            ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
+            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
     ax.set_xlabel("time $t$ [s]")
     ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels

@@ -148,12 +148,12 @@ def required_basis(basis: object, known: set[str]) -> dict[str, str]:
 
 def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     """The tables of results, of ties, and the messages."""
-    columns = ("response", "outcome", "peak/alpha", "top moves by", "impacts", "solved with")
+    columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts", "solved with"
     made = table(columns, content.of_results(responses, names))
     ties = content.of_ties(responses, names)
     if ties:
-        columns = ("response", "tie", "largest force", "drawn out by", "energy taken", "broke at")
-        made += "<p></p>" + table(columns, ties)
+        of_tie = "response", "tie", "largest force", "drawn out by", "energy taken", "broke at"
+        made += "<p></p>" + table(of_tie, ties)
     return made + listed([f"{name}: {r.message}" for r, name in zip(responses, names, strict=True)], "")
 
 

@@ -29,7 +29,11 @@ def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: flo
         outcome = Outcome.AT_REST
     else:
         outcome = Outcome.TIME_ENDED
-    return outcome, describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+    said = describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+    over = -float(theta.min()) / case.wall.alpha
+    if case.one_sided and over >= 1:
+        said += f" It leaned inwards over the side stop of {case.stop_top:g} m, by up to {over:.3g} alpha."
+    return outcome, said
 
 
 def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:

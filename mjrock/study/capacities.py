@@ -20,7 +20,8 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
     """Whether each run of a campaign lost its wall, for `fit_fragility`; shape (n,).
 
     A wall is lost if it overturned. One with ties is lost too if the time ended after it had leaned by alpha or more:
-    ties alone held it, and a wall that leans on ties that yield does not survive. A wall that still rocks stands.
+    ties alone held it, and a wall that leans on ties that yield does not survive. So is one that leaned inwards by
+    alpha or more, over its side stop. A wall that still rocks stands.
 
     Args:
         rows: rows of walls, as `Store.rows` gives them.
@@ -39,7 +40,7 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
             raise ValueError(f"rows[{i}] has outcome = {outcome!r} and peak_over_alpha = {peak!r}: no result of a wall")
         tied = any(name.startswith("tie_") and value is not None for name, value in row.items())
         leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
-        found.append(outcome == Outcome.OVERTURNED.value or leans)
+        found.append(outcome == Outcome.OVERTURNED.value or leans or (row.get("inwards_over_alpha") or 0.0) >= 1.0)
     return np.array(found, dtype=bool)
 
 
