@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 
 from ..quantities import Array, Flags, is_iterable, require_row, require_whole, require_within, shown
 from ..result.ending import Outcome
-from .fragility import FEWEST_GROUPS, Fragility, labels_of
+from .fragility import FEWEST_GROUPS, Fragility, labels_of, require_groups
 
 
 def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
@@ -167,6 +167,5 @@ def _groups(groups: ArrayLike | None, count: int, least: int = FEWEST_GROUPS) ->
     if labels.shape != (count,):
         raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
     names, group = np.unique(labels, return_inverse=True)
-    if len(names) < least:
-        raise ValueError(f"groups names {len(names)} groups; the valid range is {least} or more")
+    require_groups(len(names), least)
     return len(names), group
