@@ -25,8 +25,9 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     """Rotation in multiples of alpha against time.
 
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. The picture
-    says when that was. Responses have the lines of their solvers, or with `labels` colours of their own. A dotted line
-    is the rotation that overturns a wall whose effects move it from alpha, where it is not far beyond the motion.
+    says from when on that is; the message of the response says until when it was followed. Responses have the lines of
+    their solvers, or with `labels` colours of their own. A dotted line is the rotation that overturns a wall whose
+    effects move it from alpha, where it is not far beyond the motion.
     """
     fallen = [overturned_at(response) for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
@@ -42,7 +43,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     ax.set_xlabel("time $t$ [s]")
     ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
-    said = [f"{name}: overturned at t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
+    said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
     if said:
         top = max(BEYOND, 1.05 * max(reached))
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)

@@ -43,7 +43,7 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
         case Outcome.AT_REST:
             return f"The wall came to rest; last looked at {t_end:.4g} s."
         case Outcome.OVERTURNED:
-            return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
+            return f"The wall overturned; it was followed until {t_end:.4g} s, when its rotation was {share:.3g} alpha."
         case Outcome.TIME_ENDED:
             return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
 
