@@ -224,3 +224,23 @@ def test_a_stop_holds_a_wall_whose_centroid_it_reaches(wall):
     held = wall.b + 0.2 * (wall.b - 0.1) + 0.02 * rise  # moment at rest over the weight [m], a thrust above the stop
     lost = rise + 0.2 * (2 * wall.h - 1.0) - 0.02 * wall.b
     assert low.inward_limit == pytest.approx(np.arctan2(held, lost))
+
+
+def test_a_lopsided_wall_has_a_limit_on_either_side(wall, contacts):
+    """A load near the outer edge: the wall overturns outwards from less than inwards."""
+    load = mr.Load(0.3 * wall.weight, height=2 * wall.h, offset=0.2)
+    case = mr.Case(wall, -0.3 * wall.alpha, 0.61, side_stop=False, effects=load)
+    run = mr.simulate(case, contacts)
+    shares = run.theta.max() / case.overturning_rotation, -run.theta.min() / case.inward_limit
+    assert case.overturning_rotation < 0.8 * case.inward_limit
+    assert run.theta.max() < -run.theta.min()
+    assert shares[0] > shares[1]
+    assert run.peak_over_overturning == pytest.approx(shares[0], rel=1e-4)
+    assert run.inwards_over_alpha is None
+
+
+def test_a_fall_is_followed_until_it_lies(wall, contacts):
+    fallen = mr.simulate(mr.Case(wall, 1.05 * wall.alpha, 5.0), contacts)
+    assert fallen.message.startswith(
+        f"The wall overturned; it was followed until {fallen.t[-1]:.4g} s, when its rotation"
+    )

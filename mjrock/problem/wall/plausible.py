@@ -51,8 +51,8 @@ def warn_of_low_stop(case: Any) -> None:
     if top is not None and top < LOW * (height := rebound_height(case)):
         warnings.warn(
             f"the side stop reaches {top:.4g} m, and one below {LOW * height:.4g} m pushes the base outwards; here the "
-            "base cannot slide. On a base of friction 0.6 rebounds and peaks differ by more than 10 %: give the "
-            "contacts the friction that the base has",
+            "base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower stops "
+            "rebounds too: give the contacts the friction that the base has",
             Implausible,
             stacklevel=3,
         )
