@@ -19,6 +19,8 @@ BEYOND = 1.2
 
 DIFFERS = 0.01
 """Difference of the rotation that overturns a wall from alpha that is drawn [-]."""
+FAR = 4.0
+"""That rotation over the largest of the motion, from which it is left out, as it would flatten the motion [-]."""
 
 
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
@@ -27,7 +29,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. The picture
     says from when on that is; the message of the response says until when it was followed. Responses have the lines of
     their solvers, or with `labels` colours of their own. A dotted line is the rotation that overturns a wall whose
-    effects move it from alpha, where it is not far beyond the motion.
+    effects move it from alpha, unless it is far beyond the motion.
     """
     fallen = [overturned_at(response) for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
@@ -37,7 +39,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
-        if abs(limit - 1) > DIFFERS and limit < max(BEYOND, 1.05 * max(reached)):
+        if abs(limit - 1) > DIFFERS and limit < FAR * max(reached):
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
     ax.set_xlabel("time $t$ [s]")
