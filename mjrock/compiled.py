@@ -89,8 +89,13 @@ def _numba() -> Any:
             if not self.said and function is not None and function.__module__.startswith("mjrock."):
                 _FirstCompilation.said = True
                 folder = dispatcher._cache.cache_path
-                stored = f"once; they are stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
-                _notice(f"compiling the loops, which takes {COST}, {stored}")
+                part = ".".join(function.__module__.split(".")[:2])
+                stored = (
+                    f"once for each part; they are stored in {folder}"
+                    if folder is not None
+                    else f"in every process: {NOWHERE}"
+                )
+                _notice(f"compiling the loops of {part} and of what this run needs besides, {COST}, {stored}")
 
         def on_end(self, event: Any) -> None:
             """Nothing to say."""

@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import time
+import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
@@ -68,3 +69,17 @@ class Misbehave:
             Path(f"{history}.{os.getpid()}.partial").write_text("half") if history else None
             time.sleep(20)
         return {"answer": 42}
+
+
+@dataclass(frozen=True)
+class Warn:
+    """A task that warns of its number."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ("square",)
+
+    number: int
+    labels: dict = field(default_factory=dict, compare=False)
+
+    def __call__(self, history=None):
+        warnings.warn(f"the number is {self.number}", stacklevel=2)
+        return {"square": self.number**2}

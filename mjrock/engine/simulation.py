@@ -10,6 +10,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
+from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import require_flag, require_kind
 from ..result.ending import Outcome
 from ..result.response import Response, State
@@ -111,6 +112,8 @@ def simulate(
     if not (options.timestep is None or options.slides):
         warn_if_lifted(scene, run.steps)
     if isinstance(asked, AskedWall):
+        if asked.contacts.base.friction is None:
+            warn_of_low_stop(asked.case)
         warn_if_slid(run, asked)
         warn_if_open(response, run, asked, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:

@@ -17,12 +17,19 @@ from .style import style_of, styles_of
 BEYOND = 1.2
 """Rotation up to which a wall that overturns is shown, in multiples of alpha [-]."""
 
+DIFFERS = 0.01
+"""Difference of the rotation that overturns a wall from alpha that is drawn [-]."""
+FAR = 4.0
+"""That rotation over the largest of the motion, from which it is left out, as it would flatten the motion [-]."""
+
 
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Rotation in multiples of alpha against time.
 
     A wall that overturns is shown up to 1.2 alpha, or to its largest rotation before it has no way back. The picture
-    says when that was. Responses have the lines of their solvers, or with `labels` colours of their own.
+    says from when on that is; the message of the response says until when it was followed. Responses have the lines of
+    their solvers, or with `labels` colours of their own. A dotted line is the rotation that overturns a wall whose
+    effects move it from alpha, unless it is far beyond the motion.
     """
     fallen = [overturned_at(response) for response in responses]
     reached, styles = [0.0], styles_of(responses, labels)
@@ -31,10 +38,14 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
+    for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
+        if abs(limit - 1) > DIFFERS and limit < FAR * max(reached):
+            ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
+            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
     ax.set_xlabel("time $t$ [s]")
     ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
-    said = [f"{name}: overturned at t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
+    said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
     if said:
         top = max(BEYOND, 1.05 * max(reached))
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)

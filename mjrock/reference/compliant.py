@@ -18,6 +18,7 @@ from tqdm import tqdm
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.wall.case import Case
+from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
 from ..result.ending import ending
 from ..result.history import rocking_history
@@ -55,6 +56,7 @@ def solve_compliant(
     output_step = require_within("output_step", output_step, 1e-7, 10.0, "s")
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)
+    warn_of_low_stop(case)
     started = time.perf_counter()
     system = Wall(case, contacts)
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)

@@ -102,7 +102,8 @@ def of_results(responses: Sequence[Response], names: Sequence[str]) -> Rows:
         over, height = response.peak_over_alpha, 2 * response.case.block.h
         top = "-" if over == float("inf") else f"{1e3 * over * response.case.wall.alpha * height:.0f} mm"
         peak = "overturned" if over == float("inf") else f"{over:.3f}"
-        rows.append((name, response.outcome.value, peak, top, str(len(response.impacts)), _settings(response)))
+        share = "-" if over == float("inf") else f"{response.peak_over_overturning:.3f}"
+        rows.append((name, response.outcome.value, peak, share, top, str(len(response.impacts)), _settings(response)))
     return rows
 
 

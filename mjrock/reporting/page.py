@@ -33,6 +33,7 @@ thead { break-after: avoid }
 tr:nth-child(-n+2) { break-before: avoid }
 figure { margin: .6em 0; text-align: center }
 figure img { max-width: 100% }
+pre { font-size: .75em; white-space: pre-wrap; break-inside: avoid }
 ul.cautions { background: #fdf3e7; border-left: 4px solid #e07b2a; padding: .6em 1em .6em 2em }
 footer { margin-top: 2em; font-size: .8em; color: #666 }
 """
@@ -49,6 +50,7 @@ def report(
     contacts: Contacts | None = None,
     basis: Mapping[str, str] | None = None,
     notes: str = "",
+    sections: Mapping[str, object] | None = None,
 ) -> Path:
     """Write a report of a case and its responses: one HTML page that needs no other file and prints to PDF.
 
@@ -65,6 +67,8 @@ def report(
         basis: what inputs rest on, by the name that the page gives them, such as {"density": "3 cores, 2024", "k_base":
             "E of the mortar 800 MPa, 30 mm"}.
         notes: a paragraph that stands first: the question, the building, who asked.
+        sections: further sections after the results, by their headings: each a text, a figure, a result that has a
+            table, as those of `mechanism_check`, `sensitivity`, `fit_fragility` and `compare` have, or some of these.
 
     Returns:
         The path that was written.
@@ -89,11 +93,12 @@ def report(
         "Effects": content.of_effects(case),
         "Impacts and contacts": content.of_contacts(e, contacts),
     }
+    further = [part for name, pieces in required_sections(sections).items() for part in section(name, pieces)]
     rests = required_basis(basis, {row[0] for rows in inputs.values() for row in rows})
     head = [f"<h1>{html.escape(title)}</h1>", *([f"<p>{html.escape(notes)}</p>"] if notes else [])]
     parts = [*head, heading("The wall"), picture(sketch(case), "Section and elevation, true to scale [m].")]
     parts += [heading("What to be careful of"), listed(content.cautions(case, several, names))]
-    parts += [heading("Results"), results(several, names), *histories(several, names)]
+    parts += [heading("Results"), results(several, names), *histories(several, names), *further]
     for name, rows in inputs.items():
         if rows:
             found = [(key, value, rests.get(key, "")) for key, value in rows]
@@ -146,14 +151,44 @@ def required_basis(basis: object, known: set[str]) -> dict[str, str]:
     return dict(basis)
 
 
+def required_sections(sections: object) -> dict[str, object]:
+    """Further sections by their headings.
+
+    Raises:
+        TypeError: if they are no mapping of texts.
+    """
+    if not isinstance(sections, Mapping | None):
+        raise TypeError(f"sections = {shown(sections)} is no mapping of headings to texts, figures and results")
+    return {require_text("a heading of sections", name): pieces for name, pieces in (sections or {}).items()}
+
+
+def section(name: str, pieces: object) -> list[str]:
+    """A section: texts, figures and the tables of results.
+
+    Raises:
+        TypeError: for anything else.
+    """
+    parts = [heading(name)]
+    for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
+        if isinstance(piece, Figure):
+            parts.append(picture(piece, name))
+        elif isinstance(piece, str):
+            parts.append(f"<p>{html.escape(piece)}</p>")
+        elif callable(made := getattr(piece, "table", None)):
+            parts.append(f"<pre>{html.escape(made())}</pre>")
+        else:
+            raise TypeError(f"sections[{name!r}] = {shown(piece)} is no text, no figure and no result with a table")
+    return parts
+
+
 def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     """The tables of results, of ties, and the messages."""
-    columns = ("response", "outcome", "peak/alpha", "top moves by", "impacts", "solved with")
+    columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts", "solved with"
     made = table(columns, content.of_results(responses, names))
     ties = content.of_ties(responses, names)
     if ties:
-        columns = ("response", "tie", "largest force", "drawn out by", "energy taken", "broke at")
-        made += "<p></p>" + table(columns, ties)
+        of_tie = "response", "tie", "largest force", "drawn out by", "energy taken", "broke at"
+        made += "<p></p>" + table(of_tie, ties)
     return made + listed([f"{name}: {r.message}" for r, name in zip(responses, names, strict=True)], "")
 
 

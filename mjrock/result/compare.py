@@ -35,8 +35,9 @@ class Comparison:
 
     def __repr__(self) -> str:
         pair = self.restitution[0] if len(self.restitution) else (math.nan, math.nan)
+        which = "impact 1 under ground motion" if self.reference.case.shaken else "rebound 1"
         return (
-            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of rebound 1 {pair[1]:.4g} for "
+            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {pair[1]:.4g} for "
             f"{pair[0]:.4g}, RMS of theta/alpha {self.rms:.3g}>"
         )
 
@@ -156,6 +157,8 @@ class Comparison:
             lines.append(
                 f"Impacts are paired by time; those of less than {FAINT:.0%} of the overturning energy are out."
             )
+        if self.reference.case.shaken:
+            lines.append("Under ground motion the restitution is that of single impacts, and none of free rocking.")
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
         for label, response in zip(labels, (self.reference, self.candidate), strict=True):
             lines.append(f"{label}: {response.message}")

@@ -29,7 +29,11 @@ def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: flo
         outcome = Outcome.AT_REST
     else:
         outcome = Outcome.TIME_ENDED
-    return outcome, describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+    said = describe(outcome, case, min(float(t[-1]), case.duration), float(theta[-1]))
+    over = -float(theta.min()) / case.wall.alpha
+    if case.one_sided and over >= 1:
+        said += f" It leaned inwards over the side stop of {case.stop_top:g} m, by up to {over:.3g} alpha."
+    return outcome, said
 
 
 def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> str:
@@ -39,7 +43,7 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
         case Outcome.AT_REST:
             return f"The wall came to rest; last looked at {t_end:.4g} s."
         case Outcome.OVERTURNED:
-            return f"The wall overturned; at {t_end:.4g} s its rotation was {share:.3g} alpha."
+            return f"The wall overturned; it was followed until {t_end:.4g} s, when its rotation was {share:.3g} alpha."
         case Outcome.TIME_ENDED:
             return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
 

@@ -19,7 +19,7 @@ from ..quantities import Array, require_path
 from .ending import Outcome
 from .joints import JointMotion
 from .ledger import Ledger
-from .rocking import Impact, Rocking, displacement_at, restitution_of
+from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
 
@@ -187,14 +187,27 @@ class Response:
 
     @property
     def peak_over_alpha(self) -> float:
-        """Largest rotation of a wall over alpha [-]; infinite for a wall that has overturned.
+        """Largest rotation of a wall over alpha [-], over a low side stop too; infinite for one that has overturned."""
+        return self._largest(self.of_wall[0].wall.alpha, self.of_wall[0].wall.alpha)
 
-        The largest rotation may be that of the last sample, where a run ends on its way out.
-        """
+    @property
+    def peak_over_overturning(self) -> float:
+        """The same over `Case.overturning_rotation`, or inwards `Case.inward_limit`, which effects may lower [-]."""
+        return self._largest(self.of_wall[0].overturning_rotation, self.of_wall[0].inward_limit)
+
+    @property
+    def inwards_over_alpha(self) -> float | None:
+        """How far a wall leaned inwards over its side stop, over alpha [-]; None without a stop."""
         case, rocking = self.of_wall
+        return farthest(case, rocking, self.theta)[1] / case.wall.alpha if case.one_sided else None
+
+    def _largest(self, outer: float, inner: float) -> float:
+        """Largest rotation over a limit outwards and one inwards [rad], infinite for a wall that has overturned."""
+        case, rocking = self.of_wall
+        outwards, inwards = farthest(case, rocking, self.theta)
         if self.outcome is Outcome.OVERTURNED:
             return math.inf
-        return float(max(rocking.peaks.max(initial=0.0), np.abs(self.theta[-1]))) / case.wall.alpha
+        return outwards / outer if case.stop_top == 2 * case.block.h else max(outwards / outer, inwards / inner)
 
     @property
     def restitution(self) -> Array:
@@ -229,8 +242,7 @@ class Response:
 
         The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
         rest [m, m, rad], in space x, y, z and the quaternion, and the acceleration of the ground where there is one
-        [m/s2]. Their names have no commas, so
-        that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read them. Numbers keep all their digits.
+        [m/s2]. No name has a comma: `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept.
 
         Raises:
             OSError: if the file cannot be written.

@@ -89,6 +89,23 @@ def restitution_of(leaving: Array, reaching: Array) -> Array:
         return np.sqrt(reaching[1:] / leaving[:-1])
 
 
+def farthest(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
+    """Largest rotation of a wall outwards, and inwards [rad].
+
+    The largest rotation may be that of the last sample, where a run ends on its way out. Against a side stop peaks are
+    outward, and the inward rotation is that of the wall as it presses the stop or leans over it.
+
+    Args:
+        case, rocking: of the wall.
+        theta: rotations at the samples [rad], shape (n,).
+    """
+    peak, outwards, inwards = float(rocking.peaks.max(initial=0.0)), float(theta.max()), -float(theta.min())
+    if case.one_sided:
+        return max(peak, float(theta[-1])), max(inwards, 0.0)
+    peak = max(peak, abs(float(theta[-1])))
+    return (peak, max(inwards, 0.0)) if outwards >= inwards else (max(outwards, 0.0), peak)
+
+
 def displacement_at(case: Case, pose: Array, z: float) -> Array:
     """Horizontal displacement of the middle of a wall at the height z [m], shape (n,).
 

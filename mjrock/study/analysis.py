@@ -39,6 +39,8 @@ WALL_COLUMNS = (
     "law",
     "outcome",
     "peak_over_alpha",
+    "peak_over_overturning",
+    "inwards_over_alpha",
     "impacts",
     "restitution_1",
     "restitution_2",
@@ -164,8 +166,8 @@ class Analysis:
         """The columns of a wall but the last two."""
         restitution = [float(value) for value in response.restitution[:3]] + [None] * 3
         law = "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
-        peak = response.peak_over_alpha
-        return self.solver, law, response.outcome.value, peak, len(response.impacts), *restitution[:3]
+        peaks = response.peak_over_alpha, response.peak_over_overturning, response.inwards_over_alpha
+        return self.solver, law, response.outcome.value, *peaks, len(response.impacts), *restitution[:3]
 
 
 def _of_ties(response: Response) -> Iterator[float | None]:

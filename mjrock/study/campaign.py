@@ -13,6 +13,7 @@ from ..quantities import is_iterable, require_flag, require_path, require_real, 
 from .campaign_pool import Dispatch
 from .campaign_run import Runner
 from .campaign_task import Row, Task, column_names, keyed
+from .overheard import listening
 from .progress import Progress
 from .store import Store
 
@@ -33,7 +34,9 @@ def campaign(
     """Run every task that the store does not hold yet, and write a row for each.
 
     Killing a campaign loses only the cases in progress, and the rows of about the last half second. The same call
-    carries on from there and does nothing twice that has a row. A task that fails becomes a row with its error, and so
+    carries on from there and does nothing twice that has a row. Warnings that differ in their numbers alone are shown
+    once, and the last lines say how often each came. Tasks of the same content and other labels share a row, and a line
+    says so. A task that fails becomes a row with its error, and so
     does one that calls `sys.exit`, ends its process, or cannot be built, pickled or labelled. The rows do not depend on
     the order in which tasks finish. Without a terminal a line every 30 s says how far the campaign is. A last line says
     how many tasks are done, failed and left and how they ended; `python -m mjrock status walls.sqlite` says it later.
@@ -81,7 +84,8 @@ def campaign(
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry)
         try:
-            _carry_out(run, tasks, executor, count, limit)
+            with listening(run.warned.add):
+                _carry_out(run, tasks, executor, count, limit)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"

@@ -16,6 +16,7 @@ import numpy as np
 
 from .campaign_task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
 from .campaign_worker import FLUSH
+from .overheard import Overheard
 from .progress import Progress
 from .store import Store
 
@@ -42,6 +43,7 @@ class Runner:
         self.file, self.progress, self.folder, self.retry = file, progress, folder, retry
         self.statuses: Counter[str] = Counter()
         self.outcomes: Counter[str] = Counter()
+        self.warned = Overheard()
         self.seconds = 0.0
         self.finished = 0
         self.skipped = 0
@@ -52,9 +54,13 @@ class Runner:
         statuses = self.file.statuses()
         partial = self._partial_histories()
         columns: tuple[str, ...] = ()
+        labels: dict[str, dict[str, object]] = {}
         for position, asked in enumerate(tasks):
             self.asked += 1
             key, task = keyed(asked)
+            if (first := labels.setdefault(key, dict(task.labels))) != task.labels:
+                same = f"the case labelled {dict(task.labels)} is that labelled {first}"
+                self.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
             history = None if self.folder is None else self.folder / f"{key}.npz"
             status = statuses.get(key)
             kept = status == "failed" or history is None or history.exists()
@@ -82,7 +88,9 @@ class Runner:
         return partial
 
     def write(self, jobs: Sequence[Job], rows: Sequence[Row]) -> None:
-        """Write the rows of jobs and show how far the campaign is."""
+        """Write the rows of jobs and show how far the campaign is. What a worker has warned of is counted."""
+        for text in (text for row in rows for text in row.pop("warned", ())):
+            self.warned.add(text)
         self.file.add(
             [
                 {"key": job.key, "position": job.position, "version": VERSION, **job.task.labels, **row}
@@ -96,8 +104,8 @@ class Runner:
         self.progress.show(self.skipped, self.finished, self.statuses["failed"])
 
     def close(self) -> None:
-        """Say how the campaign ended."""
-        self.progress.close(self.skipped, self.statuses, self.outcomes)
+        """Say what was warned of, and how the campaign ended."""
+        self.progress.close(self.skipped, self.statuses, self.outcomes, self.warned.lines())
 
     def here(self, job: Job, reason: object) -> None:
         """Run a job that can go to no other process, for a reason that the user is told, in a thread of this one.

@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
@@ -21,6 +22,7 @@ from typing import Any
 from tqdm import tqdm
 
 from .campaign_task import Row, Task, carry_out, failed_row
+from .overheard import listening
 
 FLUSH = 0.1
 """Time after which rows of a list of tasks are handed over while the next task runs [s]."""
@@ -143,6 +145,8 @@ def serve(connection: Connection, progress: Any) -> None:
     """What a worker process does: carry out lists of tasks until the connection is closed, maybe while it starts."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     tqdm.set_lock(threading.RLock())  # its own is a semaphore, which a process that is killed would leave behind
+    if not sys.warnoptions:
+        warnings.simplefilter("always", UserWarning)  # the campaign counts them
     with contextlib.suppress(EOFError, OSError):  # what a task raises is in its row
         _serve(connection, progress)
 
@@ -169,7 +173,10 @@ def _serve(connection: Connection, progress: Any) -> None:
         for task, history in tasks:
             progress[0] += 1
             progress[1] = time.monotonic()
-            row = carry_out(task, history)
+            warned: list[str] = []
+            with listening(warned.append):
+                row = carry_out(task, history)
+            row["warned"] = warned
             with lock:
                 rows.append(row)
         progress[1] = math.inf

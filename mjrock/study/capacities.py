@@ -13,14 +13,15 @@ from scipy.special import stdtrit
 
 from ..quantities import Array, Flags, is_iterable, require_row, require_whole, require_within, shown
 from ..result.ending import Outcome
-from .fragility import FEWEST_GROUPS, Fragility, labels_of
+from .fragility import FEWEST_GROUPS, Fragility, labels_of, require_groups
 
 
 def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
     """Whether each run of a campaign lost its wall, for `fit_fragility`; shape (n,).
 
     A wall is lost if it overturned. One with ties is lost too if the time ended after it had leaned by alpha or more:
-    ties alone held it, and a wall that leans on ties that yield does not survive. A wall that still rocks stands.
+    ties alone held it, and a wall that leans on ties that yield does not survive. So is one that leaned inwards by
+    alpha or more, over its side stop. A wall that still rocks stands.
 
     Args:
         rows: rows of walls, as `Store.rows` gives them.
@@ -39,7 +40,7 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
             raise ValueError(f"rows[{i}] has outcome = {outcome!r} and peak_over_alpha = {peak!r}: no result of a wall")
         tied = any(name.startswith("tie_") and value is not None for name, value in row.items())
         leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
-        found.append(outcome == Outcome.OVERTURNED.value or leans)
+        found.append(outcome == Outcome.OVERTURNED.value or leans or (row.get("inwards_over_alpha") or 0.0) >= 1.0)
     return np.array(found, dtype=bool)
 
 
@@ -166,6 +167,5 @@ def _groups(groups: ArrayLike | None, count: int, least: int = FEWEST_GROUPS) ->
     if labels.shape != (count,):
         raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
     names, group = np.unique(labels, return_inverse=True)
-    if len(names) < least:
-        raise ValueError(f"groups names {len(names)} groups; the valid range is {least} or more")
+    require_groups(len(names), least)
     return len(names), group

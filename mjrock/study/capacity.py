@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, keep, require_kind, require_within, shown
+from ..quantities import GRAVITY, keep, require_kind, require_whole, require_within, shown
 from .analysis import Analysis
 from .campaign_task import Row
 
@@ -19,7 +19,7 @@ GROWTH = 1.25
 a finer ratio misses fewer of such islands."""
 LARGEST, LEAST = 1e3, 1e-6
 """Scales beyond which the search for a bracket gives up, over the scale it starts at [-]."""
-COLUMNS = ("solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "runs", "message")
+COLUMNS = ("solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "falls_below_g", "runs", "message")
 
 
 def bracket(falls: Callable[[float], bool], start: float = 1.0, growth: float = GROWTH) -> tuple[float, float]:
@@ -60,13 +60,16 @@ class Capacity:
     The horizontal and the vertical motion of the case are scaled together. From the scale `start` the search goes up
     by a quarter at a time until the wall falls, or down until it stands, and then halves the interval. Its row has
     `capacity_g`, the peak ground acceleration over g that overturns the wall, `capacity_scale`, the factor on the
-    motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. A wall may stand again at a higher
-    intensity; `ida` shows all.
+    motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. That is one edge. Where a wall falls
+    at one intensity, stands at a higher one and falls again, `start` decides which. `falls_below_g` is the lowest of
+    `below` weaker intensities, a quarter apart, at which the wall falls too, empty if it stands at all of them; the
+    message then says "Not monotonic". `ida` shows all.
 
     Args:
         analysis: the case with its motion, solver and contacts.
         tolerance: how far below the answer the wall may be known to stand, over the answer [-], 1e-6 to 0.5.
         start: scale of the motion from which the search starts [-], 1e-6 to 1e6.
+        below: how many weaker intensities are tried, 0 to 30.
 
     Raises:
         TypeError: for what is no `Analysis`.
@@ -76,6 +79,7 @@ class Capacity:
     analysis: Analysis
     tolerance: float = 0.01
     start: float = 1.0
+    below: int = 4
 
     def __post_init__(self) -> None:
         require_kind("analysis", self.analysis, Analysis)
@@ -83,6 +87,7 @@ class Capacity:
             self,
             tolerance=require_within("tolerance", self.tolerance, 1e-6, 0.5),
             start=require_within("start", self.start, 1e-6, 1e6),
+            below=require_whole("below", self.below, 0, 30),
         )
         case = self.analysis.case
         if not isinstance(case, Case) or not isinstance(case.motion, GroundMotion) or not case.motion.peak > 0:
@@ -133,6 +138,7 @@ class Capacity:
             return self.scaled(scale).solve().peak_over_alpha == math.inf
 
         low, high = halved(falls, *bracket(falls, self.start), self.tolerance)
+        weaker = [scale for scale in (low / GROWTH**i for i in range(1, self.below + 1)) if falls(scale)]
         if history is not None:
             self.scaled(high)(history)
         assert self.analysis.case.motion is not None
@@ -140,4 +146,8 @@ class Capacity:
         contacts = self.analysis.contacts
         law = "restitution" if contacts is None or self.solver == "analytical" else contacts.law
         message = f"The wall overturns at {high * peak:.4g} g and stands at {low * peak:.4g} g."
-        return dict(zip(COLUMNS, (self.solver, law, high * peak, high, low * peak, runs, message), strict=True))
+        lowest = min(weaker) * peak if weaker else None
+        if weaker:
+            message += f" Not monotonic: it overturns at {', '.join(f'{scale * peak:.4g}' for scale in weaker)} g too."
+        values = self.solver, law, high * peak, high, low * peak, lowest, runs, message
+        return dict(zip(COLUMNS, values, strict=True))

@@ -9,6 +9,8 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 
+from tqdm import tqdm
+
 from ..problem.damping.contacts import Contacts, required_frictions, required_layout
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.block import Block
@@ -156,7 +158,13 @@ def as_theory(
 
 def _matched(name: str, match: Match, bounds: tuple[float, float], *, whole: bool) -> float:
     """The damping ratio that is matched, with a warning where the match is missed."""
-    closest = highest_branch(match.restitution, match.target, bounds, whole=whole)
+    with tqdm(desc=f"matching the {name}", unit="run", delay=3, disable=None, leave=False) as bar:
+
+        def measured(xi: float) -> float:
+            bar.update()
+            return match.restitution(xi)
+
+        closest = highest_branch(measured, match.target, bounds, whole=whole)
     if not closest.reached:
         warnings.warn(
             f"no damping of the {name} gives |e| = {match.target:.4g}; the closest, xi = {closest.xi:.3g}, gives "

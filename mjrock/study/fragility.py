@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ndtr, ndtri, stdtrit
+from scipy.special import ndtr, ndtri
 
 from ..files import write_text
 from ..quantities import Array, Flags, require_path, require_plain, require_reals, require_whole, require_within, shown
 from ..result.table import csv_text
-from .probit import curvature, probit, resampled
+from .probit import curvature, probit, reflected, resampled, score_of
 
 FEWEST_GROUPS = 5
 """Fewest groups that are resampled."""
@@ -57,7 +57,7 @@ class Fragility:
         Raises:
             TypeError, ValueError: unless the intensities are real numbers that are not negative. Infinity is allowed.
         """
-        return np.asarray(ndtr(_score(_intensities(intensity), self.median, self.dispersion)))
+        return np.asarray(ndtr(score_of(_intensities(intensity), self.median, self.dispersion)))
 
     def band(self, intensity: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper bound of that share [-], point by point.
@@ -70,10 +70,10 @@ class Fragility:
         """
         confidence = require_within("confidence", confidence, 0.0, 1.0)
         x = _intensities(intensity)
-        score = _score(x, self.median, self.dispersion)
+        score = score_of(x, self.median, self.dispersion)
         if self.resamples is not None:
-            scores = _score(x[..., None], *self.resamples.T)
-            low, high = _reflected(score, scores, confidence, self.groups)
+            scores = score_of(x[..., None], *self.resamples.T)
+            low, high = reflected(score, scores, confidence, self.groups)
             return np.asarray(ndtr(low)), np.asarray(ndtr(high))
         certain = np.isinf(score)  # no damage without motion, and none is spared by an infinite one
         finite = np.where(certain, 0.0, score)
@@ -90,6 +90,19 @@ class Fragility:
     def dispersion_interval(self, confidence: float = 0.9) -> tuple[float, float]:
         """Confidence interval of the dispersion [-]."""
         return self._interval(1, self.dispersion, confidence)
+
+    def table(self, confidence: float = 0.9) -> str:
+        """Median and dispersion with their intervals, and how many runs and groups stand behind them, as text."""
+        fitted = {
+            "median": (self.median, *self.median_interval(confidence)),
+            "dispersion": (self.dispersion, *self.dispersion_interval(confidence)),
+        }
+        lines = [
+            f"{name:<10}  {value:.4g}, {confidence:.0%} interval {low:.4g} to {high:.4g}"
+            for name, (value, low, high) in fitted.items()
+        ]
+        kept = "taken as independent" if self.groups is None else f"of {self.groups} groups"
+        return "\n".join([*lines, f"{self.count} runs {kept}"])
 
     def csv(
         self, path: str | Path | None = None, *, intensity: ArrayLike | None = None, confidence: float = 0.9
@@ -116,7 +129,7 @@ class Fragility:
         confidence = require_within("confidence", confidence, 0.0, 1.0)
         if self.resamples is not None:
             with np.errstate(divide="ignore"):
-                low, high = _reflected(np.log(value), np.log(self.resamples[:, which]), confidence, self.groups)
+                low, high = reflected(np.log(value), np.log(self.resamples[:, which]), confidence, self.groups)
             return float(np.exp(low)), float(np.exp(high))
         reach = float(ndtri(0.5 + 0.5 * confidence)) * math.sqrt(self.covariance[which][which])
         return value * math.exp(-reach), value * math.exp(reach)
@@ -169,8 +182,7 @@ def fit_fragility(
             f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
         )
     names, group = np.unique(labels, return_inverse=True)
-    if len(names) < FEWEST_GROUPS:
-        raise ValueError(f"groups names {len(names)} groups; the valid range is {FEWEST_GROUPS} or more")
+    require_groups(len(names))
     count, shares = require_whole("resamples", resamples, 20, 100_000), np.full(len(names), 1 / len(names))
     rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
     draws = rng.multinomial(len(names), shares, size=count)
@@ -229,6 +241,15 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
+def require_groups(count: int, least: int = FEWEST_GROUPS) -> None:
+    """Raise ValueError for fewer groups than an interval can be drawn from."""
+    if count < least:
+        raise ValueError(
+            f"groups names {count} groups; the valid range is {least} or more: fewer give no interval that can be "
+            "trusted. Run more records, or report the single values and their range"
+        )
+
+
 def labels_of(groups: ArrayLike) -> NDArray[Any]:
     """What each run belongs to.
 
@@ -269,27 +290,3 @@ def _require_fit(x: Array, fell: Flags) -> None:
         raise ValueError(
             f"every run above {x[~fell].max():g} overturned and none below {x[fell].min():g}: a step, not a curve"
         )
-
-
-def _score(intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
-    """How many dispersions an intensity lies above the median; nothing over nothing counts as the median itself."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        score = np.log(np.asarray(intensity) / np.asarray(median)) / np.asarray(dispersion)
-    return np.asarray(np.where(np.isnan(score), 0.0, score))
-
-
-def _reflected(value: ArrayLike, drawn: Array, confidence: float, groups: int | None) -> tuple[Array, Array]:
-    """The basic bootstrap interval, along the last axis: resamples lie about the estimate as it does about the truth.
-
-    Resamples of n groups spread by sqrt((n - 1) / n) too little, and the quantile of few is that of Student's t; the
-    interval is wider by both. `scripts/studies/fragility_coverage.py` counts how often it holds the truth.
-    """
-    n = groups or math.inf
-    tail = 0.5 + 0.5 * confidence
-    wider = math.sqrt(n / (n - 1)) * stdtrit(n - 1, tail) / ndtri(tail) if math.isfinite(n) and 0.5 < tail < 1 else 1.0
-    ends = 50 * (1 - confidence), 50 * (1 + confidence)
-    low, high = np.percentile(drawn, ends, axis=-1, method="nearest")
-    with np.errstate(invalid="ignore"):
-        interval = value + wider * (value - high), value + wider * (value - low)
-    first, last = (np.where(np.isnan(end), value, end) for end in interval)  # both infinite: as certain as the estimate
-    return np.asarray(first), np.asarray(last)

@@ -16,6 +16,7 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import SHORTEST, response_spectrum
 from ..problem.wall.case import Case
 from ..problem.wall.effects import AddedMass
+from ..problem.wall.ties_on_wall import pulled
 from ..quantities import GRAVITY, Array, require_kind, require_real, require_within, shown
 from .pushover import pushover
 
@@ -59,7 +60,8 @@ class MechanismCheck:
     """Every step of the check.
 
     Args:
-        alpha_0: multiplier that starts the mechanism [-].
+        alpha_0: multiplier that starts the mechanism [-], its ties slack.
+        alpha_tied: the same with its ties at their strength, as forces on the mechanism; None without ties [-].
         participation: e*, the participating share of the mass [-].
         confidence_factor: FC [-].
         d: spectral displacements of the capacity curve [m], shape (n,).
@@ -69,6 +71,7 @@ class MechanismCheck:
     """
 
     alpha_0: float
+    alpha_tied: float | None
     participation: float
     confidence_factor: float
     d: Array
@@ -79,12 +82,21 @@ class MechanismCheck:
     @property
     def a_0(self) -> float:
         """Acceleration that starts the mechanism [m/s2]; the peak ground acceleration of its damage limit state."""
-        return self.alpha_0 * GRAVITY / (self.participation * self.confidence_factor)
+        return self._acceleration(self.alpha_0)
 
     @property
     def linear(self) -> float:
-        """Peak ground acceleration of the linear check of the SLV with q = 2 [m/s2]."""
+        """Peak ground acceleration of the linear check of the SLV with q = 2 [m/s2], the ties slack."""
         return BEHAVIOUR * self.a_0
+
+    @property
+    def linear_tied(self) -> float | None:
+        """The same with the ties at their strength [m/s2]; None without ties."""
+        return None if self.alpha_tied is None else BEHAVIOUR * self._acceleration(self.alpha_tied)
+
+    def _acceleration(self, multiplier: float) -> float:
+        """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
+        return multiplier * GRAVITY / (self.participation * self.confidence_factor)
 
     def table(self) -> str:
         """The steps with their clauses, as text."""
@@ -94,8 +106,11 @@ class MechanismCheck:
             ("confidence factor FC", f"{self.confidence_factor:.2f}", "C8.7.1.2.1.3"),
             ("a_0 = alpha_0 g / (e* FC) [g], SLD", f"{self.a_0 / GRAVITY:.4f}", "C8.7.1.8"),
             ("linear SLV, q a_0 with q = 2 [g]", f"{self.linear / GRAVITY:.4f}", "C8.7.1.2.1.7"),
-            ("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"),
         ]
+        if self.alpha_tied is not None and self.linear_tied is not None:
+            rows.append(("alpha_0, ties at their strength", f"{self.alpha_tied:.4f}", "C8.7.1.1"))
+            rows.append(("linear SLV, ties at their strength [g]", f"{self.linear_tied / GRAVITY:.4f}", "C8.7.1.2.1.7"))
+        rows.append(("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"))
         for name, state in self.states.items():
             rows += [
                 (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
@@ -119,8 +134,10 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     period: of a code's spectrum its value there, of a record the largest at any period up to it.
 
     Loads have no mass here, and give no horizontal force. Ties count along the curve with the strength they have until
-    they break. Of the two conditions of C8.7.1.2.1.6 only the share of d_0 is looked at: whether a beam loses its seat
-    before is for the user. Amplification above the ground (C8.7.1.2.1.4) is not in it.
+    they break. In the linear check they stand twice: slack, as they are where rocking starts, and at their strength, a
+    stabilising force on the mechanism in the equation of virtual work, for ties that are tensioned or have no slack. Of
+    the two conditions of C8.7.1.2.1.6 only the share of d_0 is looked at: whether a beam loses its seat before is for
+    the user. Amplification above the ground (C8.7.1.2.1.4) is not in it.
 
     Args:
         case: the wall and its effects; its release and its motion play no part.
@@ -150,7 +167,11 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
         capacity = share * d_0
         period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
         states[name] = LimitState(capacity, period, _asked(demand, period, DAMPING[name]))
-    return MechanismCheck(float(curve.multiplier[0]), participation, factor, d, a, d_0, states)
+    alpha_0, tied = float(curve.multiplier[0]), None
+    if case.pulls:
+        held = sum(pull.strength * float(pulled(pull, 0.0, 1.0)[1]) for pull in case.pulls)
+        tied = alpha_0 + held / (wall.weight * wall.centroid_height)
+    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states)
 
 
 def _masses(case: Case) -> tuple[Array, Array]:

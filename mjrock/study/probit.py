@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.special import log_ndtr, ndtr, ndtri
+from numpy.typing import ArrayLike
+from scipy.special import log_ndtr, ndtr, ndtri, stdtrit
 
 from ..quantities import Array, Flags
 
@@ -101,3 +102,27 @@ def _penalised(log_x: Array, fell: Flags, weights: Array) -> Array:
         if size.max() < 1e-8:
             break
     return np.stack([fits[:, 0] - fits[:, 1] * middle / width, fits[:, 1] / width], axis=1)
+
+
+def score_of(intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
+    """How many dispersions an intensity lies above the median; nothing over nothing counts as the median itself."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        score = np.log(np.asarray(intensity) / np.asarray(median)) / np.asarray(dispersion)
+    return np.asarray(np.where(np.isnan(score), 0.0, score))
+
+
+def reflected(value: ArrayLike, drawn: Array, confidence: float, groups: int | None) -> tuple[Array, Array]:
+    """The basic bootstrap interval, along the last axis: resamples lie about the estimate as it does about the truth.
+
+    Resamples of n groups spread by sqrt((n - 1) / n) too little, and the quantile of few is that of Student's t; the
+    interval is wider by both. `scripts/studies/fragility_coverage.py` counts how often it holds the truth.
+    """
+    n = groups or math.inf
+    tail = 0.5 + 0.5 * confidence
+    wider = math.sqrt(n / (n - 1)) * stdtrit(n - 1, tail) / ndtri(tail) if math.isfinite(n) and 0.5 < tail < 1 else 1.0
+    ends = 50 * (1 - confidence), 50 * (1 + confidence)
+    low, high = np.percentile(drawn, ends, axis=-1, method="nearest")
+    with np.errstate(invalid="ignore"):
+        interval = value + wider * (value - high), value + wider * (value - low)
+    first, last = (np.where(np.isnan(end), value, end) for end in interval)  # both infinite: as certain as the estimate
+    return np.asarray(first), np.asarray(last)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -56,9 +56,14 @@ class Progress:
             self.bar.clear()
             self._say(text)
 
-    def close(self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int]) -> None:
-        """Say how many tasks had a row, how the others ended and how long that took, and how many are left."""
+    def close(
+        self, skipped: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], warned: Sequence[str]
+    ) -> None:
+        """Say what was warned of, how many tasks had a row, how the others ended, how long that took, and how many are
+        left."""
         self.bar.close()
+        for line in warned:
+            self._say(line)
         self._say(closing(skipped, statuses, outcomes, time.monotonic() - self.started, self.total))
 
     def _say(self, text: str) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from tqdm import tqdm
 
 from ..geometry.frames import frames_of
 from ..geometry.kinematics import along, gaps, snaps, stretch
@@ -54,7 +55,7 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
     pose = scene.at_rest[0].copy()
     rows = np.zeros((len(rotations), 5))
     lever = _lever(scene, int(base[-1]), pose)
-    for n, theta in enumerate(rotations):
+    for n, theta in enumerate(tqdm(rotations, desc="push-over", delay=3, disable=None, leave=False)):
         step, before = theta - pose[2], lever
         start = pose[0]
         for _ in range(2):  # Heun's method: the second time with the mean of both levers

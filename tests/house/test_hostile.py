@@ -139,7 +139,7 @@ CALLS = OF_NUMBERS | {
     "overturning_intensity": (
         mr.overturning_intensity, {"build": pushed, "low": 0.5, "high": 3.0, "tolerance": 0.1, "start": 1.0},
     ),
-    "Capacity": (mr.Capacity, {"analysis": pushed(1.0), "tolerance": 0.1, "start": 1.0}),
+    "Capacity": (mr.Capacity, {"analysis": pushed(1.0), "tolerance": 0.1, "start": 1.0, "below": 1}),
     "fit_fragility": (
         mr.fit_fragility,
         {

@@ -38,6 +38,7 @@ WRITES = {
     "pushover": {f"pushover.{ending}" for ending in ("png", "csv", "txt")} | {"pushover_bases.png"},
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
+    "low_stop": {"low_stop.txt"},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
     "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},

@@ -96,3 +96,20 @@ def test_pictures_of_laws_take_rows_of_one_length(draw, complaint):
 def test_what_a_law_obtains_may_be_missing():
     ax = plotting.obtained(Figure().subplots(), {"law": ([0.5, 0.6], [0.5, np.nan])})
     np.testing.assert_array_equal(ax.get_lines()[1].get_ydata(), [0.5, np.nan])
+
+
+def test_a_rotation_that_overturns_below_alpha_is_drawn(wall, contacts):
+    """A load at the top lowers it. Without effects there is no line, nor one far beyond the motion."""
+    load, tie = mr.Load(0.4 * wall.weight, height=2 * wall.h), mr.Tie(2 * wall.h, 1e6)
+    for effects, released, drawn in (
+        ((load,), 0.3, True),
+        ((load,), 0.1, False),
+        ((), 0.3, False),
+        ((tie,), 0.3, False),
+    ):
+        run = mr.simulate(mr.Case(wall, released * wall.alpha, 0.1, effects=effects), contacts)
+        ax = mr.plotting.history(run).axes[0]
+        levels = [line.get_ydata()[0] for line in ax.get_lines() if line.get_linestyle() == ":"]
+        share = run.case.overturning_rotation / wall.alpha
+        assert levels == ([pytest.approx(share)] if drawn else [])
+        assert ("overturns" in [text.get_text() for text in ax.texts]) == drawn

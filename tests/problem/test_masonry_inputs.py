@@ -1,6 +1,7 @@
 """Properties by type of masonry, the range of k_n that data leave open, and the toe that crushes."""
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -107,3 +108,9 @@ def test_the_crushed_toe_carries_the_weight():
 def test_what_cannot_be(call, complaint):
     with pytest.raises((ValueError, TypeError), match=complaint):
         call()
+
+
+def test_the_page_names_the_types_as_the_table_does():
+    page = (Path(mr.__file__).parents[1] / "docs" / "stiffness.md").read_text(encoding="utf-8")
+    rows = page.split("| masonry, mortar poor |")[1].split("\n\n")[0].splitlines()[2:]
+    assert [row.split("|")[1].strip() for row in rows] == list(mr.MASONRY_TYPES)

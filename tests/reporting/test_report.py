@@ -5,6 +5,7 @@ import re
 from io import BytesIO
 
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 import mjrock as mr
@@ -48,6 +49,21 @@ def test_one_page_with_all_that_it_needs(tmp_path):
     assert ANSWER.message in text.replace("&#x27;", "'")
 
 
+def test_sections_hold_texts_figures_and_tables(tmp_path):
+    check = mr.mechanism_check(CASE, lambda T, xi: 0.1)
+    figure = Figure(figsize=(2.0, 1.0))
+    curve = mr.fit_fragility([1.0, 2.0, 3.0, 4.0, 5.0], [False, True, False, True, True])
+    given = {"Code check <SLV>": [check, "It is linear & not.", figure], "Fragility": curve}
+    text = mr.report(CASE, ANSWER, tmp_path / "a.html", sections=given).read_text(encoding="utf-8")
+    assert "<h2>Code check &lt;SLV&gt;</h2>" in text
+    for said in (check.table(), curve.table(), "It is linear &amp; not."):
+        assert said in text
+    bare = mr.report(CASE, ANSWER, tmp_path / "b.html").read_text(encoding="utf-8")
+    assert text.count("<img") == bare.count("<img") + 1
+    assert "<pre>" not in bare
+    assert text.index("<h2>Results") < text.index("<h2>Code check") < text.index("<h2>Inputs: wall")
+
+
 @pytest.mark.slow
 def test_the_same_report_is_the_same_bytes(tmp_path):
     paths = [mr.report(CASE, ANSWER, tmp_path / name) for name in ("a.html", "b.html")]
@@ -78,6 +94,9 @@ def test_a_sketch_names_values_or_arguments():
         ({"basis": {"k": "?"}}, "basis has 'k', which is none of"),
         ({"basis": "mortar"}, "basis = 'mortar'"),
         ({"title": 3}, "title = 3"),
+        ({"sections": "fragility"}, "sections = 'fragility' of type str is no mapping of headings"),
+        ({"sections": {"Code": 3}}, r"sections\['Code'\] = 3 of type int is no text, no figure and no result"),
+        ({"sections": {3: "x"}}, "a heading of sections = 3"),
         ({"e": 3}, "e = 3"),
         ({"case": mr.Case(mr.Block.from_size(0.5, 4.2), 0.0, 1.0)}, r"responses\[0\] is of"),
     ],

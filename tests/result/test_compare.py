@@ -82,3 +82,13 @@ def test_more_impacts_than_the_other_are_shown_as_missing(one_sided, contacts, e
 def test_different_cases_are_not_compared(two_sided, one_sided, e):
     with pytest.raises(ValueError, match="different cases"):
         mr.compare(mr.solve_analytical(two_sided, e), mr.solve_analytical(one_sided, e))
+
+
+def test_restitution_under_ground_motion_is_said_to_be_that_of_impacts(wall, contacts, e, comparison):
+    case = mr.Case(wall, 0.0, 2.0, motion=mr.GroundMotion.sine(-3.0, 0.6))
+    shaken = mr.compare(mr.solve_analytical(case, e), mr.simulate(case, contacts))
+    said = "Under ground motion the restitution is that of single impacts, and none of free rocking."
+    assert said in shaken.table().splitlines()
+    assert "|e| of impact 1 under ground motion" in repr(shaken)
+    assert said not in comparison.table()
+    assert "|e| of rebound 1 " in repr(comparison)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -166,3 +168,79 @@ def test_the_end_is_judged_by_the_last_sample(two_sided, wall, energy, theta, ou
     found, message = ending(two_sided, t, last[1], last[0], uplift)
     assert found is outcome
     assert "2 s" in message
+
+
+def over_a_curb(seed, factor, duration=6.0):
+    """A wall under a record behind a curb of a tenth of its height, on a base that slides."""
+    wall = mr.Block.from_size(0.8, 4.0, 6.0, 1800.0)
+    held = mr.Contacts.from_law(wall, mr.Restitution.from_geometry(wall), k_base=1e9, k_side=1e9)
+    slides = replace(held, base=replace(held.base, friction=0.6))
+    motion = mr.GroundMotion.synthetic(peak=factor * mr.GRAVITY / 5, duration=6.0, seed=seed)
+    return mr.Analysis(mr.Case(wall, 0.0, duration, side_stop=mr.SideStop(0.4), motion=motion), contacts=slides)
+
+
+def test_a_wall_that_leans_inwards_over_a_low_stop_is_not_safe():
+    task = over_a_curb(6, 5.5)
+    leaning = task.solve()
+    alpha, row = leaning.case.wall.alpha, task()
+    assert leaning.peaks.max() < 0.9 * alpha < alpha < -leaning.theta.min()
+    assert leaning.peak_over_alpha == leaning.inwards_over_alpha == pytest.approx(-leaning.theta.min() / alpha)
+    limit = np.arctan2(0.4, 2.0 - 0.4)  # about the highest point of the stop
+    assert leaning.case.inward_limit == pytest.approx(limit)
+    assert row["peak_over_overturning"] == pytest.approx(-leaning.theta.min() / limit)
+    assert row["inwards_over_alpha"] == leaning.inwards_over_alpha
+    assert row["outcome"] == "time ended"
+    assert mr.lost([row]).tolist() == [True]
+    assert "leaned inwards over the side stop of 0.4 m, by up to 1.16 alpha" in row["message"]
+
+
+def test_a_wall_that_turns_over_a_low_stop_has_overturned():
+    turning = over_a_curb(2, 5.0).solve()
+    assert -np.pi / 2 < turning.theta[-1] < -turning.case.inward_limit
+    assert turning.outcome is mr.Outcome.OVERTURNED
+    assert turning.peak_over_alpha == turning.peak_over_overturning == np.inf
+
+
+@pytest.mark.parametrize("side_stop", [False, True])
+def test_peak_over_the_rotation_that_overturns(wall, contacts, side_stop):
+    """A load at the top lowers the rotation that overturns; a wall without effects has the one peak."""
+    bare = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.2, side_stop=side_stop), contacts)
+    assert bare.peak_over_overturning == pytest.approx(bare.peak_over_alpha)
+    load = mr.Load(0.4 * wall.weight, height=2 * wall.h)
+    loaded = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.2, side_stop=side_stop, effects=load), contacts)
+    assert loaded.case.overturning_rotation < 0.8 * wall.alpha
+    released = 0.3 * wall.alpha / loaded.case.overturning_rotation
+    assert loaded.peak_over_overturning == pytest.approx(released)
+    assert (loaded.inwards_over_alpha is None) == (not side_stop)
+
+
+def test_a_stop_holds_a_wall_whose_centroid_it_reaches(wall):
+    loads = mr.Load(0.2 * wall.weight, height=2 * wall.h, offset=-0.1), mr.Thrust(wall.h, 0.02 * wall.weight)
+    stops = True, mr.SideStop(1.0), False
+    whole, low, free = (mr.Case(wall, 0.0, 1.0, side_stop=stop, effects=loads) for stop in stops)
+    assert whole.inward_limit == np.pi / 2
+    assert free.inward_limit == free.restoring.inner.alpha
+    rise = wall.h - 1.0
+    held = wall.b + 0.2 * (wall.b - 0.1) + 0.02 * rise  # moment at rest over the weight [m], a thrust above the stop
+    lost = rise + 0.2 * (2 * wall.h - 1.0) - 0.02 * wall.b
+    assert low.inward_limit == pytest.approx(np.arctan2(held, lost))
+
+
+def test_a_lopsided_wall_has_a_limit_on_either_side(wall, contacts):
+    """A load near the outer edge: the wall overturns outwards from less than inwards."""
+    load = mr.Load(0.3 * wall.weight, height=2 * wall.h, offset=0.2)
+    case = mr.Case(wall, -0.3 * wall.alpha, 0.61, side_stop=False, effects=load)
+    run = mr.simulate(case, contacts)
+    shares = run.theta.max() / case.overturning_rotation, -run.theta.min() / case.inward_limit
+    assert case.overturning_rotation < 0.8 * case.inward_limit
+    assert run.theta.max() < -run.theta.min()
+    assert shares[0] > shares[1]
+    assert run.peak_over_overturning == pytest.approx(shares[0], rel=1e-4)
+    assert run.inwards_over_alpha is None
+
+
+def test_a_fall_is_followed_until_it_lies(wall, contacts):
+    fallen = mr.simulate(mr.Case(wall, 1.05 * wall.alpha, 5.0), contacts)
+    assert fallen.message.startswith(
+        f"The wall overturned; it was followed until {fallen.t[-1]:.4g} s, when its rotation"
+    )

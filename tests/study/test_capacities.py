@@ -20,6 +20,8 @@ def test_a_wall_that_leans_on_its_ties_is_lost():
     untied = [{"outcome": outcome, "peak_over_alpha": peak} for outcome, peak in rows]
     assert mr.lost([row | {"tie_0_force_N": 2e4} for row in untied]).tolist() == [True, False, True, False, False]
     assert mr.lost([row | {"tie_0_force_N": None} for row in untied]).tolist() == [True, False, False, False, False]
+    assert mr.lost([row | {"inwards_over_alpha": 1.1} for row in untied]).all()
+    assert mr.lost([row | {"inwards_over_alpha": 0.9} for row in untied]).tolist() == [True] + 4 * [False]
     with pytest.raises(ValueError, match=r"rows\[0\] has outcome = None and peak_over_alpha = None: no result"):
         mr.lost([{"status": "failed", "outcome": None}])
     with pytest.raises(TypeError, match="rows = 3 of type int are no rows of a campaign"):
@@ -135,7 +137,10 @@ def test_the_search_brackets_by_itself(wall, e):
     [
         (lambda: mr.fit_capacities([1.0, math.nan]), "capacities holds a value that is not finite"),
         (lambda: mr.fit_capacities([1.0, -1.0]), r"capacities\[1\] = -1 is outside the valid range"),
-        (lambda: mr.fit_capacities([1.0, 2.0]), "groups names 2 groups; the valid range is 5 or more"),
+        (
+            lambda: mr.fit_capacities([1.0, 2.0]),
+            "groups names 2 groups; the valid range is 5 or more: fewer give no interval",
+        ),
         (lambda: mr.fit_capacities([1.0] * 6), "capacities are all equal"),
         (lambda: mr.paired_ratio([1.0, 2.0], [1.0]), "over has 1 values and capacities 2; they have to be pairs"),
         (lambda: mr.paired_ratio([1.0, 2.0], [1.0, 1.0], [1]), r"groups has the shape \(1,\)"),

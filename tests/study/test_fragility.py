@@ -33,6 +33,27 @@ def test_the_band_covers_the_truth_as_often_as_it_says():
     assert 0.83 < np.mean(inside) < 0.96
 
 
+def test_a_table_has_the_intervals_and_what_stands_behind_them():
+    x, fell, records = clustered(0)
+    fit = fit_fragility(x, fell, records, resamples=100)
+    low, high = fit.median_interval()
+    median, dispersion, runs = fit.table().splitlines()
+    assert median == f"median      {fit.median:.4g}, 90% interval {low:.4g} to {high:.4g}"
+    assert dispersion.startswith(
+        f"dispersion  {fit.dispersion:.4g}, 90% interval {fit.dispersion_interval()[0]:.4g} to "
+    )
+    assert runs == "720 runs of 30 groups"
+    assert (
+        fit_fragility(x, fell)
+        .table(0.8)
+        .endswith(
+            "80% interval "
+            + "{:.4g} to {:.4g}".format(*fit_fragility(x, fell).dispersion_interval(0.8))
+            + "\n720 runs taken as independent"
+        )
+    )
+
+
 def test_the_band_narrows_with_the_runs():
     widths = [np.subtract(*fit_fragility(*drawn(n)).band(0.4)[::-1]) for n in (100, 10_000)]
     assert widths[0] > 5 * widths[1]
@@ -142,7 +163,11 @@ def test_resamples_that_have_no_curve_take_a_finite_one_and_are_counted():
     ("groups", "options", "complaint"),
     [
         ([1, 2], {}, r"groups has the shape \(2,\)"),
-        (np.arange(100) % 4, {}, "groups names 4 groups; the valid range is 5 or more"),
+        (
+            np.arange(100) % 4,
+            {},
+            "groups names 4 groups; the valid range is 5 or more: .* Run more records, or report the single",
+        ),
         (np.arange(100), {"resamples": 3}, "resamples = 3 is outside"),
         (np.arange(100), {"seed": -1}, "seed = -1 is outside"),
     ],

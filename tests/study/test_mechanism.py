@@ -33,6 +33,21 @@ def test_a_mass_at_the_top_takes_part():
     assert found.participation == pytest.approx((6 + 6) ** 2 / (1.5 * (36 + 72)))
 
 
+def test_ties_at_their_strength_stand_beside_the_slack_ones():
+    """Virtual work about the toe: the strength times its height, over weight times the height of the centroid."""
+    ties = mr.Tie(10.0, 1e8, strength=60e3, ultimate=0.05), mr.Tie(6.0, 1e8, strength=20e3, ultimate=0.05)
+    tied = mr.mechanism_check(mr.Case(WALL, 0.0, 1.0, effects=ties), lambda T, xi: 0.1, confidence_factor=1.2)
+    bare = mr.mechanism_check(CASE, lambda T, xi: 0.1, confidence_factor=1.2)
+    multiplier = (WALL.weight * WALL.b + 60e3 * 10.0 + 20e3 * 6.0) / (WALL.weight * WALL.h)
+    assert tied.alpha_tied == pytest.approx(multiplier)
+    assert tied.linear_tied == pytest.approx(2 * multiplier * mr.GRAVITY / 1.2)
+    assert tied.linear == bare.linear
+    assert bare.alpha_tied is None is bare.linear_tied
+    assert "ties at their strength" not in bare.table()
+    (said,) = (line for line in tied.table().splitlines() if line.startswith("linear SLV, ties at their strength [g]"))
+    assert f"{tied.linear_tied / mr.GRAVITY:.4f}" in said
+
+
 def test_a_record_asks_for_its_largest_displacement_up_to_the_period():
     record = mr.GroundMotion.synthetic(3.0, 10.0, seed=1)
     found = mr.mechanism_check(CASE, record)

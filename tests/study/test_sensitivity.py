@@ -139,6 +139,24 @@ def test_the_capacity_is_where_the_outcome_changes(build):
     down = mr.Capacity(build(1.0), tolerance=1e-3, start=20.0)()
     assert down["capacity_g"] == pytest.approx(row["capacity_g"], rel=2e-3)
     assert tuple(row) == task.COLUMNS
+    assert row["falls_below_g"] is None
+
+
+def test_a_capacity_says_where_the_wall_falls_at_less():
+    wall = mr.Block.from_size(thickness=0.6, height=4.2)
+    motion = mr.GroundMotion.synthetic(peak=4.0, duration=8.0, seed=23)
+    analysis = mr.Analysis(mr.Case(wall, 0.0, 11.0, motion=motion), "analytical", e=mr.Restitution.from_geometry(wall))
+    row = mr.Capacity(analysis, tolerance=0.02, start=6.0)()
+    assert row["message"].endswith("Not monotonic: it overturns at 1.002, 0.8017 g too.")
+    assert row["falls_below_g"] < 0.65 * row["stands_at_g"]
+    weaker = mr.Capacity(analysis).scaled(row["falls_below_g"] * mr.GRAVITY / 4.0)
+    assert weaker.solve().outcome is mr.Outcome.OVERTURNED
+    alone = mr.Capacity(analysis, tolerance=0.02, start=6.0, below=0)()
+    assert alone["falls_below_g"] is None
+    assert alone["runs"] == row["runs"] - 4
+    assert row["message"].startswith(alone["message"])
+    with pytest.raises(ValueError, match="below = 31 is outside the valid range 0 to 30"):
+        mr.Capacity(analysis, below=31)
 
 
 def test_capacities_are_tasks_of_a_grid(build):

@@ -44,13 +44,20 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
     for i, block in enumerate(blocks):
         require_kind(f"blocks[{i}]", block, Block)
         if block.inset:
-            raise ValueError(f"blocks[{i}]: inset = {block.inset:g} m; a block of a stack has its edges at its faces")
+            raise ValueError(
+                f"blocks[{i}]: inset = {block.inset:g} m; a block of a stack has its edges at its faces: give Masonry "
+                "a Polygon with its corners cut off"
+            )
         fixed = i == 0 and not ground
         polygons.append(
             rectangle(-block.b, block.b, z, z + 2 * block.h, block.density, block.length, fixed, f"block_{i}")
         )
         if not math.isclose(polygons[-1].mass, block.mass, rel_tol=1e-9):
-            raise ValueError(f"blocks[{i}] is not a plain rectangle; a block of a stack is")
+            raise ValueError(
+                f"blocks[{i}] has openings, a profile or masses, and a block of a stack is a plain rectangle: cut it "
+                "at sills, heads and steps into blocks of the length that is left there, as Polygon where one is "
+                "flatter than thick; or take the Block in a Case, which has them all"
+            )
         z += 2 * block.h
     if ground:
         b, length = max(block.b for block in blocks), max(block.length for block in blocks)

@@ -158,10 +158,27 @@ class Case:
     @cached_property
     def restoring(self) -> Restoring:
         """The restoring moments of weight, loads and thrusts about the two toes; ties come on top."""
-        half_base = self.block.half_base
-        forces = [of_force(load.offset, load.height, 0.0, load.force, half_base) for load in self.each(Load)]
-        forces += [of_force(0.0, thrust.height, thrust.force, 0.0, half_base) for thrust in self.each(Thrust)]
-        return self.wall.restoring.plus(forces) if forces else self.wall.restoring
+        return self.wall.restoring.plus(self._forces(0.0, self.block.half_base))
+
+    @cached_property
+    def inward_limit(self) -> float:
+        """Largest inward rotation from which weight, loads and thrusts still bring the wall back [rad].
+
+        Against a side stop it is the rotation about the highest point of the stop beyond which they turn the wall over
+        it, not below alpha. A stop that reaches the centroid holds the wall at every rotation.
+        """
+        if self.stop_top is None:
+            return self.restoring.inner.alpha
+        wall, top = self.wall, self.stop_top
+        weight = of_force(wall.centroid_offset, wall.centroid_height - top, 0.0, wall.weight, wall.b)
+        over = weight.plus(self._forces(top, wall.b)).inner
+        return min(max(over.alpha, wall.alpha), ON_ITS_FACE) if over.Q > 0 else ON_ITS_FACE
+
+    def _forces(self, level: float, half_base: float) -> list[Restoring]:
+        """Restoring moments of loads and thrusts about two edges at a height and a distance from the middle [m]."""
+        loads, thrusts = self.each(Load), self.each(Thrust)
+        forces = [of_force(load.offset, load.height - level, 0.0, load.force, half_base) for load in loads]
+        return forces + [of_force(0.0, thrust.height - level, thrust.force, 0.0, half_base) for thrust in thrusts]
 
     @cached_property
     def pulls(self) -> tuple[Pull, ...]:
@@ -224,8 +241,7 @@ class Case:
 
     def returns_from(self, theta: Array) -> Flags:
         """Whether the wall may still come back from rotations of either sign [rad], shape (n,)."""
-        inwards = ON_ITS_FACE if self.side_stop else self.restoring.inner.alpha
-        returns: Flags = (theta <= self.overturning_rotation) & (theta >= -inwards)
+        returns: Flags = (theta <= self.overturning_rotation) & (theta >= -self.inward_limit)
         return returns
 
     def returning(self, theta: Array) -> int:
