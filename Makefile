@@ -5,7 +5,7 @@ READY := .venv/.ready
 DOCS := .venv/.docs
 OLDEST := .venv-oldest
 
-.PHONY: demo docs test test-slow test-oldest mutants lint calibrate models figures clean stale
+.PHONY: demo docs test test-slow test-oldest mutants lint calibrate models figures robots clean stale
 
 demo: $(READY)
 	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
@@ -87,6 +87,11 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py
+
+robots: $(READY) # public robots; PACKAGES=folder of packages that carry their models, MJX=a Python that has MuJoCo's MJX
+	$(BIN)/python scripts/peers/robots/public_models.py --packages $(PACKAGES)
+	$(BIN)/python scripts/peers/robots/feet.py --packages $(PACKAGES)
+	$(if $(MJX),$(BIN)/python scripts/peers/robots/mjx_contacts.py --python $(MJX))
 
 $(READY): INSTALL = pip install --quiet --disable-pip-version-check
 $(OLDEST)/.ready: PYTHON = python3.11
