@@ -97,11 +97,6 @@ class Comparison:
         return _first(self.rebound_peaks)
 
     @property
-    def first_impact_time(self) -> tuple[float, float]:
-        """Time of the first impact, reference and candidate [s]."""
-        return _first(self.impact_times)
-
-    @property
     def outcomes(self) -> tuple[Outcome, Outcome]:
         """How the reference and the candidate ended."""
         return self.reference.outcome, self.candidate.outcome

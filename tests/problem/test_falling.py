@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjrock.problem.damping.falling import falling_damping, falling_rebound, lost_to_gravity
+from mjrock.problem.damping.falling import falling_damping, falling_rebound
 from mjrock.problem.damping.rebound import rebound_damping, rebound_restitution
 
 
@@ -44,8 +44,6 @@ def test_what_gravity_takes_at_a_speed():
     """Asking 0.3 gives 0.153 at g / (omega v) = 0.085, asking 0.2 gives none."""
     assert falling_rebound(rebound_damping(0.3), 0.085).restitution == pytest.approx(0.152, abs=1e-3)
     assert falling_rebound(rebound_damping(0.2), 0.085).restitution == 0.0
-    assert lost_to_gravity(0.95, 0.085) == pytest.approx(0.006, abs=5e-4)
-    assert lost_to_gravity(0.05, 0.009) == pytest.approx(0.05, abs=1e-12)
 
 
 def test_the_damping_that_mends_it():

@@ -23,7 +23,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ...quantities import require_within
-from .rebound import rebound_damping, rebound_restitution
+from .rebound import rebound_damping
 
 MOST_PULL = 1e3
 """Largest g / (omega v) that is taken [-]. The weight is then a thousand times the force of the blow."""
@@ -94,12 +94,6 @@ def falling_damping(restitution: float, pull: float) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if falling_rebound(middle, pull).restitution > e else (low, middle)
     return low
-
-
-def lost_to_gravity(restitution: float, pull: float) -> float:
-    """By how much gravity lowers the restitution of a contact that was made without it [-]."""
-    xi = rebound_damping(restitution)
-    return rebound_restitution(xi) - falling_rebound(min(xi, 1e6), pull).restitution
 
 
 def _motion(xi: float, pull: float) -> tuple[Callable[[float], float], ...]:
