@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import mujoco
 
-from ..engine.solref import WITHIN, inertia_of, longest_step, pair_values, row
+from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_values, row
 from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
@@ -238,7 +238,7 @@ def _row(
     is longer than 1 / omega could throw a touch back with more energy than it came with. There the row has the extra
     dashpot h k and beta = 1/2 at least, with which e stays below 0.6 whatever the step.
     """
-    longest = longest_step(k, inverse_weight)
+    longest = longest_represented_step(k, inverse_weight)
     if h > longest:
         resolving = min(longest, resolving_step(k, c, mass))
         raise ValueError(

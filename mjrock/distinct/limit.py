@@ -1,4 +1,4 @@
-"""The longest stable step of a system.
+"""The longest stable step of a system, from the eigenvalues that go into `scene.explicit_step`.
 
 The bound takes the highest eigenvalues of stiffness and of damping with every contact closed, which need not belong to
 one mode.
@@ -51,7 +51,10 @@ def longest_step(system: System) -> float:
 def step_on_springs(rates: csr_array, k: Array, c: Array, root: Any) -> float:
     """The longest stable step [s] on springs k and dashpots c, whose lengths have these rates.
 
-    The masses come in as a matrix whose product with its transpose is their inverse.
+    Args:
+        rates: of the lengths of the springs, for unit velocities, shape (springs, unknowns).
+        k, c: of each spring [N/m, N s/m].
+        root: R with R R^T = M^-1, of masses on a diagonal 1 / sqrt(m).
     """
     return stable_step(highest(rates, k, root), highest(rates, c, root))
 

@@ -31,7 +31,7 @@ from ..scene.dampers import damping_rate
 from ..scene.scene import Scene
 from .points import Reach, inverse_weights, points_of
 from .rows import Step
-from .solref import longest_step
+from .solref import longest_represented_step
 from .touches import Openings
 
 LIGHTEST = {2: 6, 3: 7}
@@ -69,9 +69,8 @@ class Pace(NamedTuple):
         """The limits for a scene and what happens to it."""
         short, weight = short_step(scene, accuracy, method), points_of(scene, method).inertia.weight
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
-        represented = min(longest_step(k, W) for k, W in zip(scene.k, weight, strict=True))
+        represented = min(longest_represented_step(k, W) for k, W in zip(scene.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.principal)
         slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.principal)
         slowed = math.sqrt(method.dashpot * accuracy) / max(slowing, 1e-300)
         longest = max(short, min(rocking, represented, stable, slowed, *course.sampling))

@@ -2,8 +2,9 @@
 
 A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate of
 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its inertia
-leaves: a load F creeps at F h / held, or F / (growth held) in a step longer than 1 / growth. MuJoCo has one impratio
-for all contacts. It is the largest with which no friction row has more inertia than it should.
+leaves: under a load F along its face a contact that sticks creeps at F h / m_f, with m_f the inertia of its friction
+row, `RowInertia.friction` times max(1, growth h). In steps longer than 1 / growth it creeps no faster. MuJoCo has one
+impratio for all contacts. It is the largest with which no friction row has more inertia than it should.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class RowInertia(NamedTuple):
 
     Args:
         weight: sum of MuJoCo's inverse weights of the two bodies W [1/kg], shape (m,).
-        overdamped: c h W from which a dashpot is stiff for a step, see `contact.row` [-], shape (m,).
+        overdamped: c h W from which a dashpot is stiff for a step, see `solref.row` [-], shape (m,).
         friction: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
         growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
     """
@@ -78,7 +79,7 @@ class Rows(NamedTuple):
 
 @jitable
 def row_of(law: Law, inertia: RowInertia, i: int, step: Step) -> tuple[float, float]:
-    """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `contact.row`."""
+    """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `solref.row`."""
     return row(law.k[i], law.c[i], step.h, inertia.weight[i], step.beta[i], step.ringing[i], inertia.overdamped[i])
 
 

@@ -118,9 +118,11 @@ def pair_values(k: float, dashpot: float, inertia: float, inverse_weight: float)
 
 
 @jitable
-def longest_step(k: float, inverse_weight: float) -> float:
-    """The longest step at which MuJoCo represents a spring of stiffness k [s]: h^2 k takes 0.4 of the inertia it
-    can."""
+def longest_represented_step(k: float, inverse_weight: float) -> float:
+    """The longest step at which MuJoCo can represent a spring of stiffness k [s]. It is no limit of stability.
+
+    h^2 k is then 0.4 of the largest inertia that its range of impedances leaves to a row.
+    """
     return math.sqrt(0.4 * inertia_of(WITHIN[1], inverse_weight) / k)
 
 

@@ -111,9 +111,8 @@ class Gap(NamedTuple):
 
     Args:
         value: the gap [m].
-        rate: its rate [m/s], linear in the velocities.
-        linear: the part of the second rate that is linear in the accelerations, and the same function of them as the
-            rate is of the velocities [m/s2].
+        rate: its rate J v [m/s], with v the velocities.
+        linear: J a [m/s2], with a the accelerations. The second rate is linear + swept.
         swept: the part that is quadratic in the velocities, centripetal and Coriolis [m/s2].
     """
 

@@ -16,6 +16,8 @@ ENERGY_GAIN = 1e-3
 def from_nowhere(balance: Array, scale: float) -> tuple[int, str] | None:
     """Where most energy has appeared from nowhere, and the same in words; None where it is at most ENERGY_GAIN.
 
+    The two `require_no_gain`, in `engine.run` and `distinct.reading`, say of which samples.
+
     Args:
         balance: energy that is there and was taken, less what was put in [J], shape (n,). It may only fall.
         scale: the energy there was [J].

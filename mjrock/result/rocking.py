@@ -1,4 +1,4 @@
-"""Rocking of a wall: its impacts and rotation peaks, and the restitution between them."""
+"""Rocking of a wall: its impacts and rotation peaks, and the restitution between them. How it ended is in `ending`."""
 
 from __future__ import annotations
 

@@ -1,7 +1,9 @@
 """Dampers of a scene: viscous, between a point of a body and an anchor on the ground.
 
-A damper resists the rate of its length in both directions. Its force in a step is that at the velocity of the pose,
-which the leapfrog keeps half a step earlier and carries forward by the last acceleration.
+A damper resists the rate of its length in both directions. In MuJoCo's steps that fit the motion its force is that at
+the velocity of the pose, which the leapfrog keeps half a step earlier and carries forward by the last acceleration
+(`engine.setting`); in fixed steps it is the tendon of the text (`engine.mjcf`). SciPy has it in `reference.dampers`,
+and the explicit steps in `distinct.links` and `distinct.space.links`.
 """
 
 from __future__ import annotations

@@ -46,9 +46,10 @@ class UnsettledError(ValueError):
 def settled(potential: Potential, friction: Array) -> Array:
     """The pose in which the springs of contacts and ties carry weight and forces, shape (n, nq).
 
-    Friction holds every joint that touches. Where no pose is found so, it holds those that are pressed: a block beside
-    a wall that touches and does not press would else carry it by friction alone. In a structure of many unknowns it
-    holds exactly at first, and then gives way to its changes a little.
+    The search starts with friction on every joint that touches. Where no pose is found so, it starts with none: a block
+    beside a wall that touches and does not press would else carry it by friction alone. Structures of many unknowns are
+    tried with slips forbidden, and where this fails with friction slightly compliant: a joint then slips by what its
+    friction changes in an iteration.
 
     Args:
         potential: of the scene.
@@ -70,8 +71,8 @@ def settled(potential: Potential, friction: Array) -> Array:
 def _settled(potential: Potential, friction: Array, *, pressed: bool, yields: bool) -> Array:
     """As `settled`, by Newton's method on the potential energy, which every step lowers.
 
-    Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, or those that
-    are `pressed`. Where it `yields`, it gives way to its changes as `balance` says.
+    Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, at the start
+    only if they are `pressed`. Where it `yields`, it gives way to its changes as `balance` says.
     """
     places, ties, masses = potential.structure.places, potential.structure.ties, potential.structure.masses
     freedom, m, pose, k = places.freedom, len(friction), potential.unmoved, potential.springs

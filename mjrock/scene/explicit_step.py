@@ -1,4 +1,7 @@
-"""The longest stable step of the explicit scheme, and the share of it that is taken.
+"""The formula of the longest stable step of the explicit scheme, and the share of it that is taken.
+
+It stands here since the engine estimates the time of explicit steps with it. The eigenvalues of a system are in
+`distinct.limit`.
 
 A mode of the frequency omega and the damping ratio xi is stable up to h = (2 / omega) (sqrt(1 + xi^2) - xi), since the
 dashpots take the velocity half a step before the pose.

@@ -1,4 +1,4 @@
-"""One case for one solver, as a task of a campaign."""
+"""One case for one solver, as a task of a campaign: what is run, and the columns of its row."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ...quantities import keep, require_whole, require_within
 from .in_space import LATER, Point, height_of, point_or_none, written
-from .limits import BLOCKS
+from .input_bounds import BLOCKS
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from ...quantities import keep, require_real, require_whole, require_within
 from .damper import Damper
 from .in_space import LATER, Point, direction_or_none, height_of, point_or_none, written
-from .limits import BLOCKS, HIGHEST
+from .input_bounds import BLOCKS, HIGHEST
 
 
 @dataclass(frozen=True)

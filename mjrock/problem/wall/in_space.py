@@ -10,7 +10,7 @@ from dataclasses import fields
 from typing import Any
 
 from ...quantities import require_array, require_within
-from .limits import HIGHEST
+from .input_bounds import HIGHEST
 
 Point = tuple[float, float, float]
 FARTHEST = 1e4
