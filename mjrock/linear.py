@@ -22,9 +22,10 @@ FEW = 300
 DEPENDENT = 1e-9
 """Singular value of held motions below which they depend on one another, over the largest [-]."""
 LOOSE = 1e-9
-"""Stiffness that is lent to every unknown while a large structure is balanced, over its own [-]."""
+"""Stiffness that is lent to every unknown while a large structure is balanced, over that of the stiffest [-]."""
 YIELDING = 1e-6
-"""Compliance that is lent to every held motion while a large structure is balanced, over that of its springs [-]."""
+"""Compliance that is lent to every held motion while a large structure is balanced, over that of its stiffest unknown
+[-]. The unknowns that it moves may have no spring, as those along a course whose head joints are open."""
 REFINED, REFINEMENTS = 1e-13, 8
 """Error at which a balance is exact, over what is balanced [-], and most refinements of it."""
 HOLD = 1e3
@@ -77,19 +78,14 @@ def sprung(rates: csr_array | Array, springs: Array) -> csr_array | Array:
     return csr_array(rates.T @ diags_array(springs) @ rates)
 
 
-def balance(
-    stiffness: csr_array | Array, grip: csr_array, force: Array, near: Array | None = None
-) -> tuple[Array, Array]:
+def balance(stiffness: csr_array | Array, grip: csr_array, force: Array) -> tuple[Array, Array]:
     """The motion in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
 
-    Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none. Of
-    many, what holds yields to the change of its forces from `near`, which an earlier balance has left, by `YIELDING`.
-    Slips of bonded units that have turned a little nearly depend on one another, and held without any compliance they
-    would lock a free motion with enormous forces.
+    Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none.
     """
     n, held = stiffness.shape[0], grip.shape[0]
     if not isinstance(stiffness, np.ndarray):
-        return _Balance(stiffness, grip, LOOSE)(force, near)
+        return _Balance(stiffness, grip, LOOSE)(force)
     rows = grip.toarray()
     matrix = np.block([[stiffness, rows.T], [rows, np.zeros((held, held))]])
     solution = np.linalg.lstsq(matrix, np.append(force, np.zeros(held)), rcond=1e-14)[0]
@@ -100,27 +96,24 @@ class _Balance:
     """The factors of a large matrix near that of a balance, regular whatever is loose or held twice."""
 
     def __init__(self, stiffness: csr_array, grip: csr_array, loose: float) -> None:
-        own = np.maximum(stiffness.diagonal(), DEPENDENT * float(stiffness.diagonal().max()))
+        stiffest = float(stiffness.diagonal().max())
         self.stiffness, self.grip, self.back = stiffness, grip, csr_array(grip.T)
-        self.yielding = YIELDING * (grip.power(2) @ (1 / own))
-        near = block_array(
-            [[stiffness + diags_array(loose * own), self.back], [grip, diags_array(-self.yielding)]], format="csc"
-        )
+        yielding = diags_array(-YIELDING / stiffest * grip.power(2).sum(axis=1))
+        lent = diags_array(np.full(stiffness.shape[0], loose * stiffest))
+        near = block_array([[stiffness + lent, self.back], [grip, yielding]], format="csc")
         self.factors = _factors(near)
 
-    def __call__(self, force: Array, near: Array | None = None) -> tuple[Array, Array]:
+    def __call__(self, force: Array) -> tuple[Array, Array]:
         """As `balance`: what the solution of the near matrix leaves is balanced in turn."""
         n, held = self.grip.shape[1], self.grip.shape[0]
-        before, kept = (np.zeros(held), 0.0) if near is None else (near, self.yielding)
-        motion, holding, slip, scale = np.zeros(n), before, np.inf, float(np.abs(force).max())
-        left = np.append(force - self.back @ holding, np.zeros(held))
+        left, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
+        motion, holding = np.zeros(n), np.zeros(held)
         for _ in range(REFINEMENTS):
             added = self.factors.solve(left)
             motion, holding = motion + added[:n], holding + added[n:]
-            slips = kept * (holding - before) - self.grip @ motion
-            left = np.append(force - self.stiffness @ motion - self.back @ holding, slips)
-            last, slip = slip, float(np.abs(slips).max(initial=0.0))
-            if np.abs(left[:n]).max() < REFINED * scale and (slip < REFINED * scale or slip > 0.5 * last):
+            left = np.append(force - self.stiffness @ motion - self.back @ holding, -(self.grip @ motion))
+            last, error = error, float(np.abs(left).max())
+            if error < REFINED * scale or error > 0.5 * last:
                 break
         return motion, holding
 

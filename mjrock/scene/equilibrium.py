@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 
-from ..geometry.frames import PLANE
 from ..geometry.kinematics import Forces, Places, gaps
 from ..geometry.poses import moved, turned
-from ..linear import FEW, averaged, balance, fitting, is_definite, sprung
-from ..quantities import GRAVITY, Array, Flags, Integers
+from ..linear import averaged, balance, fitting, is_definite, sprung
+from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential
 
 ITERATIONS = 1000
 """Most iterations of Newton's method. A wall that is nearly too heavy for its base takes hundreds."""
-HELD, YIELDING = 30, 200
-"""The same for many unknowns, where friction holds exactly and where it yields. Sound walls of up to a thousand blocks
-with openings take 5 to 30."""
 ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the length of a tie, over that length [-]."""
 LEANING = 1e-6
@@ -46,10 +40,8 @@ class UnsettledError(ValueError):
 def settled(potential: Potential, friction: Array) -> Array:
     """The pose in which the springs of contacts and ties carry weight and forces, shape (n, nq).
 
-    The search starts with friction on every joint that touches. Where no pose is found so, it starts with none: a block
-    beside a wall that touches and does not press would else carry it by friction alone. Structures of many unknowns are
-    tried with slips forbidden, and where this fails with friction slightly compliant: a joint then slips by what its
-    friction changes in an iteration.
+    Friction holds every joint that touches. Where no pose is found so, it holds those that are pressed: a block beside
+    a wall that touches and does not press would else carry it by friction alone.
 
     Args:
         potential: of the scene.
@@ -58,39 +50,32 @@ def settled(potential: Potential, friction: Array) -> Array:
     Raises:
         UnsettledError: if no such pose is found near the undeformed one.
     """
-    errors = []
-    many = len(potential.structure.masses) > FEW
-    for yields, pressed in product((False, True) if many else (False,), (False, True)):
+    try:
+        return _settled(potential, friction, pressed=False)
+    except UnsettledError as error:
         try:
-            return _settled(potential, friction, pressed=pressed, yields=yields)
-        except UnsettledError as error:
-            errors.append(error)
-    raise errors[0]
+            return _settled(potential, friction, pressed=True)
+        except UnsettledError:
+            raise error from None
 
 
-def _settled(potential: Potential, friction: Array, *, pressed: bool, yields: bool) -> Array:
+def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
     """As `settled`, by Newton's method on the potential energy, which every step lowers.
 
-    Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, at the start
-    only if they are `pressed`. Where it `yields`, it gives way to its changes as `balance` says.
+    Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, or those that
+    are `pressed`.
     """
     places, ties, masses = potential.structure.places, potential.structure.ties, potential.structure.masses
     freedom, m, pose, k = places.freedom, len(friction), potential.unmoved, potential.springs
     closed = np.append(np.ones(m, dtype=bool), potential.openings(pose)[m:] < 0)
     scale = GRAVITY * float(masses[freedom.translations - 1 :: freedom.nv].max())
-    carried: dict[tuple[int, ...], Array] = {}  # friction between pairs of bodies, which an iteration hands to the next
-    nothing = np.zeros(1 if freedom == PLANE else 3)
     tolerated = max(1e-9 * scale, ROUNDING * float((ties.k * ties.reach).max(initial=0)))
-    for _ in range(ITERATIONS if len(masses) <= FEW else YIELDING if yields else HELD):
+    for _ in range(ITERATIONS):
         rates, depth = fitting(potential.rates(pose)), -potential.openings(pose)
         stiffness = sprung(rates, np.where(closed, k, LEANING * k))
         residual = potential.load(pose) + rates.T @ (np.where(closed, k, 0.0) * depth)
-        holds = closed & (depth > 0) if pressed else closed
-        grip = k.max() * held_slips(potential, friction, holds, pose)
-        pairs = [tuple(pair) for pair in held_pairs(places, holds[:m] & (friction > 0))[0].tolist()]
-        near = np.reshape([carried.get(pair, nothing) for pair in pairs], (-1, len(nothing))).T.ravel()
-        motion, held = balance(stiffness, grip, residual, near if yields else None)
-        carried = dict(zip(pairs, held.reshape(len(nothing), -1).T, strict=True))
+        grip = k.max() * held_slips(potential, friction, closed & (depth > 0) if pressed else closed, pose)
+        motion, held = balance(stiffness, grip, residual)
         if np.abs(residual - grip.T @ held).max() < tolerated and (closed == (depth > 0)).all():
             if is_stable(potential, friction, closed, pose):
                 return pose.reshape(-1, freedom.nq)
@@ -121,29 +106,19 @@ def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array
     the points, by which a body would spin on its joint.
     """
     places = potential.structure.places
-    pairs, group = held_pairs(places, closed[: len(friction)] & (friction > 0))
+    holds = closed[: len(friction)] & (friction > 0)
+    pair = np.sort(np.column_stack([places.body, places.face_body]), axis=1)[holds]
+    pairs, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
+    group = np.full(len(friction), -1)
+    group[holds] = np.argsort(np.argsort(first))[number]  # in the order in which the contacts name them
     rates = potential.slip_rates(pose)
     if len(rates) == 1:
         return averaged(rates[0], group, len(pairs))
-    held, middles = np.flatnonzero(group >= 0), np.zeros((len(pairs), 2))
-    arms, grouped = potential.spots(pose), group[held]
-    np.add.at(middles, grouped, arms[held] / np.bincount(grouped)[grouped, None])
-    arms[held] -= middles[grouped]
+    arms, grouped, middles = potential.spots(pose), group[holds], np.zeros((len(pairs), 2))
+    np.add.at(middles, grouped, arms[np.flatnonzero(holds)] / np.bincount(grouped)[grouped, None])
+    arms[np.flatnonzero(holds)] -= middles[grouped]
     spins = csr_array(diags_array(arms[:, 0]) @ rates[1] - diags_array(arms[:, 1]) @ rates[0])
     return csr_array(vstack([averaged(rows, group, len(pairs)) for rows in (*rates, spins)]))
-
-
-def held_pairs(places: Places, holds: Flags) -> tuple[Integers, Integers]:
-    """The pairs of bodies between which a contact holds, and the number of the pair of each contact.
-
-    The pairs have the shape (pairs, 2) and the order in which the contacts name them; a contact that does not hold has
-    the number -1.
-    """
-    pair = np.sort(np.column_stack([places.body, places.face_body]), axis=1)[holds]
-    pairs, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
-    group = np.full(len(holds), -1)
-    group[holds] = np.argsort(np.argsort(first))[number]
-    return pairs[np.argsort(first)], group
 
 
 def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:

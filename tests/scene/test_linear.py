@@ -10,12 +10,14 @@ from mjrock.problem.masonry.lines import lowest_frequency
 from mjrock.problem.masonry.statics import slippery
 from mjrock.scene.equilibrium import UnsettledError, is_stable
 from mjrock.scene.masonry import standing_masonry
+from scripts.studies import two_storeys
 
 WALLS = {
     "bond": lambda: mr.Masonry.running_bond(2.0, 1.5, (0.5, 0.25), thickness=0.3, k_n=2e9, friction=0.65),
     "arch": lambda: mr.Masonry.arch(3.0, 0.5, k_n=1e9, voussoirs=17),
     "smooth": lambda: mr.Masonry.running_bond(1.5, 0.75, (0.5, 0.25), friction=lambda j: 0.6 if j.is_bed else 0.0),
     "stack": lambda: mr.Masonry.stack([mr.Block(0.4, 0.5), mr.Block(0.3, 0.9), mr.Block(0.2, 0.4)], 5e8),
+    "open heads": lambda: two_storeys.wall(two_storeys.QUICK),
     "soft": lambda: mr.Masonry.stack([mr.Block(0.3, 1.0), mr.Block(0.3, 1.0)], 1e6),
 }
 

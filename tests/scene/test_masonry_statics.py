@@ -149,7 +149,7 @@ def test_what_settles_is_in_equilibrium():
     ("height", "storeys", "gap"), [(2.4, 1, 0.0), (3.2, 1, 0.002), slow((6.4, 2, 0.0)), slow((6.4, 2, 0.002))]
 )
 def test_a_wall_with_openings_settles(height, storeys, gap, monkeypatch):
-    """Slips of its units depend on one another as drawn, and nearly so once the units have turned."""
+    """Open or closed head joints: with open ones nothing but friction holds a unit along its course."""
     monkeypatch.setattr(two_storeys, "OPEN", gap)
     openings = (two_storeys.Opening(2.0, 3.2, 0.0, 2.2), two_storeys.Opening(2.0, 3.2, 4.0, 5.2))[:storeys]
     scene = standing_masonry(two_storeys.wall(replace(two_storeys.QUICK, length=5.2, height=height, openings=openings)))
