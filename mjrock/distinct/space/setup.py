@@ -19,6 +19,7 @@ from ...scene.scene import Scene
 from ..following import Setup
 from .assembly import copied, masonry_system, moved_by, started
 from .columns import PLACE, QUATERNION, stacked
+from .encounters import EncountersInSpace
 from .limit import longest_step
 from .loop import advance
 from .rest import UnsettledError, settle
@@ -33,7 +34,9 @@ def setup_in_space(case: MasonryCase, state: State | None) -> Setup:
         course = course.continued(*state)
     system = moved_by(copied(at_rest), scene, case.masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
-    return Setup(scene, course, system, advance, longest_step(system), SHARE, freedom=SPACE)
+    limit, encounters = longest_step(system), EncountersInSpace(case.masonry, system, scene.group)
+    system = encounters.made_room(system)
+    return Setup(scene, course, system, advance, limit, SHARE, freedom=SPACE, encounters=encounters)
 
 
 @lru_cache(maxsize=16)
