@@ -48,6 +48,8 @@ OWN = {
     **{f"distinct/{name}.py": ("explicit", "encounters") for name in STEPS},
     "distinct/encounters.py": ("encounters",),
     **{f"distinct/space/{name}.py": ("explicit_in_space",) for name in (*STEPS, "system", "turning")},
+    "distinct/space/encounters.py": ("encounters_in_space",),
+    "distinct/space/rest.py": ("rest_in_space",),
     "result/joint_motion.py": ("masonry_motion", "masonry"),
     "result/joint_motion_in_space.py": ("masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),

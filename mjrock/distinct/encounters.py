@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -55,8 +55,8 @@ class Look(NamedTuple):
     held: Integers
 
 
-class Encounters:
-    """The blocks of masonry as polygons, and the lines where they meet beyond their joints.
+class Looking:
+    """What is looked at from time to time, in the plane and in space: which blocks have left their joints.
 
     Args:
         masonry: the masonry.
@@ -64,35 +64,76 @@ class Encounters:
         group: name of the joint of each line. The account of the encounters comes after those of the joints.
     """
 
-    def __init__(self, masonry: Masonry, system: System, group: Sequence[str]) -> None:
-        blocks = masonry.blocks
-        self.joints, self.group = system.lines, len(set(group))
-        number = np.full(len(blocks), -1)
+    def __init__(self, masonry: Masonry, system: Any, group: Sequence[str]) -> None:
+        self.joints, self.group, self.most = system.lines, len(set(group)), MOST * len(masonry.blocks) + 64
+        number = np.full(len(masonry.blocks), -1)
         number[list(masonry.free)] = np.arange(len(masonry.free))
         self.body = number.astype(np.int64)
-        self.rest = np.column_stack([system.bodies["x0"], system.bodies["z0"]])
-        self.origin = np.where(self.body[:, None] < 0, 0.0, self.rest[self.body])
-        self.first = np.cumsum([0, *(len(block.corners) for block in blocks)])
-        self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.origin, strict=True)])
         self.widths = narrowest(masonry)
-        self.sizes = np.array([blocks[i].size for i in masonry.free])
+        self.sizes = np.array([masonry.blocks[i].size for i in masonry.free])
         self.softest = softest(self.joints, len(masonry.free))
         self.pairs = pairs_of(masonry, joint_numbers(masonry, group))
         self.keys = np.empty(0, dtype=np.int64)
         self.overlaps = np.empty(0)
-        self.room = np.zeros((MOST * len(blocks) + 64, 5))
 
-    def loose(self, system: System) -> Flags:
+    def ways(self, bodies: Rows) -> tuple[Array, Array]:
+        """How far a corner of each body has moved at most [m], and its velocity at most [m/s], shape (bodies,) each."""
+        raise NotImplementedError
+
+    def loose(self, system: Any) -> Flags:
         """Which bodies have moved by more than the narrowest of their joints is wide."""
-        bodies = system.bodies
+        return np.asarray(self.ways(system.bodies)[0] > self.widths)
+
+    def looked_for(self, system: Any, loose: Flags, until: float) -> Any:
+        """The system with the lines of the encounters that may happen within a time [s]."""
+        raise NotImplementedError
+
+    def _near(self, bodies: Rows, until: float) -> float:
+        """Distance up to which a corner is near what it may meet within a time [m]."""
+        return max(NEAR * float(self.ways(bodies)[1].max()) * until, LEAST * float(self.sizes.min()))
+
+    def _held(self, system: Any, loose: Flags) -> Integers:
+        """Pairs of blocks whose joint still touches, as numbers in order. A joint of loose blocks that has opened is
+        gone for good."""
+        lines = system.lines[: len(self.joints)]
+        free = np.append(loose, False)
+        either = free[lines["body"]] | free[lines["face"]]
+        touches, pairs = lines["push"] > 0, self.pairs
+        closed = np.unique(pairs[touches | ~either])
+        gone = either & ~np.isin(pairs, closed)
+        for name in ("k", "c", "friction"):
+            lines[name][gone] = 0.0
+        return np.asarray(np.setdiff1d(closed, pairs[lines["k"] == 0]), dtype=np.int64)
+
+    def _remembered(self, keys: Integers, gaps: Array) -> tuple[Array, Integers, Integers]:
+        """Overlaps that count as none [m], and which of these encounters are which of those of the last look."""
+        _, new, old = np.intersect1d(keys, self.keys, return_indices=True)
+        overlaps = np.minimum(gaps, 0.0)
+        overlaps[new] = np.maximum(self.overlaps[old], overlaps[new])
+        self.keys, self.overlaps = keys, overlaps
+        return overlaps, new, old
+
+
+class Encounters(Looking):
+    """The blocks of masonry as polygons, and the lines where they meet beyond their joints."""
+
+    def __init__(self, masonry: Masonry, system: System, group: Sequence[str]) -> None:
+        super().__init__(masonry, system, group)
+        blocks = masonry.blocks
+        self.rest = np.column_stack([system.bodies["x0"], system.bodies["z0"]])
+        self.origin = np.where(self.body[:, None] < 0, 0.0, self.rest[self.body])
+        self.first = np.cumsum([0, *(len(block.corners) for block in blocks)])
+        self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.origin, strict=True)])
+        self.room = np.zeros((self.most, 5))
+
+    def ways(self, bodies: Rows) -> tuple[Array, Array]:
+        """As in `Looking`."""
         moved = np.hypot(bodies["x"], bodies["z"]) + np.abs(bodies["theta"]) * self.sizes
-        return np.asarray(moved > self.widths)
+        return moved, np.hypot(bodies["vx"], bodies["vz"]) + np.abs(bodies["w"]) * self.sizes
 
     def looked_for(self, system: System, loose: Flags, until: float) -> System:
-        """The system with the lines of the encounters that may happen within a time [s]."""
-        bodies = system.bodies
-        speed = np.hypot(bodies["vx"], bodies["vz"]) + np.abs(bodies["w"]) * self.sizes
-        near = max(NEAR * float(speed.max()) * until, LEAST * float(self.sizes.min()))
+        """As in `Looking`."""
+        bodies, near = system.bodies, self._near(system.bodies, until)
         held = self._held(system, loose)
         places = self._places(bodies)
         polygon_loose = np.append(loose, False)[self.body]
@@ -112,26 +153,11 @@ class Encounters:
         at = [np.where(free, bodies[name][of] + bodies[f"{name}0"][of], 0.0) for name in ("x", "z")]
         return np.column_stack([at[0] + x + z * sine - x * versine, at[1] + z - x * sine - z * versine])
 
-    def _held(self, system: System, loose: Flags) -> Integers:
-        """Pairs of blocks whose joint still touches, as numbers in order. A joint of loose blocks that has opened is
-        gone for good."""
-        lines = system.lines[: len(self.joints)]
-        free = np.append(loose, False)
-        either = free[lines["body"]] | free[lines["face"]]
-        touches, pairs = lines["push"] > 0, self.pairs
-        closed = np.unique(pairs[touches | ~either])
-        gone = either & ~np.isin(pairs, closed)
-        for name in ("k", "c", "friction"):
-            lines[name][gone] = 0.0
-        return np.asarray(np.setdiff1d(closed, pairs[lines["k"] == 0]), dtype=np.int64)
-
     def _lines(self, numbers: Integers, gaps: Array, last: Rows) -> Rows:
         """Lines of encounters, the numbers of two blocks with a corner of one and an edge of the other, (count, 4)."""
         a, corner, b, edge = numbers.T
         keys = ((a * CORNERS + corner) * len(self.body) + b) * CORNERS + edge
-        _, new, old = np.intersect1d(keys, self.keys, return_indices=True)
-        overlaps = np.minimum(gaps, 0.0)
-        overlaps[new] = np.maximum(self.overlaps[old], overlaps[new])
+        overlaps, new, old = self._remembered(keys, gaps)
         body, face = self.body[a], self.body[b]
         at = self.corners[self.first[a] + corner]
         start, end = (self.corners[self.first[b] + (edge + i) % np.diff(self.first)[b]] for i in (0, 1))
@@ -146,7 +172,6 @@ class Encounters:
             lines[name] = self.softest[name][body]
         for name in KEPT:
             lines[name][new] = last[name][old]
-        self.keys, self.overlaps = keys, overlaps
         return lines
 
 

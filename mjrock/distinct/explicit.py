@@ -47,8 +47,8 @@ def solve_explicit(
 
     Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, and a spring or
     friction with two components along each face. A point that has moved past the outline of its face hands its force
-    over to the nearest place of the outline, as long as this is under the block above. Blocks that fall meet no others
-    there, which the message of the response says.
+    over to the nearest place of the outline, as long as this is under the block above. Corners of blocks that have left
+    their joints meet the faces of others there; edges that cross do not meet, which the message of the response says.
 
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
@@ -83,7 +83,7 @@ def solve_explicit(
     columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 1 if ledger else 0)
     if ledger:
         require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
-    books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else len(setup.encounters.room))
+    books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else setup.encounters.most)
     samples = Samples.of(count, len(scene.names), columns, setup.freedom)
     stepping = time.perf_counter()
     system, steps, kept = follow(setup, books, samples, Clock(0, h, every, 0, count, setup.ends))

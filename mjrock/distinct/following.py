@@ -12,7 +12,7 @@ from tqdm import tqdm
 from ..geometry.frames import PLANE, Freedom
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .encounters import Encounters
+from .encounters import Looking
 from .loop import Clock
 from .system import Books, Samples
 
@@ -48,7 +48,7 @@ class Setup:
     spacing: float = math.inf
     ends: float = math.inf
     freedom: Freedom = PLANE
-    encounters: Encounters | None = None
+    encounters: Looking | None = None
 
 
 def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:

@@ -28,6 +28,9 @@ from ..scene.course import Course
 from ..scene.scene import Scene
 from .system import Books, Samples
 
+UNMET = "of edges that cross, and of corners of fixed blocks,"
+"""Contacts of blocks that fall in space that are left out."""
+
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -132,7 +135,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
-    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), met=not run.in_space)
+    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), UNMET if run.in_space else "")
     opening = motion.opening.copy()
     of = joint_numbers(masonry, scene.group)
     np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])

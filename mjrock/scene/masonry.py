@@ -21,6 +21,9 @@ from .effects_in_space import attachments_in_space
 from .equilibrium import UnsettledError
 from .scene import Scene
 
+GONE = 0.1
+"""Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
+
 
 def masonry_scene(case: MasonryCase) -> Scene:
     """The scene of a case: the masonry under its weight, which all cases of it with the same effects share.
@@ -48,26 +51,41 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
 
     What only ties keep from falling is left to the search for equilibrium.
     """
+    require_carried(masonry, effects)
+    try:
+        _ = standing_masonry(masonry, effects).at_rest
+    except UnsettledError as error:
+        raise unsettled(masonry, error.pose[:, : 3 if masonry.in_space else 2]) from None
+
+
+def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
+    """Raise ValueError with the names of the blocks that fall if rigid blocks cannot carry the weight without ties."""
     falls = falling(masonry, applied(masonry, effects))
     if falls and not any(isinstance(one, Tie) for one in effects):
         lacking = friction_lacking(masonry, applied(masonry, effects))
         remedy = "" if lacking is None else f"; joints that need friction of {lacking[0]:g}: {named(lacking[1])}"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
-    try:
-        _ = standing_masonry(masonry, effects).at_rest
-    except UnsettledError as error:
-        slide, joints = slippery(masonry)
-        if slide:
-            raise ValueError(
-                f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
-                f"joints that need friction, of any coefficient above 0: {named(joints)}"
-            ) from None
-        moved = np.hypot.reduce(error.pose[:, : 3 if masonry.in_space else 2], axis=1)
-        gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= 0.1 * moved.max()]
-        raise ValueError(
-            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
-            "raise k_n"
-        ) from None
+
+
+def unsettled(masonry: Masonry, displacement: Array) -> ValueError:
+    """What is said of masonry that stands as rigid blocks, but of which no pose of rest was found.
+
+    Args:
+        masonry: the masonry.
+        displacement: how far its free blocks have moved in the search [m], shape (free, axes).
+    """
+    slide, joints = slippery(masonry)
+    if slide:
+        return ValueError(
+            f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
+            f"joints that need friction, of any coefficient above 0: {named(joints)}"
+        )
+    moved = np.linalg.norm(displacement, axis=1)
+    gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= GONE * moved.max()]
+    return ValueError(
+        f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
+        "raise k_n"
+    )
 
 
 @lru_cache(maxsize=16)

@@ -68,10 +68,10 @@ Made by `scripts/models/make_models.py`; a test makes it again and compares.
 friction {mu:g}, c/k = {masonry.retardation[0] * 1e3:.4g} ms. A point carries k_i = k_n times its tributary area and
 c_i = (c/k) k_i, and pushes with f = max(0, -k_i r - c_i r'), r the gap. Friction is Coulomb's.
 
-`scene.xml`: step {self.timestep:g} s, Euler. In stock MuJoCo reset to the keyframe `release` and step; the viewer opens
-at rest and has the keyframe in its list. Each block has three slides and a ball joint of MuJoCo, which displace its
-centroid [m] and turn it. A joint that slides is pressed apart in stock MuJoCo; steps of mjrock that fit the motion
-slide by Coulomb's law.
+`scene.xml`: step {self.timestep:g} s, Euler. In stock MuJoCo reset to the keyframe `release` and step. The viewer opens
+with the blocks as drawn, unloaded and without a velocity; `Load key` in its list Simulation sets the keyframe. Each
+block has three slides and a ball joint of MuJoCo, which displace its centroid [m] and turn it. A joint that slides is
+pressed apart in stock MuJoCo; steps of mjrock that fit the motion slide by Coulomb's law.
 
 `reference.csv`: displacement of each block and energy above the masonry at rest, by MuJoCo with steps {FINER} times as
 short. It says what the step of the scene costs in accuracy.

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...problem.masonry.effects_in_space import anchored_at
 from ...problem.masonry.faces_of_joints import faces_of_joints
+from ...problem.masonry.joints_in_space import Face
 from ...problem.masonry.masonry import Masonry
 from ...problem.masonry.support import Support
 from ...problem.wall.damper import Damper
@@ -112,20 +113,23 @@ def edges_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Integers]:
     """
     number = numbers_of(masonry)
     origins = np.where(number[:, None] < 0, 0.0, scene.rest[number])
-    table: list[list[float]] = []
-    ends = []
-    for joint, faces in zip(masonry.joints, faces_of_joints(masonry), strict=True):
-        for block, face in zip((joint.below, joint.above), faces, strict=True):
-            ways = np.cross(np.roll(face.corners, -1, axis=0) - face.corners, face.normal)
-            ways /= np.linalg.norm(ways, axis=1)[:, None]
-            places = (face.corners - origins[block]) @ ways.T  # (corners, edges)
-            extent = np.ptp(places, axis=0)
-            reach, band = places.max(axis=0) + OVERHANG * extent, OVERHANG * (1 + 2 * OVERHANG) * extent
-            ends.append((len(table), len(table) + len(ways)))
-            table += np.column_stack([ways, reach, band]).tolist()
-    columns = np.reshape(table, (-1, 5))
-    edges = rows(EDGE, len(columns), **named_vectors(way=columns[:, :3]), reach=columns[:, 3], band=columns[:, 4])
-    return edges, np.reshape(ends, (-1, 2, 2))
+    tables = [
+        edges_of_face(face, origins[block])
+        for joint, faces in zip(masonry.joints, faces_of_joints(masonry), strict=True)
+        for block, face in zip((joint.below, joint.above), faces, strict=True)
+    ]
+    ends = np.cumsum([0, *(len(table) for table in tables)])
+    return np.concatenate(tables).view(np.recarray), np.column_stack([ends[:-1], ends[1:]]).reshape(-1, 2, 2)
+
+
+def edges_of_face(face: Face, origin: Array) -> Rows:
+    """The edges of a face, from a point of its block [m]."""
+    ways = np.cross(np.roll(face.corners, -1, axis=0) - face.corners, face.normal)
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    places = (face.corners - origin) @ ways.T  # (corners, edges)
+    extent = np.ptp(places, axis=0)
+    reach, band = places.max(axis=0) + OVERHANG * extent, OVERHANG * (1 + 2 * OVERHANG) * extent
+    return rows(EDGE, len(ways), **named_vectors(way=ways), reach=reach, band=band)
 
 
 def margins(points: Rows, edges: Rows) -> Array:

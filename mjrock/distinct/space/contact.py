@@ -6,7 +6,8 @@ point sticks rigidly, see `friction`.
 
 A point beyond the outline of its face has moved past an edge of it. The nearest place of the outline then presses on
 the face of the block that carries the point, and past the outline of that face too nothing is left of the contact. Nor
-is anything left of it once the two faces are turned away from each other.
+is anything left of it once the two faces are turned away from each other. A corner that meets a face beyond the joints
+presses where it has come through the face, until it leaves the outline.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from .system import (
     add_force,
     add_moment,
     at_of,
+    between_of,
     displaced_support,
     grip_of,
     keep_grip,
@@ -37,6 +39,8 @@ from .system import (
 )
 from .turning import in_body, in_world, swung
 
+NEAR, THROUGH, BESIDE = 1, 2, 3
+"""A corner outside a face, one that has come through it, and one that is behind it and passed beside its outline."""
 TURNED_OVER = 2 * OPEN
 """Gap of a point whose block has turned over [m]. The contact is gone for good."""
 ROUNDS = 3
@@ -64,7 +68,7 @@ def meeting(system: System, point: Row) -> Meeting:
     """Where a point is."""
     body, at, normal = system.bodies[point.body], at_of(point), normal_of(point)
     swing = swung(body, at)
-    arm, across = plus(at, swing), plus(place_of(body), swing)
+    arm, across = plus(at, swing), plus(between_of(point), plus(place_of(body), swing))
     face_arm = arm
     if point.face >= 0:
         face, origin = system.bodies[point.face], origin_of(point)
@@ -75,6 +79,8 @@ def meeting(system: System, point: Row) -> Meeting:
     elif point.support >= 0:
         across = minus(across, displaced_support(system.supports, point.support))
     gap = dot(normal, across)
+    if point.corner > 0:
+        return cornered(system, point, across, Meeting(gap, normal, arm, face_arm))
     if gap < 0:
         if dot(normal, in_world(body, normal_of(point))) < 0:
             return Meeting(TURNED_OVER, normal, arm, face_arm)
@@ -113,6 +119,24 @@ def at_the_end(system: System, point: Row, across: Vector, meet: Meeting) -> Mee
     normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
     normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
     return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along))
+
+
+@jitable
+def cornered(system: System, point: Row, across: Vector, meet: Meeting) -> Meeting:
+    """Where a corner is that may meet a face, `across` from the origin of the face [m]. Beside the face it is open."""
+    if meet.gap >= 0:
+        point.corner = NEAR
+        return meet
+    if point.corner != BESIDE:
+        within = across if point.face < 0 else in_body(system.bodies[point.face], across)
+        reached, point.corner = plus(origin_of(point), within), THROUGH
+        for i in range(point.first, point.last):
+            edge = system.edges[i]
+            if dot(way_of(edge), reached) > edge.reach:
+                point.corner = BESIDE
+    if point.corner == BESIDE:
+        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm)
+    return meet
 
 
 @inlined

@@ -1,8 +1,10 @@
-"""Masonry in space at rest: the pose in which the springs of its points, in every direction, carry the weight.
+"""Masonry in space at rest: a pose and friction within its cones in which the springs of its points carry the weight.
 
-Points push only, and their shear springs slip where they would pass the friction. Points that stick rigidly are lent
-shear springs for this search, and start with the force of these. The search is Newton's method, with the stiffness of
-a point that slips taken along the chord.
+Points push only. Along the face each has a spring with a slider that slips where the spring would pass the friction.
+Where many slip, friction accumulates from pose to pose as it does in the explicit steps. The search is Newton's method.
+With the whole spring of a point that slips it overshoots no pose but is slow, with none of it it ends soon or never.
+The share of the spring is therefore halved from pose to pose, and is whole again when more force is missing than
+before.
 """
 
 from __future__ import annotations
@@ -13,24 +15,25 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
-from ...problem.masonry.joints_in_space import axes_across
-from ...quantities import GRAVITY, Array, Integers
+from ...problem.masonry.joints_in_space import axes_along
+from ...quantities import GRAVITY, Array, Flags, Integers
 from .columns import PLACE, QUATERNION, applied, named, named_vectors, stacked, turns, vectors
 from .limit import rates_of
 from .system import System
 
-LENT = 1e3
-"""Shear stiffness that points have in the search, over their normal stiffness [-]."""
-ITERATIONS = 300
-"""Most iterations of the search."""
+SEARCHES = ((1e3, 20, False), (1.0, 150, True), (0.1, 300, True))
+"""Searches, each where the one before has not ended: the shear stiffness of points over their normal stiffness [-],
+nearly rigid at first, as friction that holds is, and then softer, as stiff ones slip more on the way; how many poses
+are tried at most; and whether friction accumulates, or is that of springs as long as the slip from the place drawn."""
 EXACT = 1e-9
 """Force that may be missing, over the weight of the heaviest body [-]."""
-LOOSE = 1e-10
-"""Stiffness that is lent to every motion in the search, over the largest [-]."""
+LOOSE, LEAST_LOOSE = 1e-9, 1e-12
+"""Stiffness that is lent to every motion in the search, over the largest: at the start, and the least of it [-]."""
+SLIPPING, RAISED = 1e-2, 4.0
+"""Least share of its shear stiffness that a point that slips lends along its slip, and by how much it is raised each
+time that more force is missing than before [-]."""
 LEANING = 1e-6
 """Stiffness of an open point in the search for a direction, over that of a closed one [-]."""
-SMALLEST_SHARE = 1e-2
-"""Smallest share of a step of the search [-]."""
 TURNED = 0.5
 """Rotation beyond which a body no longer stands [rad]."""
 
@@ -51,20 +54,22 @@ class Springs(NamedTuple):
         arms: from their centroids to the point [m], shape (m, 3) each.
         normal: unit vectors along which the springs push the two apart, shape (m, 3).
         pressed: depth of points and elongation of ties, negative where open or slack [m], shape (m,).
-        slid: how far each point has slid along its face [m], shape (m, 3).
         push: along the normals [N], shape (m,).
         drag: along the faces [N], shape (m, 3).
         grips: stiffness along the face, of the chord where a point slips [N/m], shape (m,).
+        slips: whether a point slips, shape (m,).
+        slider: how far the slider of each point has moved along its face, in its axes [m], shape (points, 3).
     """
 
     pair: Integers
     arms: tuple[Array, Array]
     normal: Array
     pressed: Array
-    slid: Array
     push: Array
     drag: Array
     grips: Array
+    slips: Flags
+    slider: Array
 
 
 def settle(system: System) -> None:
@@ -73,47 +78,52 @@ def settle(system: System) -> None:
     Raises:
         UnsettledError: if no such pose is found near the one as drawn.
     """
-    bodies, lines = system.bodies, system.lines
-    place, quaternion = stacked(bodies, PLACE), stacked(bodies, QUATERNION)
-    size = np.column_stack([np.ones((len(bodies), 3)), np.repeat(sizes(system)[:, None], 3, axis=1)]).ravel()
-    tolerated = EXACT * GRAVITY * float(bodies["mass"].max())
-    stiff, shear = np.concatenate([lines["k"], system.ties["k"]]), np.append(shears(system), np.zeros(len(system.ties)))
-    rubs = np.append(lines["friction"] > 0, np.zeros(len(system.ties), dtype=bool))
-    springs = springs_at(system, place, quaternion)
-    missing = missing_force(system, springs, quaternion) / size
-    for iteration in range(ITERATIONS):
-        if np.abs(missing).max() < tolerated and iteration:
+    for lent, iterations, accumulates in SEARCHES:
+        try:
+            k_s = lent * system.lines["k"]
+            place, quaternion, springs = searched(system, k_s, iterations, accumulates=accumulates)
             break
-        first = iteration == 0  # all points hold in all directions
-        acting = springs._replace(grips=np.where(rubs, shear, 0.0)) if first else springs
-        closed = (springs.pressed > 0) | (first & (shear > 0))
-        stiffness = stiffness_of(acting, np.where(closed, stiff, LEANING * stiff), len(bodies))
-        lent = LOOSE * float(stiffness.diagonal().max())
-        scaled = csc_array(
-            diags_array(1 / size) @ stiffness @ diags_array(1 / size) + diags_array(np.full(len(size), lent))
-        )
-        motion = (splu(scaled).solve(missing) / size).reshape(-1, 6)
-        share, last = 1.0, float(np.abs(missing).sum())
-        while True:
-            tried = moved(place, quaternion, share * motion)
-            springs = springs_at(system, *tried)
-            missing = missing_force(system, springs, tried[1]) / size
-            if np.abs(missing).sum() < last or share < SMALLEST_SHARE or iteration == 0:
-                break
-            share *= 0.5
-        place, quaternion = tried
-        if not np.linalg.norm(quaternion[:, 1:], axis=1).max() < np.sin(0.5 * TURNED):
-            raise UnsettledError(place)
+        except UnsettledError as error:
+            unsettled = error
     else:
-        raise UnsettledError(place)
+        raise unsettled
     for name, values in (named(PLACE, place) | named(QUATERNION, quaternion)).items():
-        bodies[name] = values
+        system.bodies[name] = values
     take_grips(system, springs, quaternion)
 
 
-def shears(system: System) -> Array:
-    """Shear stiffness that the points have in the search [N/m], shape (m,)."""
-    return np.asarray(LENT * system.lines["k"])
+def searched(system: System, k_s: Array, iterations: int, *, accumulates: bool) -> tuple[Array, Array, Springs]:
+    """Places and quaternions at rest and the springs there, of points with these shear stiffnesses [N/m], shape (m,).
+
+    Raises:
+        UnsettledError: if there is none within some iterations.
+    """
+    bodies, lines = system.bodies, system.lines
+    place, quaternion = stacked(bodies, PLACE), stacked(bodies, QUATERNION)
+    size = np.column_stack([np.ones((len(bodies), 3)), np.repeat(sizes(system)[:, None], 3, axis=1)]).ravel()
+    stiff, scales = np.concatenate([lines["k"], system.ties["k"]]), diags_array(1 / size)
+    tolerated, loose, share, least = EXACT * GRAVITY * float(bodies["mass"].max()), LOOSE, 1.0, SLIPPING
+    slider = np.zeros((len(lines), 3))
+    springs = springs_at(system, place, quaternion, (k_s, slider))
+    missing = missing_force(system, springs, quaternion) / size
+    for _ in range(iterations):
+        stiffness = stiffness_of(springs, np.where(springs.pressed >= 0, stiff, LEANING * stiff), share, len(bodies))
+        scaled = scales @ stiffness @ scales
+        lent = np.full(len(size), loose * float(scaled.diagonal().max()))
+        motion = (splu(csc_array(scaled + diags_array(lent))).solve(missing) / size).reshape(-1, 6)
+        place, quaternion = moved(place, quaternion, motion)
+        if not np.linalg.norm(quaternion[:, 1:], axis=1).max() < np.sin(0.5 * TURNED):
+            break
+        slider, last = springs.slider if accumulates else slider, float(np.abs(missing).sum())
+        springs = springs_at(system, place, quaternion, (k_s, slider))
+        missing = missing_force(system, springs, quaternion) / size
+        if np.abs(missing).max() < tolerated:
+            return place, quaternion, springs
+        if np.abs(missing).sum() < last:
+            loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
+        else:
+            loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
+    raise UnsettledError(place)
 
 
 def sizes(system: System) -> Array:
@@ -122,36 +132,40 @@ def sizes(system: System) -> Array:
     return np.asarray(np.sqrt(1 / (bodies["mass"] * bodies["ease_xx"])))
 
 
-def springs_at(system: System, place: Array, quaternion: Array) -> Springs:
-    """The springs at a pose."""
+def springs_at(system: System, place: Array, quaternion: Array, shear: tuple[Array, Array]) -> Springs:
+    """The springs at a pose. `shear` is the shear stiffness of the points, and where their sliders were before."""
     lines, ties, turn = system.lines, system.ties, turns(quaternion)
     pair = np.column_stack([lines["body"], lines["face"]])
     arms, across = apart(pair, (vectors(lines, "at"), vectors(lines, "origin")), place, turn)
     normal = vectors(lines, "normal")
     normal = normal + applied(turn, pair[:, 1], normal)
     gap = np.einsum("ij,ij->i", normal, across)
-    slid, push = across - gap[:, None] * normal, np.maximum(-lines["k"] * gap, 0.0)
-    k_s = shears(system)
-    held, most = k_s * np.linalg.norm(slid, axis=1), lines["friction"] * push
-    grips = np.where(held > most, k_s * most / np.where(held > 0, held, 1.0), k_s)
-    grips[(lines["friction"] == 0) | (push == 0)] = 0.0
-    drag = -grips[:, None] * slid
+    push, (k_s, slider) = np.maximum(-lines["k"] * gap, 0.0), shear
+    stretch = across - slider - applied(turn, pair[:, 1], slider)
+    stretch = stretch - np.einsum("ij,ij->i", normal, stretch)[:, None] * normal
+    held, most = k_s * np.linalg.norm(stretch, axis=1), lines["friction"] * push
+    slips = held > most
+    stays = np.where(slips, most / np.where(slips, held, 1.0), 1.0)
+    slid, grips = (1 - stays)[:, None] * stretch, np.where((lines["friction"] == 0) | (gap > 0), 0.0, stays * k_s)
+    slider = slider + slid + applied(np.swapaxes(turn, 1, 2), pair[:, 1], slid)
+    drag = -(stays * k_s)[:, None] * stretch
     if not len(ties):
-        return Springs(pair, arms, normal, -gap, slid, push, drag, grips)
+        return Springs(pair, arms, normal, -gap, push, drag, grips, slips, slider)
     held_pair = np.column_stack([ties["body"], ties["anchor"]])
     held_arms, between = apart(held_pair, (vectors(ties, "at"), vectors(ties, "origin")), place, turn)
     between = between + vectors(ties, "between")
     length = np.linalg.norm(between, axis=1)
-    longer, none = length - ties["reach"], np.zeros((len(ties), 3))
+    longer, none = length - ties["reach"], np.zeros(len(ties))
     return Springs(
         np.vstack([pair, held_pair]),
         (np.vstack([arms[0], held_arms[0]]), np.vstack([arms[1], held_arms[1]])),
         np.vstack([normal, -between / length[:, None]]),
         np.append(-gap, longer),
-        np.vstack([slid, none]),
         np.append(push, np.maximum(ties["k"] * longer, 0.0)),
-        np.vstack([drag, none]),
-        np.append(grips, np.zeros(len(ties))),
+        np.vstack([drag, np.zeros((len(ties), 3))]),
+        np.append(grips, none),
+        np.append(slips, none > 0),
+        slider,
     )
 
 
@@ -179,11 +193,13 @@ def missing_force(system: System, springs: Springs, quaternion: Array) -> Array:
     return total.ravel()
 
 
-def stiffness_of(springs: Springs, k: Array, bodies: int) -> csr_array:
-    """Stiffness of the springs, those along the normals with the given k, shape (6 n, 6 n)."""
+def stiffness_of(springs: Springs, k: Array, share: float, bodies: int) -> csr_array:
+    """Stiffness of the springs, those along the normals with the given k, shape (6 n, 6 n). Along its slip a point has
+    a share of its stiffness."""
     total = csr_array((6 * bodies, 6 * bodies))
-    first, second = np.moveaxis(axes_across(springs.normal), 1, 0)
-    for way, weights in ((springs.normal, k), (first, springs.grips), (second, springs.grips)):
+    first, second = axes_along(springs.normal, springs.drag)
+    along = np.where(springs.slips, share, 1.0) * springs.grips
+    for way, weights in ((springs.normal, k), (first, along), (second, springs.grips)):
         rates = rates_of(springs.pair, springs.arms, way, bodies)
         total = csr_array(total + rates.T @ diags_array(weights) @ rates)
     return total

@@ -12,21 +12,18 @@ from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.damper import Damper
 from ...problem.wall.effects import Effect
-from ...quantities import named
 from ...result.response import State
 from ...scene.explicit_step import SHARE
-from ...scene.masonry import masonry_course, standing_masonry
+from ...scene.masonry import masonry_course, require_carried, standing_masonry, unsettled
 from ...scene.scene import Scene
 from ..following import Setup
 from .assembly import copied, masonry_system, moved_by, started
 from .columns import PLACE, QUATERNION, stacked
+from .encounters import EncountersInSpace
 from .limit import longest_step
 from .loop import advance
 from .rest import UnsettledError, settle
 from .system import System
-
-GONE = 0.1
-"""Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
 
 
 def setup_in_space(case: MasonryCase, state: State | None) -> Setup:
@@ -37,7 +34,9 @@ def setup_in_space(case: MasonryCase, state: State | None) -> Setup:
         course = course.continued(*state)
     system = moved_by(copied(at_rest), scene, case.masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
-    return Setup(scene, course, system, advance, longest_step(system), SHARE, freedom=SPACE)
+    limit, encounters = longest_step(system), EncountersInSpace(case.masonry, system, scene.group)
+    system = encounters.made_room(system)
+    return Setup(scene, course, system, advance, limit, SHARE, freedom=SPACE, encounters=encounters)
 
 
 @lru_cache(maxsize=16)
@@ -54,10 +53,7 @@ def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene,
     try:
         settle(system)
     except UnsettledError as error:
-        far = np.linalg.norm(error.place, axis=1)
-        gone = [name for name, way in zip(scene.names, far, strict=True) if way >= GONE * far.max()]
-        raise ValueError(
-            f"the masonry cannot stand: {named(gone)} would fall under the weight; raise k_n or friction, or support it"
-        ) from None
+        require_carried(masonry, effects)
+        raise unsettled(masonry, error.place) from None
     pose = np.column_stack([stacked(system.bodies, PLACE), stacked(system.bodies, QUATERNION)])
     return replace(scene, settled=pose), system

@@ -50,8 +50,10 @@ POINT = np.dtype(
         ("face", np.int64),  # the body of the face, -1 for a fixed block
         ("support", np.int64),  # the support that moves a fixed block, -1 for none
         ("group", np.int64),  # number of the account
+        ("corner", np.int64),  # 0 for a point of a joint; of a corner near a face see `contact.cornered`
         *three("at"),  # the point from the centroid of its body [m]
-        *three("origin"),  # the same place from the centroid of the body of the face [m]
+        *three("origin"),  # a point of the face from the centroid of its body [m]
+        *three("between"),  # from there to the point at rest, zero for a point of a joint [m]
         *three("normal"),  # unit vector out of the face
         *numbers("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
         ("friction", float),  # coefficient [-]
@@ -149,7 +151,7 @@ def origin_of(row: Row) -> Vector:
 
 @inlined
 def between_of(link: Row) -> Vector:
-    """The vector from the anchor of a link at rest [m], or a force [N]."""
+    """The vector from the anchor of a link or from the face to the point at rest [m], or a force [N]."""
     return link.between_x, link.between_y, link.between_z
 
 

@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 from scipy.sparse import hstack
 
 from ...quantities import Array, named, require_kind, require_reals, require_within, shown
-from .joints_in_space import axes_across
+from .joints_in_space import axes_along
 from .masonry import Masonry
 from .statics import cones, falling, method, moving, sizes_of, weight_of
 
@@ -65,7 +65,7 @@ def collapse_multiplier(masonry: Masonry, direction: float | ArrayLike = 1, *, a
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight")
     across, weight, sizes = None, weight_of(masonry), sizes_of(masonry)
     if masonry.in_space:
-        across = _along(masonry.lines.normal, push)
+        across = axes_along(masonry.lines.normal, push)
     pressed = cones(masonry, masonry.joint_friction, across)
     sideways = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     sideways[:, : len(push)] = np.outer(-weight.reshape(len(masonry.free), -1)[:, len(push) - 1], push)
@@ -100,12 +100,3 @@ def _push(masonry: Masonry, direction: float | ArrayLike, angle: float | None) -
     if not 1e-9 < length < math.inf:
         raise ValueError(f"direction = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")
     return np.append(given / length, 0.0) if masonry.in_space else given
-
-
-def _along(normals: Array, push: Array) -> tuple[Array, Array]:
-    """Two unit vectors along faces, the first of which lies along a force where it can, shape (m, 3) each."""
-    first = push - (normals @ push)[:, None] * normals
-    lengths = np.linalg.norm(first, axis=1)
-    blunt = lengths < 1e-6
-    first = np.where(blunt[:, None], axes_across(normals)[:, 0], first / np.where(blunt, 1.0, lengths)[:, None])
-    return first, np.cross(normals, first)

@@ -16,6 +16,8 @@ from .polyhedron import Polyhedron, Vertices
 
 OPPOSITE = -1 + 1e-3
 """Largest cosine of the angle between the normals of two faces that make a joint [-]."""
+BLUNT = 1e-6
+"""Share of a force across a normal below which it has no direction there [-]."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,20 @@ def axes_across(normals: Array) -> Array:
     first /= np.linalg.norm(first, axis=1)[:, None]
     axes: Array = np.stack([first, np.cross(normals, first)], axis=1) + 0.0
     return axes
+
+
+def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
+    """Two unit vectors across each of some normals, the first along a force where it can be, shape (m, 3) each.
+
+    Args:
+        normals: shape (m, 3).
+        forces: of each, shape (m, 3), or one for all, shape (3,).
+    """
+    first = forces - (normals * forces).sum(axis=1)[:, None] * normals
+    lengths = np.linalg.norm(first, axis=1)
+    blunt = lengths <= BLUNT * np.linalg.norm(forces, axis=-1)
+    first = np.where(blunt[:, None], axes_across(normals)[:, 0], first / np.where(blunt, 1.0, lengths)[:, None])
+    return first, np.cross(normals, first)
 
 
 def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[SpaceJoint, ...]:
