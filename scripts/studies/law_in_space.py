@@ -1,7 +1,7 @@
 """The damping law in space: what a block loses when it rocks on its base, in the plane and as a prism in space.
 
 A block of 0.6 m x 4.2 m, 1 m long, 2000 kg/m3, stands on a joint of k_n = 1e9 N/m3 with the damping of the calibrated
-law, as `Contacts.from_law` and `Masonry(law=...)` give it. In space the same c/k is given as xi at a frequency. The
+law, as `Contacts.from_law` and `Masonry(law=...)` give it, in the plane and in space. The
 block is set turning about its edge so that it rises to 0.3 alpha, and rocks. `points` are the lines of the joint in
 the plane, and in space its corners or a grid of points x points. Given is the share of the energy that each of the
 first impacts leaves, from the energy at successive peaks of the rotation, beside e^2 of theory.
@@ -38,10 +38,9 @@ def in_plane(points: int) -> mr.Masonry:
 
 
 def in_space(plane: mr.Masonry) -> mr.Masonry:
-    """The same as prisms, with the same c/k."""
+    """The same as prisms."""
     prisms = tuple(mr.Polyhedron.prism(block) for block in plane.blocks)
-    retardation = float(plane.retardation[0])
-    return mr.Masonry(prisms, K_N, FRICTION, xi=0.5 * retardation, frequency=1.0, points=plane.points)
+    return mr.Masonry(prisms, K_N, FRICTION, law=plane.law, points=plane.points)
 
 
 def set_rocking(masonry: mr.Masonry, duration: float) -> mr.Response:

@@ -166,13 +166,28 @@ def test_what_masonry_in_space_refuses():
     blocks = [GROUND, box((1, 1, 1), (0, 0, 0.5))]
     with pytest.raises(TypeError, match=r"blocks\[2\] is a Polygon, and blocks\[0\] is none"):
         mr.Masonry([*blocks, mr.Polygon([(0, 0), (1, 0), (0, 1)])])
-    with pytest.raises(ValueError, match="law = is for stacks in the plane"):
-        mr.Masonry(blocks, law="CALIBRATED")
+    with pytest.raises(ValueError, match="law = is for stacks, where every block stands on one other block"):
+        mr.Masonry.facade(1.2, 0.8, 0.4, (0.4, 0.2), law="CALIBRATED")
+    beside = mr.Polyhedron.box((0.5, 1.0, 4.0), (-0.55, 0.0, 2.0), fixed=True)
+    with pytest.raises(ValueError, match="law = in space is for stacks that stand free"):
+        mr.Masonry([GROUND, box((0.6, 1, 4), (0, 0, 2)), beside], law="CALIBRATED")
     with pytest.raises(ValueError, match="points = 51 is outside the valid range 2 to 50"):
         mr.Masonry(blocks, points=51)
     with pytest.raises(ValueError, match="no two of them touch along a face"):
         mr.Masonry([GROUND, box((1, 1, 1), (0, 0, 3))])
     assert mr.Masonry(blocks).in_space
+
+
+@pytest.mark.parametrize(("law", "points", "blocks"), [("CALIBRATED", 2, 2), (mr.CALIBRATED_BED, 16, 1)])
+def test_the_law_gives_a_stack_in_space_what_it_gives_in_the_plane(law, points, blocks):
+    """Blocks of 0.6 m x 2.7 m, 1.3 m long, which rock about their long edges."""
+    options = {"friction": 0.7, "law": law, "points": points}
+    plane = mr.Masonry.stack([mr.Block.from_size(0.6, 2.7, length=1.3)] * blocks, 1e9, **options)
+    space = mr.Masonry([mr.Polyhedron.prism(block) for block in plane.blocks], 1e9, **options)
+    assert space.retardation == pytest.approx(plane.retardation, rel=1e-12)
+    assert mr.Masonry.box((1.3, 0.6, 2.7 * blocks), k_n=1e9, **options).retardation == pytest.approx(
+        plane.retardation[0], rel=1e-12
+    )
 
 
 def test_what_is_of_the_plane_alone_says_so():

@@ -74,6 +74,11 @@ class SpaceJoint:
         """The smallest extent of the joint in any direction of its plane [m]."""
         return convex.width(self.flat)
 
+    @property
+    def length(self) -> float:
+        """Length of a rectangle of that width and the area of the joint [m]."""
+        return self.area / self.width
+
     @cached_property
     def middle(self) -> Array:
         """Centroid of the area of the joint [m], shape (3,)."""

@@ -70,7 +70,8 @@ class Masonry(FormsInSpace, Exchange):
             the rigid wall above it, and a fixed block beside the stack as the side stop of the whole, see
             `Contacts.from_law`. A stack of 2 to 7 blocks that rocks as one then loses more than its wall at an impact:
             2 to 10 % more on joints of 1e10 N/m3 or stiffer, 4 to 24 % more on 1e9 (h/b of 7, from alpha/2), and 5 to
-            7 % less against a side stop. `matched_masonry` finds the damping with which it loses the same.
+            7 % less against a side stop. `matched_masonry` finds the damping with which it loses the same. In space the
+            wall is as thick as the joint where it is thinnest, and no fixed block may stand beside the stack.
         k_s: shear stiffness of the joints [N/m3], 1e4 to 1e16, or a function of the joint, for `solve_explicit`. None
             lets them stick rigidly, up to their friction, as they always do in MuJoCo.
 
@@ -121,8 +122,6 @@ class Masonry(FormsInSpace, Exchange):
             raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
         if self.law is not None and self.frequency is not None:
             raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
-        if self.law is not None and self.in_space:
-            raise ValueError("law = is for stacks in the plane; give xi to blocks in space")
         if not self.joints:
             raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
         for name in OF_JOINTS:

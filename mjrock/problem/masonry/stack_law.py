@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,15 +14,19 @@ from ..damping.contacts import Contacts, Law
 from ..damping.restitution import Restitution
 from ..wall.block import Block
 from .joints import Joint
+from .joints_in_space import SpaceJoint
 from .polygon import Polygon
+from .polyhedron import Polyhedron
+
+Blocks = Sequence[Polygon | Polyhedron]
 
 
-def is_side(blocks: Sequence[Polygon], joint: Joint) -> bool:
+def is_side(blocks: Blocks, joint: Joint | SpaceJoint) -> bool:
     """Whether a joint is that with a fixed block beside its block, as with a side stop."""
-    return blocks[joint.below].fixed and abs(joint.along[0]) < 1e-6
+    return blocks[joint.below].fixed and abs(joint.normal[-1]) < 1e-6
 
 
-def parts_above(blocks: Sequence[Polygon], beds: Sequence[Joint]) -> list[list[int]] | None:
+def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list[int]] | None:
     """Numbers of the blocks above each bed joint of a stack, from the lowest upwards; None if the blocks are no stack.
 
     In a stack each block that is not fixed stands on one other block, on a bed joint, and carries at most one.
@@ -41,19 +46,21 @@ def parts_above(blocks: Sequence[Polygon], beds: Sequence[Joint]) -> list[list[i
     return parts
 
 
-def wall_of(blocks: Sequence[Polygon], joint: Joint, part: Sequence[int]) -> Block:
+def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> Block:
     """Some blocks as one rigid wall on a joint: as thick as the joint, with their mass, its centroid where theirs is.
+
+    In space the joint is as thick as it is in the direction in which it is thinnest, about whose edges they rock.
 
     Raises:
         ValueError: if they are too squat for a rocking wall.
     """
     mass = np.array([blocks[i].mass for i in part])
-    height = float(mass @ [blocks[i].centroid[1] - joint.middle[1] for i in part]) / float(mass.sum())
+    height = float(mass @ [blocks[i].centroid[-1] - joint.middle[-1] for i in part]) / float(mass.sum())
     b = 0.5 * joint.width
     return Block(b=b, h=height, length=joint.length, density=float(mass.sum()) / (4 * b * height * joint.length))
 
 
-def retardations(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int, law: Law | str) -> Array:
+def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int, law: Law | str) -> Array:
     """c/k of each joint of a stack [s], as `Contacts.from_law` gives it for the rigid wall above.
 
     What is asked for is the restitution of that wall by conservation of angular momentum. A joint with a fixed block
@@ -69,6 +76,8 @@ def retardations(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array,
     parts = parts_above(blocks, [joints[i] for i in beds])
     if parts is None:
         raise ValueError("law = is for stacks, where every block stands on one other block or on the ground; give xi")
+    if len(beds) < len(joints) and isinstance(joints[0], SpaceJoint):
+        raise ValueError("law = in space is for stacks that stand free, with no fixed block beside them; give xi")
     walls = {}
     for i, part in zip(beds, parts, strict=True):
         try:
@@ -95,6 +104,6 @@ def retardations(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array,
     return retardation
 
 
-def _top(blocks: Sequence[Polygon], joints: Sequence[Joint], side: int) -> float:
+def _top(blocks: Blocks, joints: Sequence[Joint], side: int) -> float:
     """The highest point at which a fixed block touches blocks beside it, z [m]."""
     return max(max(j.start[1], j.end[1]) for j in joints if j.below == side and is_side(blocks, j))
