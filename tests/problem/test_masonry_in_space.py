@@ -178,6 +178,7 @@ def test_what_masonry_in_space_refuses():
     assert mr.Masonry(blocks).in_space
 
 
+@pytest.mark.filterwarnings("ignore:the joint")
 @pytest.mark.parametrize(("law", "points", "blocks"), [("CALIBRATED", 2, 2), (mr.CALIBRATED_BED, 16, 1)])
 def test_the_law_gives_a_stack_in_space_what_it_gives_in_the_plane(law, points, blocks):
     """Blocks of 0.6 m x 2.7 m, 1.3 m long, which rock about their long edges."""
