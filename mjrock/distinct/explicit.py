@@ -25,9 +25,9 @@ from .reading import Run, response_of
 from .space.setup import setup_in_space
 from .system import Books, Samples
 
-SHARE_OF_A_WALL = 0.02
+SHARE_OF_A_WALL = 0.005
 """Step that is taken for a wall, over the longest stable one [-]. A touch inside a step is met up to half a step late,
-which scatters |e| of a wall by some 2 % with 0.1 and by 0.2 % with 0.02."""
+which scatters |e| of a wall against a stop by some 0.5 % with 0.02 and by 0.1 % with 0.005."""
 
 
 def solve_explicit(

@@ -75,7 +75,10 @@ def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
         stiffness = sprung(rates, np.where(closed, k, LEANING * k))
         residual = potential.load(pose) + rates.T @ (np.where(closed, k, 0.0) * depth)
         grip = k.max() * held_slips(potential, friction, closed & (depth > 0) if pressed else closed, pose)
-        motion, held = balance(stiffness, grip, residual)
+        try:
+            motion, held = balance(stiffness, grip, residual)
+        except RuntimeError:  # a pivot of zero: friction holds more than the bodies can move
+            break
         if np.abs(residual - grip.T @ held).max() < tolerated and (closed == (depth > 0)).all():
             if is_stable(potential, friction, closed, pose):
                 return pose.reshape(-1, freedom.nq)

@@ -55,18 +55,10 @@ def test_rigid_friction_holds_to_its_last():
 def test_a_wall_loses_what_the_contact_law_loses(side_stop, contacts, wall):
     case = mr.Case(wall, 0.5 * wall.alpha, 3.0, side_stop=side_stop)
     law, run = mr.solve_compliant(case, contacts), mr.solve_explicit(case, contacts, ledger=True)
-    count = min(len(law.restitution), len(run.restitution), 2)
-    within = 1e-2 if side_stop else 2e-3  # the phase of a touch in its step scatters more against a stop
-    np.testing.assert_allclose(run.restitution[:count], law.restitution[:count], rtol=within)
+    count = min(len(law.restitution), len(run.restitution), 3)
+    np.testing.assert_allclose(run.restitution[:count], law.restitution[:count], rtol=2e-3)
     assert np.abs(run.energy_residual).max() < 1e-3 * run.energy[0]
     assert run.outcome is law.outcome
-
-
-@pytest.mark.slow
-def test_finer_steps_lose_what_the_contact_law_loses_against_a_stop(contacts, wall):
-    case = mr.Case(wall, 0.5 * wall.alpha, 1.0)
-    law, run = mr.solve_compliant(case, contacts), mr.solve_explicit(case, contacts, timestep=2e-6)
-    assert run.restitution[0] == pytest.approx(law.restitution[0], rel=2e-3)
 
 
 def against(masonry, duration, motion, h, timestep=None):

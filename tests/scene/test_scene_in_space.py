@@ -15,6 +15,7 @@ from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.geometry.poses import angles, at_rest, coordinate_rates, from_rates, moved, turned
 from mjrock.quantities import GRAVITY
 from mjrock.scene.equilibrium import held_slips
+from mjrock.scene.masonry import require_standing
 from mjrock.scene.masses import coupling, products_of
 
 SKEW = Rotation.from_euler("xyz", (0.4, -0.3, 0.7)).as_matrix()
@@ -204,3 +205,9 @@ class TestRest:
         added = 960 * 240 / 1200 * (apart @ apart * np.eye(3) - np.outer(apart, apart))
         np.testing.assert_allclose(scene.inertia[0], wall.inertia + added)
         assert dataclasses.replace(scene, title="another").key == scene.key
+
+
+def test_a_dome_on_joints_that_hold_is_sent_to_explicit_steps():
+    """Friction that holds three slips of each joint leaves the voussoirs no motion by which they could settle."""
+    with pytest.raises(ValueError, match=r"67 more would fall; raise k_n, or take solve_explicit"):
+        require_standing(mr.Masonry.dome(5.0, 0.5, 12, 6, k_n=1e10, friction=0.9))
