@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from everyday import among
 from space_blocks import GROUND
 
 import mjrock as mr
@@ -25,7 +26,7 @@ def unaccounted(run):
     return residual.max() / run.ledger.kinetic.max(), -residual.min() / run.ledger.kinetic.max()
 
 
-@pytest.mark.parametrize("k_s", [None, 1e8])
+@pytest.mark.parametrize("k_s", among([None, 1e8], None))
 def test_a_block_that_slides_off_its_table_comes_to_rest_on_the_ground(k_s):
     box = BOX((0.4, 0.4, 0.3), (0.3, 0.1, 1.15), name="box")
     run = solve([TABLE, box], 2.5, [STILL, (2.5, 0, 0, 0, 0, 0)], k_s=k_s)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from everyday import among, slow
 from space_blocks import block
 
 import mjrock as mr
@@ -35,7 +36,7 @@ def random_facade(seed):
             openings, gable = (openings[:-1], gable) if openings else (openings, gable - 1)
 
 
-@pytest.mark.parametrize("shape", [{"gable": 2}, {"openings": [WINDOW]}])
+@pytest.mark.parametrize("shape", [{"gable": 2}, slow({"openings": [WINDOW]})])
 def test_facades_whose_points_slip_settle(shape):
     size = (2.4, 1.6, 1.2) if "openings" in shape else (1.2, 0.4, 0.4)
     run = mr.solve_explicit(mr.MasonryCase(mr.Masonry.facade(*size, UNIT, **shape, **JOINTS), 0.02))
@@ -47,18 +48,18 @@ def assert_settles(masonry, ways):
     assert np.abs(mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).velocity).max() < 1e-8
 
 
-@pytest.mark.parametrize("seed", [2, 3, 8, 11])
+@pytest.mark.parametrize("seed", among([2, 3, 8, 11], 2, 8))
 def test_random_facades_that_limit_analysis_says_stand_settle(seed):
     assert_settles(random_facade(seed), [0.0])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12, 42))
+@pytest.mark.parametrize("seed", range(12, 24))
 def test_many_random_facades_settle(seed):
     assert_settles(random_facade(seed), 0.5 * np.pi * np.arange(4))
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.15])
+@pytest.mark.parametrize("friction", among([0.1, 0.15], 0.15))
 def test_a_facade_on_slippery_joints_settles(friction):
     assert_settles(replace(random_facade(2), friction=friction), [0.0])
 

@@ -84,6 +84,7 @@ def main_of(name):
 
 LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
     "sensitivity",
+    "low_stop",
     "fragility_coverage",
     "agreement",
     "polarity",
