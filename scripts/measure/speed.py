@@ -74,7 +74,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "one-sided, 3 s, fixed step 0.1 ms": lambda: mr.simulate(ONE_SIDED, CONTACTS, 1e-4),
 }
 CAMPAIGNS = {"campaign, rocking theory, a wall": "analytical", "campaign, MuJoCo, a wall": "MuJoCo"}
-SIZES = {"analytical": (2000, 400), "MuJoCo": (160, 24)}
+SIZES = {"analytical": (2000, 100), "MuJoCo": (160, 8)}
 """Walls of a campaign, in full and in the quick mode."""
 
 

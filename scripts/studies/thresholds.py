@@ -92,20 +92,23 @@ def main(argv: Sequence[str] | None = None) -> None:
         *((rectangular, "rectangular, p t_d", x, a) for x, a in RECTANGULAR.items()),
         *((half_sine, "half sine, omega_p/p", x, a) for x, a in HALF_SINE.items()),
     ]
+    coarse = 1.0
     if args.quick:
-        pulses = pulses[1:2]
+        pulses, coarse = pulses[1:2], 50.0
     rows: list[list[object]] = []
     for make, name, parameter, closed in tqdm(pulses, desc="thresholds", disable=None, leave=False):
-        theory = threshold(SLENDER, make(SLENDER, parameter), in_theory(SLENDER), 0.8 * closed, 1.2 * closed, 1e-5)
+        theory = threshold(
+            SLENDER, make(SLENDER, parameter), in_theory(SLENDER), 0.8 * closed, 1.2 * closed, coarse * 1e-5
+        )
         row = [name, f"{parameter:g}", f"{closed:.5f}", f"{theory / closed - 1:+.1e}"]
         for k_n in (3e9, 3e11, 3e13):
             found = threshold(
-                SLENDER, make(SLENDER, parameter), in_mujoco(SLENDER, k_n), 0.7 * closed, 1.1 * closed, 5e-4
+                SLENDER, make(SLENDER, parameter), in_mujoco(SLENDER, k_n), 0.7 * closed, 1.1 * closed, coarse * 5e-4
             )
             row.append(f"{found / closed - 1:+.2%}")
         for wall in (FIGURE_3, STOCKY):
             rigid, yielding = (
-                threshold(wall, make(wall, parameter), overturns, 0.8 * closed, 1.2 * closed, 3e-4)
+                threshold(wall, make(wall, parameter), overturns, 0.8 * closed, 1.2 * closed, coarse * 3e-4)
                 for overturns in (in_theory(wall), in_mujoco(wall, 3e9))
             )
             row.append(f"{yielding / rigid - 1:+.2%}")

@@ -40,7 +40,7 @@ def test_degrees_instead_of_radians_are_noticed(wall):
         mr.Case(wall, 1.2, 1.0)
 
 
-@pytest.mark.parametrize("speed", [0.05, 0.1])
+@pytest.mark.parametrize("speed", [pytest.param(0.05, marks=pytest.mark.slow), 0.1])
 def test_pushed_against_the_stop_is_an_impact_at_once(wall, contacts, e, speed):
     """All three solvers agree on a wall that starts upright and is thrown against its stop."""
     case = mr.Case(wall, 0.0, 2.0, omega0=-speed * wall.p)
