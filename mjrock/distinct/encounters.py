@@ -28,7 +28,7 @@ LEAST = 1e-3
 MOST = 16
 """Encounters for which there is room, over the number of blocks [-]."""
 CORNERS = 1024
-"""More than the corners of any block."""
+"""More than the corners and than the faces of any block."""
 KEPT = ("corner", "grip", "push", "pressed", "dragged")
 """What a line remembers of its last step."""
 
@@ -105,6 +105,10 @@ class Looking:
             lines[name][gone] = 0.0
         return np.asarray(np.setdiff1d(closed, pairs[lines["k"] == 0]), dtype=np.int64)
 
+    def _joined(self, system: Any, lines: Rows) -> Any:
+        """The system with the lines of its joints and those of the encounters."""
+        return system._replace(lines=np.concatenate([system.lines[: len(self.joints)], lines]).view(np.recarray))
+
     def _remembered(self, keys: Integers, gaps: Array) -> tuple[Array, Integers, Integers]:
         """Overlaps that count as none [m], and which of these encounters are which of those of the last look."""
         _, new, old = np.intersect1d(keys, self.keys, return_indices=True)
@@ -143,7 +147,8 @@ class Encounters(Looking):
         count = near_corners(looks, near, self.room)
         met = self.room[:count]
         lines = self._lines(met[:, :4].astype(np.int64), met[:, 4], system.lines[len(self.joints) :])
-        return system._replace(lines=np.concatenate([system.lines[: len(self.joints)], lines]).view(np.recarray))
+        joined: System = self._joined(system, lines)
+        return joined
 
     def _places(self, bodies: Rows) -> Array:
         """Corners of all blocks at the pose [m], shape (corners, 2)."""

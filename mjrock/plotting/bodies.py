@@ -28,6 +28,13 @@ def require_masonry(what: str, response: Response) -> Masonry:
     return masonry
 
 
+def interpolated(times: Array, t: Array, poses: Array) -> Array:
+    """Poses of shape (n, bodies, numbers) at other times, linearly."""
+    columns = poses.reshape(len(t), -1).T
+    between = np.stack([np.interp(times, t, column) for column in columns], axis=-1)
+    return between.reshape(len(times), *poses.shape[1:])
+
+
 def _outlines(name: str, given: object) -> tuple[Array, ...]:
     """Outlines as arrays of shape (corners, 2)."""
     if isinstance(given, np.ndarray) and given.ndim:
@@ -102,9 +109,7 @@ class Bodies:
 
     def at(self, times: Array) -> Bodies:
         """The same bodies at other times, their poses interpolated linearly."""
-        columns = self.poses.reshape(len(self.t), -1).T
-        poses = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1)
-        return replace(self, t=times, poses=poses.reshape(len(times), -1, 3))
+        return replace(self, t=times, poses=interpolated(times, self.t, self.poses))
 
     def placed(self, frame: int, body: int, points: Array) -> Array:
         """Where points of a body are drawn at a frame [m], shape (n, 2).

@@ -17,6 +17,7 @@ from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.wall.effects import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
+from .bodies import interpolated
 
 CAMERA = (18.0, 35.0)
 """Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""
@@ -83,8 +84,7 @@ class Solids:
 
     def at(self, times: Array) -> Solids:
         """The same blocks at other times, their poses interpolated linearly."""
-        columns = self.poses.reshape(len(self.t), -1).T
-        poses = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1).reshape(len(times), -1, 7)
+        poses = interpolated(times, self.t, self.poses)
         poses[..., 3:] /= np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
         return replace(self, t=times, poses=poses)
 

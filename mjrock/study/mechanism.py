@@ -16,7 +16,7 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import SHORTEST, response_spectrum
 from ..problem.wall.case import Case
 from ..problem.wall.effects import AddedMass
-from ..problem.wall.ties_on_wall import pulled
+from ..problem.wall.ties_on_wall import moment_at_strength
 from ..quantities import GRAVITY, Array, require_kind, require_real, require_within, shown
 from .pushover import pushover
 
@@ -169,8 +169,7 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
         states[name] = LimitState(capacity, period, _asked(demand, period, DAMPING[name]))
     alpha_0, tied = float(curve.multiplier[0]), None
     if case.pulls:
-        held = sum(pull.strength * float(pulled(pull, 0.0, 1.0)[1]) for pull in case.pulls)
-        tied = alpha_0 + held / (wall.weight * wall.centroid_height)
+        tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
     return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states)
 
 

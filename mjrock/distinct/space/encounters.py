@@ -13,15 +13,12 @@ import numpy as np
 from ...problem.masonry.joints_in_space import faces_of
 from ...problem.masonry.masonry import Masonry
 from ...quantities import Array, Flags, Integers
-from ..encounters import Looking, pair_number
+from ..encounters import CORNERS, Looking, pair_number
 from ..system import Rows, rows
 from .assembly import edges_of_face
 from .columns import PLACE, QUATERNION, REST, named_vectors, stacked, turns
 from .contact import NEAR, THROUGH
 from .system import POINT, WAY, System
-
-MOST_OF_A_BLOCK = 1024
-"""More than the corners and than the faces of any block."""
 
 
 class EncountersInSpace(Looking):
@@ -74,7 +71,8 @@ class EncountersInSpace(Looking):
         pair, corner, face = np.nonzero(((gaps > 0) | (gaps == widest)) & (widest <= near))
         numbers = np.column_stack([of[pair], corner, other[pair], face])
         points = self._points(numbers, within[pair, corner], gaps[pair, corner, face], system.lines[len(self.joints) :])
-        return system._replace(lines=np.concatenate([system.lines[: len(self.joints)], points]).view(np.recarray))
+        joined: System = self._joined(system, points)
+        return joined
 
     def _close(self, corners: Array, near: float, loose: Flags) -> Integers:
         """Pairs of a free block and another one, one of them loose, whose extents come near, shape (pairs, 2)."""
@@ -96,10 +94,10 @@ class EncountersInSpace(Looking):
             last: the points of the last look.
         """
         a, corner, b, face = numbers.T
-        keys = ((a * MOST_OF_A_BLOCK + corner) * len(self.body) + b) * MOST_OF_A_BLOCK + face
+        keys = ((a * CORNERS + corner) * len(self.body) + b) * CORNERS + face
         pressing = last["corner"] == THROUGH
         kept, kept_keys, kept_overlaps = last[pressing], self.keys[pressing], self.overlaps[pressing]
-        free = ~np.isin(keys // MOST_OF_A_BLOCK, kept_keys // MOST_OF_A_BLOCK)
+        free = ~np.isin(keys // CORNERS, kept_keys // CORNERS)
         free &= np.cumsum(free) <= self.most - len(kept)
         (a, corner, b, face), within, gaps = numbers[free].T, within[free], gaps[free]
         overlaps, _, _ = self._remembered(keys[free], gaps)

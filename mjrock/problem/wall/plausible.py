@@ -10,7 +10,7 @@ import numpy as np
 
 from ...quantities import GRAVITY, Implausible
 from .effects import AddedMass, Load, Thrust, Tie
-from .ties_on_wall import pulled
+from .ties_on_wall import moment_at_strength, pulled
 
 NEGLIGIBLE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
@@ -126,8 +126,8 @@ def _of_free_part(case: Any) -> list[str]:
         return []
     levels, thicknesses = zip(*(wall.profile or ((0.0, 2 * wall.b),)), strict=True)
     thickness, free = float(np.interp(highest, levels, thicknesses)), 2 * wall.h - highest
-    pull = sum(tie.strength * float(pulled(tie, 0.0, 1.0)[1]) for tie in case.pulls)
-    part, whole = thickness / free, (case.restoring.outer.P + pull) / (wall.weight * wall.centroid_height)
+    held = case.restoring.outer.P + moment_at_strength(case.pulls)
+    part, whole = thickness / free, held / (wall.weight * wall.centroid_height)
     if part >= whole:
         return []
     starts = f"at {whole:.3g} g, its ties at their strength" if whole < math.inf else "never, as its ties do not yield"

@@ -66,6 +66,11 @@ def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
     return length - tie.reach, (x * (d * sine + z * cosine) + up * (d * cosine - z * sine)) / length
 
 
+def moment_at_strength(pulls: Sequence[Pull]) -> float:
+    """Restoring moment of ties that pull with their strength, about the outer toe of a wall at rest [N m]."""
+    return sum(pull.strength * float(pulled(pull, 0.0, 1.0)[1]) for pull in pulls)
+
+
 def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
     """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties).
 
