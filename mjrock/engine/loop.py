@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import take_frames
 from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array
@@ -49,7 +49,7 @@ def kinetic(masses: Array, products: Array, v: Array) -> float:
     return total + coupling(products, v) if len(products) > 0 else total
 
 
-@jitable
+@inlined
 def lies_on_its_face(q: Array, axes: tuple[int, ...]) -> bool:
     """Whether a body lies on its face. A NaN counts."""
     if len(axes) == 2:
@@ -63,7 +63,7 @@ def lies_on_its_face(q: Array, axes: tuple[int, ...]) -> bool:
     return False
 
 
-@jitable
+@inlined
 def out_of_reach(reach: Reach, openings: Openings) -> bool:
     """Whether a contact has opened, or is overlapped, by more than a run follows."""
     for i in range(len(reach.bears)):  # noqa: SIM110, numba knows no any()
@@ -72,7 +72,7 @@ def out_of_reach(reach: Reach, openings: Openings) -> bool:
     return False
 
 
-@jitable
+@inlined
 def at_the_pose(memory: Memory, state: Progress, last: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
     for j in range(len(state.rate)):
@@ -95,7 +95,7 @@ def follow_now(setting: Setting, state: Progress) -> None:
     follow(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
 
 
-@jitable
+@inlined
 def shift_velocity(memory: Memory, state: Progress, now: float, last: float) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
     late, lag = 0.5 * (now - last), last - 0.25 * (last + now)
@@ -103,7 +103,7 @@ def shift_velocity(memory: Memory, state: Progress, now: float, last: float) -> 
         memory.velocity[j] -= late * (state.acceleration[j] + lag * state.rate[j])
 
 
-@jitable
+@inlined
 def set_step(memory: Memory, points: Points, pace: Pace, now: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
     memory.options[TIMESTEP] = now
@@ -124,7 +124,7 @@ def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, v
             memory.velocity[j] = velocity[j] - 0.5 * h * memory.acceleration[j]
 
 
-@jitable
+@inlined
 def change_of_acceleration(
     memory: Memory, setting: Setting, state: Progress, last: float, now: float, fresh: bool
 ) -> float:
@@ -141,7 +141,7 @@ def change_of_acceleration(
     return now * now * change
 
 
-@jitable
+@inlined
 def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, record: Record, n: int) -> None:
     """Let the engine make step n of the record, whose time and length are set."""
     t = record.t[n]
@@ -160,7 +160,7 @@ def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array,
     copied(memory.velocity, record.after[n])
 
 
-@jitable
+@inlined
 def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, record: Record, n: int) -> None:
     """Put sticking edges back after step n of the record, take frames of the new pose, and let ties yield and break."""
     moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
@@ -170,7 +170,7 @@ def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, r
     settle_ties(memory, setting, state.frames)
 
 
-@jitable
+@inlined
 def settle_ties(memory: Memory, setting: Setting, frames: Array) -> None:
     """Let ties yield and break at a pose. For the engine, one that has broken is slack up to any length."""
     axes = setting.points.places.axes
@@ -180,7 +180,7 @@ def settle_ties(memory: Memory, setting: Setting, frames: Array) -> None:
         stretch(setting.ties, i, frames, memory.velocity, axes)
 
 
-@jitable
+@inlined
 def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> float:
     """The step that the pace allows, shortened for loaded contacts and taut ties."""
     loaded = while_loaded(pace, setting.points.reach, openings, h)

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined, jitable
 from ..geometry.frames import PLANE, take_frames
 from ..geometry.kinematics import Places, along, depth, gap, meeting
 from ..geometry.vectors import scaled, tangent
@@ -153,7 +153,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
         q[3 * body], q[3 * body + 1] = frames[body, 0], frames[body, 1]
 
 
-@jitable
+@inlined
 def put_sticking_edges_back(
     points: Points, pace: Pace, joints: Joints, record: Record, n: int, moved: Moved, impratio: float
 ) -> None:

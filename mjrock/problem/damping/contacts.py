@@ -253,7 +253,7 @@ class Contacts:
             faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
         for name, interface, asked in faces:
             size = interface.face, interface.length
-            if not np.allclose(size, asked, rtol=1e-9, atol=0):
+            if not all(math.isclose(given, needed, rel_tol=1e-9) for given, needed in zip(size, asked, strict=True)):
                 raise ValueError(
                     f"the {name} contacts were made for a face of {size[0]:g} x {size[1]:g} m, "
                     f"but that of the wall of this case is {asked[0]:g} x {asked[1]:g} m"
