@@ -111,7 +111,7 @@ def sites(scene: Scene, body: int) -> Iterator[str]:
         (scene.tie_names, scene.tie_body, scene.tie_point),
         ([f"{name}_anchor" for name in scene.tie_names], scene.anchor_body, scene.anchor),
         (scene.damper_names, scene.damper_body, scene.damper_point),
-        ([f"{name}_anchor" for name in scene.damper_names], np.full(len(scene.damper_c), GROUND), scene.damper_anchor),
+        ([f"{name}_anchor" for name in scene.damper_names], scene.damper_anchor_body, scene.damper_anchor),
         (scene.force_names, scene.force_body, scene.force_point),
     )
     raised = scene.radius if body == GROUND else 0.0

@@ -16,6 +16,7 @@ import numpy as np
 from ..compiled import compiled, inlined, jitable
 from ..quantities import Array, Integers
 from .frames import Freedom, displaced, linear, place, push_body, spin, swung, take_frames
+from .links import ends, parting
 from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, vector
 
 
@@ -213,27 +214,19 @@ def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vec
 @inlined
 def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array, axes: tuple[int, ...]) -> Gap:
     """How much longer tie i may still become before it pulls [m], and how that changes; else as `gap`."""
-    body, anchor = ties.body[i], ties.anchor_body[i]
-    at = vector(ties.at, i, axes)
-    arm = plus(at, swung(frames, body, at))
-    across = plus(vector(ties.between, i, axes), plus(place(frames, body, axes), minus(arm, at)))
-    turning = spin(frames, v, body, axes)
-    velocity = plus(linear(v, body, axes), spun(turning, arm))
-    acceleration = plus(linear(a, body, axes), spun(spin(frames, a, body, axes), arm))
-    centripetal = spun(turning, spun(turning, arm))
-    if anchor >= 0:
-        at = vector(ties.anchor_at, i, axes)
-        arm = plus(at, swung(frames, anchor, at))
-        across = minus(across, plus(place(frames, anchor, axes), minus(arm, at)))
-        turning = spin(frames, v, anchor, axes)
-        velocity = minus(velocity, plus(linear(v, anchor, axes), spun(turning, arm)))
-        acceleration = minus(acceleration, plus(linear(a, anchor, axes), spun(spin(frames, a, anchor, axes), arm)))
-        centripetal = minus(centripetal, spun(turning, spun(turning, arm)))
+    at = ends(ties, i, frames, axes)
+    across, velocity = at.across, parting(ties, i, at, frames, v, axes)
+    turning = spin(frames, v, ties.body[i], axes)
+    centripetal = spun(turning, spun(turning, at.arm))
+    if ties.anchor_body[i] >= 0:
+        turning = spin(frames, v, ties.anchor_body[i], axes)
+        centripetal = minus(centripetal, spun(turning, spun(turning, at.anchor_arm)))
     length = math.sqrt(dot(across, across))
     direction = scaled(1 / length, across)
     longer = dot(direction, velocity)
     swept = dot(direction, centripetal) + (dot(velocity, velocity) - longer * longer) / length
-    return Gap(ties.reach[i] - length, -longer, -dot(direction, acceleration), -swept)
+    pulling = dot(direction, parting(ties, i, at, frames, a, axes))
+    return Gap(ties.reach[i] - length, -longer, -pulling, -swept)
 
 
 @inlined

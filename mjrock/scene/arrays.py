@@ -17,7 +17,7 @@ NUMBERS = {
     "names": ("mass", "inertia"),
     "group": ("point_body", "face_body", "k", "c", "friction"),
     "tie_names": ("tie_body", "anchor_body", "tie_k", "tie_length", "tie_strength", "tie_ultimate"),
-    "damper_names": ("damper_body", "damper_c"),
+    "damper_names": ("damper_body", "damper_anchor_body", "damper_c"),
     "force_names": ("force_body",),
 }
 """Arrays with one number for each of the bodies, contacts, ties, dampers and forces, by the field with their names."""
@@ -33,7 +33,7 @@ POSITIVE = ("mass", "k", "tie_k", "tie_length", "tie_strength")
 NOT_NEGATIVE = ("c", "friction", "damper_c", "tie_ultimate")
 INFINITE = ("tie_strength", "tie_ultimate")
 """What may be infinite."""
-CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body"}
+CARRIERS = {"face_body": "point_body", "anchor_body": "tie_body", "damper_anchor_body": "damper_body"}
 """Where the body of a face or an anchor stands, and the body that must be another one."""
 
 

@@ -1,4 +1,4 @@
-"""Dampers of a scene: viscous, between a point of a body and an anchor on the ground.
+"""Dampers of a scene: viscous, between a point of a body and an anchor on the ground or on another body.
 
 A damper resists the rate of its length in both directions. In MuJoCo's steps that fit the motion its force is that at
 the velocity of the pose, which the leapfrog keeps half a step earlier and carries forward by the last acceleration
@@ -16,34 +16,32 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..compiled import compiled, inlined, jitable
-from ..geometry.frames import Freedom, displaced, frames_of, linear, place, push_body, spin, swung, take_frames
-from ..geometry.vectors import Vector, dot, plus, scaled, spun, vector
+from ..geometry.frames import Freedom, frames_of, push_body, take_frames
+from ..geometry.links import ends, parting
+from ..geometry.vectors import dot, scaled
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Effect
 from ..quantities import Array, Integers
+from .arrays import GROUND
 
 
 class Dampers(NamedTuple):
     """Dampers as arrays for compiled functions.
 
     Args:
-        body: the body that each damper holds, shape (d,).
-        at: the point that it holds, from the centroid of that body, at rest [m], shape (d, 2).
-        between: vector from the anchor to that point, at rest [m], shape (d, 2).
+        body, at: the body that each damper holds, and where, from its centroid at rest [m], shapes (d,) and (d, axes).
+        anchor_body, anchor_at: the body of the other end, negative for the ground, and where, from the centroid of that
+            body, or from the origin of the world [m].
+        between: vector from the anchor to the point, at rest [m], shape (d, axes).
         c: damping coefficient [N s/m], shape (d,).
     """
 
     body: Integers
     at: Array
+    anchor_body: Integers
+    anchor_at: Array
     between: Array
     c: Array
-
-
-class Stroke(NamedTuple):
-    """A damper at a pose: arm to its point from the centroid [m], and its direction away from the anchor."""
-
-    arm: Vector
-    direction: Vector
 
 
 def damper_fields(
@@ -59,25 +57,17 @@ def damper_fields(
         "damper_names": tuple(f"damper_{i}" for i in range(len(dampers))),
         "damper_body": bodies,
         "damper_point": points - centroids[bodies],
+        "damper_anchor_body": np.full(len(dampers), GROUND),
         "damper_anchor": points - [(damper.length, 0.0) for damper in dampers],
         "damper_c": np.array([damper.c for damper in dampers]),
     }
 
 
 @inlined
-def stroke(dampers: Dampers, i: int, frames: Array, axes: tuple[int, ...]) -> Stroke:
-    """Damper i at a pose."""
-    body, at = dampers.body[i], vector(dampers.at, i, axes)
-    between = plus(vector(dampers.between, i, axes), place(frames, body, axes))
-    across = displaced(between, frames, body, at)
-    return Stroke(plus(at, swung(frames, body, at)), scaled(1 / math.sqrt(dot(across, across)), across))
-
-
-@inlined
 def stretching(dampers: Dampers, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> float:
     """Rate of the length of damper i [m/s]."""
-    now, body = stroke(dampers, i, frames, axes), dampers.body[i]
-    return dot(now.direction, plus(linear(v, body, axes), spun(spin(frames, v, body, axes), now.arm)))
+    at = ends(dampers, i, frames, axes)
+    return dot(at.across, parting(dampers, i, at, frames, v, axes)) / math.sqrt(dot(at.across, at.across))
 
 
 @jitable
@@ -88,11 +78,20 @@ def damping_forces(dampers: Dampers, frames: Array, v: Array, axes: tuple[int, .
 
 
 @jitable
+def push_ends(dampers: Dampers, i: int, force: float, frames: Array, axes: tuple[int, ...], total: Array) -> None:
+    """Add a force that pushes the ends of damper i apart [N] to generalised forces."""
+    at = ends(dampers, i, frames, axes)
+    pushed = scaled(force / math.sqrt(dot(at.across, at.across)), at.across)
+    push_body(frames, dampers.body[i], at.arm, pushed, total)
+    if dampers.anchor_body[i] >= 0:
+        push_body(frames, dampers.anchor_body[i], at.anchor_arm, scaled(-1.0, pushed), total)
+
+
+@jitable
 def damp(dampers: Dampers, frames: Array, force: Array, axes: tuple[int, ...], total: Array) -> None:
     """Add the forces of the dampers [N], shape (d,), to generalised forces."""
     for i in range(len(force)):
-        now = stroke(dampers, i, frames, axes)
-        push_body(frames, dampers.body[i], now.arm, scaled(force[i], now.direction), total)
+        push_ends(dampers, i, force[i], frames, axes, total)
 
 
 def damping_rate(dampers: Dampers, pose: Array, freedom: Freedom, principal: tuple[csr_array, Array]) -> float:
@@ -107,8 +106,7 @@ def damping_rate(dampers: Dampers, pose: Array, freedom: Freedom, principal: tup
     frames, rates, (columns, masses) = frames_of(pose, freedom), [0.0], principal
     for i, c in enumerate(dampers.c):
         push = np.zeros_like(masses)
-        now = stroke(dampers, i, frames, freedom.axes)
-        push_body(frames, dampers.body[i], now.arm, now.direction, push)
+        push_ends(dampers, i, 1.0, frames, freedom.axes, push)
         rates.append(float(c * ((columns.T @ push) ** 2 / masses).sum()))
     return max(rates)
 

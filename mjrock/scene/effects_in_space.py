@@ -23,9 +23,6 @@ def attachments_in_space(effects: Sequence[Effect], number: Integers, centroids:
         effects: the effects; other kinds make no difference.
         number: of each block among the bodies, GROUND for one that is fixed.
         centroids: of the bodies at rest [m], shape (bodies, 3).
-
-    Raises:
-        ValueError: for a damper between two bodies.
     """
     parts: dict[str, Any] = {}
     ties = [effect for effect in effects if isinstance(effect, Tie)]
@@ -37,26 +34,23 @@ def attachments_in_space(effects: Sequence[Effect], number: Integers, centroids:
         bodies = number[[effect.block for effect in some]]
         return bodies, np.array([held_at(effect) for effect in some]) - centroids[bodies]
 
+    def anchored(some: Sequence[Tie | Damper]) -> tuple[Integers, Array]:
+        bodies = np.array([GROUND if link.anchor_block is None else number[link.anchor_block] for link in some])
+        start = np.where(bodies[:, None] == GROUND, 0.0, centroids[bodies])
+        return bodies, np.array([anchored_at(link) for link in some]) - start
+
     if ties:
         parts["tie_names"] = tuple(f"tie_{i}" for i in range(len(ties)))
         parts["tie_body"], parts["tie_point"] = on(ties)
-        others = np.array([GROUND if tie.anchor_block is None else number[tie.anchor_block] for tie in ties])
-        start = np.where(others[:, None] == GROUND, 0.0, centroids[others])
-        parts["anchor_body"], parts["anchor"] = others, np.array([anchored_at(tie) for tie in ties]) - start
+        parts["anchor_body"], parts["anchor"] = anchored(ties)
         parts["tie_k"] = np.array([tie.stiffness for tie in ties])
         parts["tie_length"] = np.array([tie.reach for tie in ties])
         parts["tie_strength"] = np.array([tie.strength for tie in ties])
         parts["tie_ultimate"] = np.array([tie.breaks_at for tie in ties])
     if dampers:
-        for i, damper in enumerate(dampers):
-            if damper.anchor_block is not None and number[damper.anchor_block] != GROUND:
-                raise ValueError(
-                    f"damper_{i}, anchor_block = {damper.anchor_block} is not fixed: in MuJoCo dampers are anchored on "
-                    "the ground or on fixed blocks; take solve_explicit"
-                )
         parts["damper_names"] = tuple(f"damper_{i}" for i in range(len(dampers)))
         parts["damper_body"], parts["damper_point"] = on(dampers)
-        parts["damper_anchor"] = np.array([anchored_at(damper) for damper in dampers])
+        parts["damper_anchor_body"], parts["damper_anchor"] = anchored(dampers)
         parts["damper_c"] = np.array([damper.c for damper in dampers])
     if loads or thrusts:
         forces: list[Effect] = [*loads, *thrusts]

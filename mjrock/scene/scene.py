@@ -21,7 +21,7 @@ from scipy.sparse import csr_array
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..geometry.kinematics import Forces, Places, Ties, gaps
 from ..quantities import Array, Flags, Integers
-from .arrays import GROUND, checked, frozen, nothing
+from .arrays import checked, frozen, nothing
 from .dampers import Dampers
 from .equilibrium import lowered, settled
 from .frequencies import highest_frequency, rocking_frequency, tie_frequency
@@ -65,11 +65,9 @@ class Scene:
         tie_length: length up to which it is slack [m], shape (t,).
         tie_strength: force at which it yields [N], infinite for one that does not, shape (t,).
         tie_ultimate: plastic elongation at which it breaks [m], shape (t,); infinite, or nothing, where none does.
-        damper_names: names of the d viscous dampers, which are anchored in the ground.
-        damper_body, damper_point: the body that each damper holds, and where, from its centroid [m], shapes (dampers,)
-            and (dampers, d).
-        damper_anchor: its other end, from the origin of the world [m], shape (dampers, d).
-        damper_c: its damping coefficient [N s/m], shape (d,).
+        damper_names: names of the viscous dampers.
+        damper_body, damper_point, damper_anchor_body, damper_anchor: as of ties.
+        damper_c: damping coefficient of each [N s/m], shape (dampers,).
         force_names: names of the f constant forces. They keep their direction and follow their points.
         force_body, force_point: the body that each force acts on, and where, from its centroid [m], (f,) and (f, d).
         force: its components [N], shape (f, d).
@@ -113,6 +111,7 @@ class Scene:
     damper_names: tuple[str, ...] = ()
     damper_body: Integers = field(default_factory=nothing)
     damper_point: Array = field(default_factory=nothing)
+    damper_anchor_body: Integers = field(default_factory=nothing)
     damper_anchor: Array = field(default_factory=nothing)
     damper_c: Array = field(default_factory=nothing)
     force_names: tuple[str, ...] = ()
@@ -219,9 +218,9 @@ class Scene:
     @cached_property
     def dampers(self) -> Dampers:
         """The dampers for the compiled functions."""
-        on_ground = np.full(len(self.damper_c), GROUND)
-        between = self._between(self.damper_body, self.damper_point, on_ground, self.damper_anchor)
-        return Dampers(self.damper_body, self.damper_point, between, self.damper_c)
+        anchored = self.damper_anchor_body, self.damper_anchor
+        between = self._between(self.damper_body, self.damper_point, *anchored)
+        return Dampers(self.damper_body, self.damper_point, *anchored, between, self.damper_c)
 
     @cached_property
     def forces(self) -> Forces:

@@ -6,13 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...problem.masonry.effects_in_space import anchored_at
 from ...problem.masonry.faces_of_joints import faces_of_joints
 from ...problem.masonry.joints_in_space import Face
 from ...problem.masonry.masonry import Masonry
 from ...problem.masonry.support import Support
-from ...problem.wall.damper import Damper
-from ...problem.wall.effects import Effect
 from ...quantities import Array, Integers
 from ...scene.ground import Ground
 from ...scene.scene import Scene
@@ -23,7 +20,7 @@ from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named, name
 from .system import BODY, EDGE, LINK, POINT, WAY, System
 
 
-def masonry_system(scene: Scene, masonry: Masonry, effects: Sequence[Effect] = ()) -> System:
+def masonry_system(scene: Scene, masonry: Masonry) -> System:
     """Masonry in space as it is drawn, at rest on ground that does not move."""
     bodies = rows(
         BODY, len(scene.mass), mass=scene.mass, qw=1.0, **ease_columns(scene.inertia), **named(REST, scene.rest)
@@ -49,18 +46,15 @@ def masonry_system(scene: Scene, masonry: Masonry, effects: Sequence[Effect] = (
         anchor=-1,
         **named_vectors(at=scene.force_point, between=scene.force),
     )
-    dampers = dampers_of(scene, masonry, effects)
+    dampers = rows(
+        LINK,
+        len(scene.damper_c),
+        body=scene.damper_body,
+        anchor=scene.damper_anchor_body,
+        **named_vectors(at=scene.damper_point, origin=scene.damper_anchor, between=scene.dampers.between),
+        c=scene.damper_c,
+    )
     return System(bodies, lines, edges, ways, ties, dampers, forces, Ground.of(None), moving((), axes=3))
-
-
-def dampers_of(scene: Scene, masonry: Masonry, effects: Sequence[Effect]) -> Rows:
-    """The dampers, between a body and the ground or between two bodies."""
-    dampers, number = [effect for effect in effects if isinstance(effect, Damper)], numbers_of(masonry)
-    anchor = np.array([-1 if d.anchor_block is None else number[d.anchor_block] for d in dampers], dtype=np.int64)
-    ends = np.reshape([anchored_at(damper) for damper in dampers], (-1, 3))
-    origin = ends - np.where(anchor[:, None] < 0, 0.0, scene.rest[anchor])
-    places = named_vectors(at=scene.damper_point, origin=origin, between=scene.dampers.between)
-    return rows(LINK, len(dampers), body=scene.damper_body, anchor=anchor, **places, c=scene.damper_c)
 
 
 def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:

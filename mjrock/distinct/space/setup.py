@@ -10,7 +10,6 @@ import numpy as np
 from ...geometry.frames import SPACE
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
-from ...problem.wall.damper import Damper
 from ...problem.wall.effects import Effect
 from ...result.response import State
 from ...scene.explicit_step import SHARE
@@ -46,10 +45,8 @@ def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene,
     Raises:
         ValueError: if it does not stand. The message names the blocks that fall.
     """
-    # a scene anchors dampers on the ground; the system anchors them where they are
-    anchored = tuple(replace(effect, anchor_block=None) if isinstance(effect, Damper) else effect for effect in effects)
-    scene = standing_masonry(masonry, anchored)
-    system = masonry_system(scene, masonry, effects)
+    scene = standing_masonry(masonry, effects)
+    system = masonry_system(scene, masonry)
     try:
         settle(system)
     except UnsettledError as error:
