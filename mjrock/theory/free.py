@@ -5,9 +5,8 @@
 s = +1 or -1 the side to which the wall rocks, and P and Q the restoring moment of its weight, loads and thrusts about
 the toe of that side. Without effects this is -p^2 sin(s alpha - theta).
 
-An arc ends where the wall turns (omega = 0), meets the upright position
-(theta = 0), lies on its face, or where the time is over. It is split where the wall turns, so that each of these events
-is crossed once, from a state that is clearly on one side of it.
+An arc ends where the wall turns (omega = 0), meets the upright position (theta = 0), lies on its face, or where the
+time is over. Each event is crossed once, from a state that is clearly on one side of it.
 """
 
 from __future__ import annotations
@@ -109,9 +108,6 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
             side that it came from.
         least: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol, atol: tolerances of the integration, on rotation [rad] and velocity [rad/s].
-
-    Raises:
-        RuntimeError: if the integration fails.
     """
     arcs = Arcs(case, rtol, atol)
     state, s, event = (0.0, case.theta0, case.omega0), case.direction, Event.TIME

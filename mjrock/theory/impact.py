@@ -143,8 +143,7 @@ def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple
     impulse = NOTHING * float(np.linalg.norm(before)) / sizes  # of a joint that changes nothing
 
     def closed_in(velocity: Array) -> Flags:
-        flags: Flags = (opens @ velocity).reshape(-1, 2).min(axis=1) <= rate
-        return flags
+        return (opens @ velocity).reshape(-1, 2).min(axis=1) <= rate
 
     held, parted = rough & closed_in(before), np.zeros_like(rough)
     while True:
