@@ -52,7 +52,7 @@ class PairContact(ContactNumbers):
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
                 have another inverse weight.
         """
-        write([self], model, compiled(model), require_flag("on_geoms", on_geoms))
+        write([self], model, on_geoms)
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
@@ -113,11 +113,7 @@ class PairContact(ContactNumbers):
         Raises:
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.
         """
-        return self.caveats_of(compiled(model))
-
-    def caveats_of(self, whole: mujoco.MjModel) -> tuple[str, ...]:
-        """The same for a compiled model."""
-        pair = self._pair_in(whole)
+        pair = self._pair_in(compiled(model))
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
     def _pair_in(self, model: mujoco.MjModel) -> GeomPair:
@@ -142,10 +138,9 @@ def _text(*values: float) -> str:
     return f'"{" ".join(repr(float(value)) for value in values)}"'
 
 
-def write(
-    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool
-) -> None:
-    """Write contacts of one time step into a model or a specification, of which `whole` is the compiled model."""
+def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool) -> None:
+    """Write contacts of one time step into a model or a specification."""
+    whole, on_geoms = compiled(model), require_flag("on_geoms", on_geoms)
     for contact in contacts:
         contact.put_into(model, whole, on_geoms)
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt

@@ -90,7 +90,8 @@ def felt(
     mass = _mass(soft, rows, friction)[0]
     if frequency is None:
         frequency = math.sqrt(k / mass) if k is not None and mass < math.inf else 0.0
-    softness = np.where((held.rate < HOLDS * frequency) | held.limit, held.softness, 0.0)
+    limit = ~held.equality
+    softness = np.where((held.rate < HOLDS * frequency) | limit, held.softness, 0.0)
     answer = held.answer(free, softness, held.equality)
     if not _free(answer, rows) > FIXED * _free(free, rows):
         return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
@@ -102,7 +103,7 @@ def felt(
     motion = motion / float(rows[0] @ motion)
     yields = (held.rate < RIGID * frequency) & held.equality
     matters = not math.isclose(_free(free, rows), _free(answer, rows), rel_tol=MATTERS)
-    pressed = held.limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
+    pressed = limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
     limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer
     stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
     return Felt(
@@ -125,7 +126,7 @@ class Held:
         softness: R of each, its regularisation [1/kg and alike].
         rate: circular frequency with which each returns [rad/s].
         row, number: which row of the engine each is, and of which equality, joint or tendon.
-        equality, limit: what each is.
+        equality: whether each is an equality constraint; the others are limits.
         weight: force of gravity on the joints, shape (nv,).
     """
 
@@ -137,7 +138,6 @@ class Held:
     row: Integers
     number: Integers
     equality: Flags
-    limit: Flags
     weight: Array
 
     @classmethod
@@ -162,7 +162,6 @@ class Held:
             np.asarray(row, dtype=np.int64),
             np.array(data.efc_id, dtype=np.int64)[row],
             kinds[row] == EQUALITY,
-            np.array(np.isin(kinds[row], LIMITS)),
             np.array(data.qfrc_gravcomp) - bias,
         )
 

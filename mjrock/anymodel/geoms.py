@@ -58,7 +58,7 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
             return int(number)
         body = mujoco.mj_name2id(model, BODY, value)
         if body < 0:
-            geoms, bodies = _known(model, GEOM, model.ngeom), _known(model, BODY, model.nbody)
+            geoms, bodies = (", ".join(filter(None, names_of(model, kind))) or "none" for kind in (GEOM, BODY))
             raise ValueError(
                 f"{argument} = {value!r} is no geom or body of this model; its named geoms are: {geoms}; "
                 f"its named bodies are: {bodies}"
@@ -73,14 +73,10 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
     return int(value)
 
 
-def geom_name(model: mujoco.MjModel, geom: int) -> str:
-    """The name of a geom, or an empty text."""
-    return mujoco.mj_id2name(model, GEOM, geom) or ""
-
-
-def _known(model: mujoco.MjModel, kind: mujoco.mjtObj, count: int) -> str:
-    names = (mujoco.mj_id2name(model, kind, number) for number in range(count))
-    return ", ".join(name for name in names if name) or "none"
+def names_of(model: mujoco.MjModel, kind: mujoco.mjtObj) -> list[str]:
+    """The names of all geoms or bodies; one without a name has an empty one."""
+    count = model.ngeom if kind == GEOM else model.nbody
+    return [mujoco.mj_id2name(model, kind, number) or "" for number in range(count)]
 
 
 @dataclass(frozen=True)
@@ -117,7 +113,8 @@ class GeomPair:
     @property
     def names(self) -> tuple[str, str]:
         """The names; a geom without a name has an empty one."""
-        return geom_name(self.model, self.geoms[0]), geom_name(self.model, self.geoms[1])
+        first, second = (mujoco.mj_id2name(self.model, GEOM, geom) or "" for geom in self.geoms)
+        return first, second
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -156,6 +153,12 @@ class GeomPair:
     def inverse_weight(self) -> float:
         """W, the sum of `body_invweight0` of both bodies, translation [1/kg]."""
         return float(sum(self.model.body_invweight0[body, 0] for body in self.bodies))
+
+    @property
+    def trees(self) -> list[float]:
+        """Mass of each tree of bodies that moves with one of the two, to its root [kg]."""
+        roots = {int(self.model.body_rootid[body]) for body in self.bodies if self.model.body_weldid[body] != 0}
+        return [float(self.model.body_subtreemass[root]) for root in roots]
 
     @property
     def makes_several_points(self) -> bool:
@@ -209,18 +212,3 @@ class GeomPair:
             return 0.0, None
         known = distance < FARTHEST and np.any(ends != 0)
         return (distance, ends.reshape(2, 3)) if known else (0.0, None)
-
-
-def tree_mass(pair: GeomPair) -> float:
-    """Mass of all that moves with the bodies of a pair [kg], to the roots of their trees."""
-    model = pair.model
-    moving = [int(model.body_rootid[body]) for body in pair.bodies if model.body_weldid[body] != 0]
-    return float(sum(model.body_subtreemass[root] for root in {*moving}))
-
-
-def weight_of(pair: GeomPair) -> float:
-    """Weight of the lighter tree of a pair, of those that move [N]."""
-    model = pair.model
-    moving = [int(model.body_rootid[body]) for body in pair.bodies if model.body_weldid[body] != 0]
-    lightest = min((float(model.body_subtreemass[root]) for root in moving), default=0.0)
-    return lightest * float(np.linalg.norm(model.opt.gravity))

@@ -68,7 +68,8 @@ class Row:
         constant = d == full or solimp[2] <= mujoco.mjMINVAL
         if constant:
             d = 0.5 * (d + full)
-        spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, _is_safe(pair.model))
+        safe = not option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)  # time constants above two steps
+        spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, safe)
         elliptic = option.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         cone = mixed.pyramid(float(option.impratio)) if mixed.condim > 1 and not elliptic else 1.0
         scale = cone / pair.inverse_weight
@@ -140,8 +141,3 @@ def _reference(first: float, second: float, full: float, h: float, safe: bool) -
         return -first / full**2, -second / full
     timeconst = max(first, 2 * h) if safe else first
     return 1 / max(mujoco.mjMINVAL, (full * timeconst * second) ** 2), 2 / max(mujoco.mjMINVAL, full * timeconst)
-
-
-def _is_safe(model: mujoco.MjModel) -> bool:
-    """Whether MuJoCo keeps time constants above two steps."""
-    return not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -11,8 +10,6 @@ import numpy as np
 from ..quantities import require_array, require_whole, shown
 
 KEY = mujoco.mjtObj.mjOBJ_KEY
-Pose = tuple[Any, Any]
-"""A keyframe and positions, of which one at most is not None."""
 
 
 def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:
