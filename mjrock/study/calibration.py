@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.damping.forms import BedLaw, CornerLaw, Form, Groups, SideLaw
+from ..problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
 from ..problem.damping.law import HIGHEST, LEAST, DampingLaw
 from ..problem.damping.restitution import Restitution
 from ..quantities import keep, require_array, require_kind, require_whole, require_within
@@ -95,7 +95,7 @@ def _housner(combination: Combination) -> float:
 
 
 def _base_damping(combination: Combination, e: Restitution, base: Form) -> float:
-    groups = Groups.of(combination.wall, e, combination.k_base, combination.k_side, combination.amplitude)
+    groups = Match(combination, e).groups
     return float(base.xi(groups, groups.base_loss))
 
 

@@ -13,7 +13,17 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import ndtr, ndtri
 
 from ..files import write_text
-from ..quantities import Array, Flags, require_path, require_plain, require_reals, require_whole, require_within, shown
+from ..quantities import (
+    Array,
+    Flags,
+    Integers,
+    require_path,
+    require_plain,
+    require_reals,
+    require_whole,
+    require_within,
+    shown,
+)
 from ..result.table import csv_text
 from .probit import curvature, probit, reflected, resampled, score_of
 
@@ -181,22 +191,19 @@ def fit_fragility(
         raise ValueError(
             f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
         )
-    names, group = np.unique(labels, return_inverse=True)
-    require_groups(len(names))
-    count, shares = require_whole("resamples", resamples, 20, 100_000), np.full(len(names), 1 / len(names))
-    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
-    draws = rng.multinomial(len(names), shares, size=count)
-    at_once = max(1, MOST_VALUES // len(x))
+    names, group = numbered(labels)
+    draws = drawn(names, resamples, seed)
+    count, at_once = len(draws), max(1, MOST_VALUES // len(x))
     fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
     curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(number for _, number in fits)
     curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
         warnings.warn(
-            f"{without} of {count} resamples of {len(names)} groups gave no curve, only a step; a penalised fit stands "
+            f"{without} of {count} resamples of {names} groups gave no curve, only a step; a penalised fit stands "
             "for them, and the band is wide: run intensities between those tried, or more records",
             stacklevel=2,
         )
-    return replace(fit, groups=len(names), resamples=curves, without_curve=without)
+    return replace(fit, groups=names, resamples=curves, without_curve=without)
 
 
 def _likeliest(x: Array, fell: Flags) -> Fragility:
@@ -228,11 +235,7 @@ def _warn_beyond(median: float, tried: tuple[float, float]) -> None:
 
 
 def _flags(overturned: ArrayLike) -> Flags:
-    """Whether each run overturned.
-
-    Raises:
-        TypeError, ValueError: unless each value is True or False, or 1 or 0.
-    """
+    """Whether each run overturned; TypeError or ValueError unless each value is True or False, or 1 or 0."""
     takes = "whether each run overturned: True or False, or 1 or 0; lost(rows) makes it of the rows of a campaign"
     values = require_plain("overturned", overturned, takes, "biuf")
     unclear = np.flatnonzero((values != 0) & (values != 1))
@@ -241,21 +244,34 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
-def require_groups(count: int, least: int = FEWEST_GROUPS) -> None:
-    """Raise ValueError for fewer groups than an interval can be drawn from."""
-    if count < least:
+def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
+    """How many groups there are, and the number of that of each value; ValueError for too few for an interval."""
+    names, group = np.unique(labels, return_inverse=True)
+    if len(names) < least:
         raise ValueError(
-            f"groups names {count} groups; the valid range is {least} or more: fewer give no interval that can be "
+            f"groups names {len(names)} groups; the valid range is {least} or more: fewer give no interval that can be "
             "trusted. Run more records, or report the single values and their range"
         )
+    return len(names), group
+
+
+def drawn(groups: int, resamples: int, seed: int) -> Integers:
+    """How often each resample holds each group, drawn with replacement, shape (resamples, groups)."""
+    count = require_whole("resamples", resamples, 20, 100_000)
+    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
+    return rng.multinomial(groups, np.full(groups, 1 / groups), size=count)
+
+
+def labels_for(groups: ArrayLike | None, count: int) -> NDArray[Any]:
+    """What each of so many values belongs to, see `labels_of`; None takes each as a group of its own."""
+    labels = np.arange(count) if groups is None else labels_of(groups)
+    if labels.shape != (count,):
+        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
+    return labels
 
 
 def labels_of(groups: ArrayLike) -> NDArray[Any]:
-    """What each run belongs to.
-
-    Raises:
-        TypeError, ValueError: unless they are all text or all numbers, without NaN.
-    """
+    """What each run belongs to; TypeError or ValueError unless they are all text or all numbers, without NaN."""
     takes = "the name or the number of the group of each run"
     labels = require_plain("groups", groups, takes, "biufU")
     if labels.dtype.kind == "U" and not all(isinstance(label, str) for label in np.asarray(groups, dtype=object).flat):
