@@ -73,11 +73,7 @@ class PairContact(ContactNumbers):
 
     @property
     def pair_xml(self) -> str:
-        """The explicit pair alone, as text.
-
-        Raises:
-            ValueError: if one of the geoms has no name.
-        """
+        """The explicit pair alone, as text; ValueError if one of the geoms has no name."""
         self._require_names()
         numbers = {"solref": self.solref, "solimp": self.solimp}
         if self.condim > 1:
@@ -107,8 +103,7 @@ class PairContact(ContactNumbers):
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
         """What in a model keeps the contact from being what it says, one sentence each; empty if nothing does.
 
-        Args:
-            model: the model in which the contact is, from `apply` or from the text of `xml`.
+        The model is one with the contact, from `apply` or from the text of `xml`.
 
         Raises:
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.

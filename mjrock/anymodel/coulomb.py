@@ -93,16 +93,14 @@ class CoulombFriction:
 
     def _pressing(self, data: mujoco.MjData) -> tuple[Integers, Integers, Integers]:
         """The contacts that press: their numbers, those of their pairs, and those of their normal rows."""
-        number, pairs, rows = [], [], []
+        pressing, forces = [], data.efc_force
         addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
-        forces = data.efc_force
-        for i, (address, (first, second)) in enumerate(zip(addresses, geoms, strict=True)):
-            pair = self._pairs.get(frozenset((first, second)), -1)
+        for i, (address, both) in enumerate(zip(addresses, geoms, strict=True)):
+            pair = self._pairs.get(frozenset(both), -1)
             if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and forces[address] > 0:
-                number.append(i)
-                pairs.append(pair)
-                rows.append(address)
-        return np.array(number, dtype=np.int64), np.array(pairs, dtype=np.int64), np.array(rows, dtype=np.int64)
+                pressing.append((i, pair, address))
+        number, pairs, rows = np.reshape(np.array(pressing, dtype=np.int64), (-1, 3)).T
+        return number, pairs, rows
 
     def _find(self, data: mujoco.MjData) -> set[int]:
         """The pairs of which every contact that presses slides through the step."""

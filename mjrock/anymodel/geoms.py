@@ -24,12 +24,8 @@ UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 
 
 def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
-    """The compiled model of either; an MjSpec stays as it is.
-
-    Raises:
-        TypeError: unless it is one of them; for a text or a path with the call that loads it.
-        ValueError: with the compiler's message, if the specification does not compile.
-    """
+    """The compiled model of either; an MjSpec stays as it is. TypeError for any other, and a ValueError with the
+    compiler's message for a specification that does not compile."""
     if isinstance(model, str | os.PathLike):
         load = "from_xml_string" if isinstance(model, str) and model.lstrip().startswith("<") else "from_xml_path"
         raise TypeError(f"model = {shown(model)} is not a MjModel or MjSpec; load it with mujoco.MjModel.{load}")
@@ -45,11 +41,8 @@ def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
 def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
     """The number of a geom, from its name or number, or from the name of a body that has a single geom.
 
-    Messages call the value `argument`.
-
-    Raises:
-        TypeError: unless the value is a text or a whole number.
-        ValueError: if there is no such geom, or the body has none or several.
+    Messages call the value `argument`: TypeError unless it is a text or a whole number, ValueError if there is no such
+    geom, or the body has none or several.
     """
     if isinstance(value, str):
         require_text(argument, value)
@@ -95,11 +88,7 @@ class GeomPair:
 
     @classmethod
     def named(cls, model: mujoco.MjModel, geom1: object, geom2: object) -> GeomPair:
-        """The pair of two geoms given by name or number, or by the name of a body with a single geom.
-
-        Raises:
-            TypeError, ValueError: if one of them is not in the model, or both are one, or neither can move.
-        """
+        """The pair of two geoms that `geom_id` finds; ValueError if both are one, or neither can move."""
         pair = cls(model, (geom_id(model, "geom1", geom1), geom_id(model, "geom2", geom2)))
         if pair.geoms[0] == pair.geoms[1]:
             raise ValueError(f"geom1 and geom2 = {shown(geom1)} are the same geom")
@@ -163,8 +152,7 @@ class GeomPair:
     @property
     def makes_several_points(self) -> bool:
         """Whether MuJoCo can make more than one contact of these geoms at a time."""
-        kinds = [self.model.geom_type[geom] for geom in self.geoms]
-        return any(kind in UNEVEN for kind in kinds) or not any(kind in ONE_POINT for kind in kinds)
+        return self.is_uneven or not any(self.model.geom_type[geom] in ONE_POINT for geom in self.geoms)
 
     @property
     def is_uneven(self) -> bool:

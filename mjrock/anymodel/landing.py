@@ -30,12 +30,10 @@ class Ground:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self.model = copy.copy(model)
-        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
-        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
-        self.model.opt.disableflags &= ~int(
-            mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-        )
-        self.model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        option, disabled = self.model.opt, mujoco.mjtDisableBit
+        option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
+        option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
+        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self.data = mujoco.MjData(self.model)
         for name in ("qpos", "mocap_pos", "mocap_quat"):
             getattr(self.data, name)[:] = getattr(data, name)

@@ -270,13 +270,8 @@ class Grip(NamedTuple):
         return self.friction[0] if self.condim > 1 else 0.0
 
     def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
-        """The same with what stops slip.
-
-        Args:
-            rate: with which friction stops slip, omega at most [1/s]; the page on contacts says why not sooner.
-            impedance, inertia: of the normal row [-, kg].
-            mass: of the contact point [kg].
-        """
+        """The same with what stops slip: at a rate [1/s], omega at most, as the page on contacts says, for the mass of
+        the contact point [kg] and impedance and inertia of its normal row [-, kg]."""
         if self.condim == 1:
             return self
         impratio = max(1.0, HOLD / rate * mass / inertia)

@@ -93,9 +93,6 @@ def meeting(
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts` says.
         friction, frequency, k: see `felt`.
-
-    Raises:
-        TypeError, ValueError: unless `at` is a point.
     """
     if at is not None:
         point = require_array("at", at, (3,))
