@@ -41,11 +41,7 @@ class Dispatch:
         self.workers: list[Worker] = []
 
     def go(self) -> None:
-        """Run all jobs. Whatever is raised, Ctrl-C included, ends the processes at once.
-
-        Raises:
-            RuntimeError: if processes die as they start.
-        """
+        """Run all jobs. Whatever is raised, Ctrl-C included, ends the processes at once."""
         if not self.look_ahead():
             return
         try:
@@ -133,7 +129,6 @@ class Dispatch:
                 path.unlink(missing_ok=True)
         job.deaths += not overdue
         if overdue:
-            assert self.limit is not None
             row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
             self.run.write([job], [row | {"seconds": self.limit}])
         elif ended or job.deaths > DEATHS:

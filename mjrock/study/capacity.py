@@ -28,10 +28,8 @@ NAMES = ("solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "falls_
 def bracket(falls: Callable[[float], bool], start: float = 1.0, growth: float = GROWTH) -> tuple[float, float]:
     """Two neighbouring scales of which the lower leaves a wall standing and the upper overturns it.
 
-    From `start` the scale goes up by `growth` until the wall falls, or down until it stands.
-
-    Raises:
-        ValueError: if the wall stands at LARGEST times the start, or falls at LEAST times the start.
+    From `start` the scale goes up by `growth` until the wall falls, or down until it stands; ValueError if it stands at
+    LARGEST times the start, or falls at LEAST times the start.
     """
     low = high = start
     if falls(start):

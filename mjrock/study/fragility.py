@@ -183,7 +183,13 @@ def fit_fragility(
     x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
     fit = _likeliest(x, fell)
-    _warn_beyond(fit.median, fit.tried)
+    low, high = fit.tried
+    if not low <= fit.median <= high:
+        warnings.warn(
+            f"the median {fit.median:.4g} is extrapolated: the intensities tried are {low:.4g} to {high:.4g}; run "
+            "intensities around it",
+            stacklevel=2,
+        )
     if groups is None:
         return fit
     labels = labels_of(groups)
@@ -222,16 +228,6 @@ def _likeliest(x: Array, fell: Flags) -> Fragility:
         count=len(x),
         tried=(float(x.min()), float(x.max())),
     )
-
-
-def _warn_beyond(median: float, tried: tuple[float, float]) -> None:
-    """Warn of a median that lies beyond the intensities that were tried."""
-    if not tried[0] <= median <= tried[1]:
-        warnings.warn(
-            f"the median {median:.4g} is extrapolated: the intensities tried are {tried[0]:.4g} to {tried[1]:.4g}; run "
-            "intensities around it",
-            stacklevel=3,
-        )
 
 
 def _flags(overturned: ArrayLike) -> Flags:

@@ -181,11 +181,7 @@ def _peak(build: Build, scale: float) -> float:
 
 
 def built(build: Build, scale: float, name: str) -> Analysis:
-    """The analysis that a function makes of a scale.
-
-    Raises:
-        TypeError: that names the function, unless it is one and returns an `Analysis`.
-    """
+    """The analysis that a function makes of a scale; TypeError with its name unless it returns an `Analysis`."""
     if not callable(build):
         raise TypeError(f"{name} = {shown(build)} is no function of a scale")
     with warnings.catch_warnings():

@@ -1,9 +1,4 @@
-"""Matches of damping to restitution in the engine: the search loop of the paper's Figure 2.
-
-For a wall, its interfaces and a restitution that is asked for, a search finds the damping ratio whose simulation is
-closest to the analytical response: two-sided for the base (`Match` without `xi_base`), one-sided for the side with the
-damping of the base presumed.
-"""
+"""Matches of damping to restitution in the engine: the search loop of the paper's Figure 2, see `Match`."""
 
 from __future__ import annotations
 

@@ -16,13 +16,8 @@ EVERY = 30.0
 
 
 class Progress:
-    """How far a campaign is, on the standard error. Use it in a `with` statement.
-
-    Args:
-        store: the store of the campaign.
-        kept: how many rows it holds already.
-        total: how many tasks there are, or None if nobody knows.
-    """
+    """How far a campaign is, on the standard error: one that keeps so many rows of its store, and has so many tasks in
+    total, None if nobody knows. Use it in a `with` statement."""
 
     def __init__(self, store: Path, kept: int, total: int | None) -> None:
         self.store, self.total = store, total

@@ -15,22 +15,15 @@ ERRORS = 3
 
 def counted(outcomes: Mapping[str, int]) -> str:
     """How many cases ended in each way, the most frequent first."""
-    return ", ".join(
-        f"{number} {name}" for name, number in sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
-    )
+    ordered = sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
+    return ", ".join(f"{number} {name}" for name, number in ordered)
 
 
 def closing(
     kept: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], seconds: float, total: int | None
 ) -> str:
-    """The last line of a campaign.
-
-    Args:
-        kept: tasks that had a row already.
-        statuses, outcomes: how many of the others are done or failed, and how they ended.
-        seconds: how long the campaign took [s].
-        total: how many tasks there are, or None if nobody knows.
-    """
+    """The last line of a campaign in which some tasks were kept, as they had a row already: how many of the others are
+    done or failed and how they ended, the time that it took [s], and how many tasks there are, None if nobody knows."""
     rows = kept + sum(statuses.values())
     of = "" if total is None else f" of {total}"
     left = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
@@ -65,11 +58,7 @@ def status(path: str | Path) -> str:
 
 
 def answer(argv: Sequence[str]) -> str:
-    """The status of the store that is named.
-
-    Raises:
-        ValueError, OSError: as `Store`.
-    """
+    """The `status` of the store that is named."""
     parser = argparse.ArgumentParser("python -m mjrock status", description=__doc__)
     parser.add_argument("store", help="the SQLite file of a campaign")
     return status(parser.parse_args(argv).store)
