@@ -116,54 +116,35 @@ def felt(
     )
 
 
-@dataclass(frozen=True)
 class Held:
-    """The constraints of a pose but for contacts, and what the joints feel of gravity.
+    """The constraints of a model in its pose but for contacts, and what the joints feel of gravity.
 
-    Args:
-        model, data: the model and its pose.
+    Attributes:
+        row, number: which row of the engine each is, and of which equality, joint or tendon.
+        equality: whether each is an equality constraint; the others are limits.
         rows: their Jacobian, shape (n, nv).
         softness: R of each, its regularisation [1/kg and alike].
         rate: circular frequency with which each returns [rad/s].
-        row, number: which row of the engine each is, and of which equality, joint or tendon.
-        equality: whether each is an equality constraint; the others are limits.
         weight: force of gravity on the joints, shape (nv,).
     """
 
-    model: mujoco.MjModel
-    data: mujoco.MjData
-    rows: Array
-    softness: Array
-    rate: Array
-    row: Integers
-    number: Integers
-    equality: Flags
-    weight: Array
-
-    @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Held:
-        """The constraints of a pose."""
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self.model, self.data = model, data
         kinds = np.array(data.efc_type[: data.nefc], dtype=int)
-        row = np.flatnonzero((kinds == EQUALITY) | np.isin(kinds, LIMITS))
-        rows = np.zeros((len(row), model.nv))
-        for i, number in enumerate(row):
+        self.row: Integers = np.flatnonzero((kinds == EQUALITY) | np.isin(kinds, LIMITS))
+        self.number = np.array(data.efc_id, dtype=np.int64)[self.row]
+        self.equality: Flags = kinds[self.row] == EQUALITY
+        self.rows = np.zeros((len(self.row), model.nv))
+        for i, number in enumerate(self.row):
             unit = np.zeros(data.nefc)
             unit[number] = 1.0
-            mujoco.mj_mulJacTVec(model, data, rows[i], unit)
-        constants = np.array(data.efc_KBIP).reshape(-1, 4)[row]
+            mujoco.mj_mulJacTVec(model, data, self.rows[i], unit)
+        self.softness: Array = np.array(data.efc_R)[self.row]
+        constants = np.array(data.efc_KBIP).reshape(-1, 4)[self.row]
+        self.rate: Array = np.sqrt(constants[:, 0] * constants[:, 2])
         bias = np.zeros(model.nv)
         mujoco.mj_rne(model, data, 0, bias)
-        return cls(
-            model,
-            data,
-            rows,
-            np.array(data.efc_R)[row],
-            np.sqrt(constants[:, 0] * constants[:, 2]),
-            np.asarray(row, dtype=np.int64),
-            np.array(data.efc_id, dtype=np.int64)[row],
-            kinds[row] == EQUALITY,
-            np.array(data.qfrc_gravcomp) - bias,
-        )
+        self.weight: Array = np.array(data.qfrc_gravcomp) - bias
 
     @cached_property
     def moved(self) -> Array:

@@ -167,13 +167,10 @@ class GeomPair:
         return np.array(mass @ data.xipos[group] / max(mass.sum(), mujoco.mjMINVAL))
 
     def apart(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
-        """The normal along which the first geom parts from the second, and how far they are from each other.
+        """The unit vector along which the first geom parts from the second, their distance [m], and the nearest points
+        of both [m], shape (2, 3), or None where MuJoCo knows none.
 
-        The normal is that of a plane, else it points along the shortest distance of the geoms.
-
-        Returns:
-            The unit vector along which the first geom moves away, the distance [m], and the nearest points of both
-            geoms [m], shape (2, 3), or None where MuJoCo knows none.
+        The vector is the normal of a plane, else it points along the shortest distance of the geoms.
         """
         between = data.geom_xpos[self.geoms[0]] - data.geom_xpos[self.geoms[1]]
         distance, ends = self._shortest(data)

@@ -159,7 +159,7 @@ def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
 
 
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
-    row = Row.of(pair)
+    row = Row(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
     weight = min(pair.trees, default=0.0) * float(np.linalg.norm(pair.model.opt.gravity))  # of the lighter tree

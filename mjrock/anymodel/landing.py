@@ -22,11 +22,7 @@ DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFI
 
 
 class Ground:
-    """A copy of a model in a pose, in which geoms are tried against each other.
-
-    Args:
-        data: the pose, see `state_of`.
-    """
+    """A copy of a model in a pose, see `state_of`, in which geoms are tried against each other."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self.model = copy.copy(model)

@@ -44,12 +44,12 @@ class Pose:
     @cached_property
     def held(self) -> Held:
         """The constraints of the pose."""
-        return Held.of(self.model, self.data)
+        return Held(self.model, self.data)
 
     @cached_property
     def springs(self) -> Springs:
         """The springs and dampers of joints, tendons and actuators."""
-        return Springs.of(self.model, self.data)
+        return Springs(self.model, self.data)
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:

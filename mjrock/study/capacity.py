@@ -61,10 +61,9 @@ class Capacity:
     The horizontal and the vertical motion of the case are scaled together. From the scale `start` the search goes up
     by a quarter at a time until the wall falls, or down until it stands, and then halves the interval. Its row has
     `capacity_g`, the peak ground acceleration over g that overturns the wall, `capacity_scale`, the factor on the
-    motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. That is one edge. Where a wall falls
-    at one intensity, stands at a higher one and falls again, `start` decides which. `falls_below_g` is the lowest of
-    `below` weaker intensities, a quarter apart, at which the wall falls too, empty if it stands at all of them; the
-    message then says "Not monotonic". `ida` shows all.
+    motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. Where there are several such edges,
+    `start` decides which it is. `falls_below_g` is the lowest of `below` weaker intensities, a quarter apart, at which
+    the wall falls too, empty if it stands at all of them; the message then says "Not monotonic". `ida` shows all.
 
     Args:
         analysis: the case with its motion, solver and contacts.

@@ -156,11 +156,10 @@ def fit_fragility(
     """The lognormal curve of greatest likelihood for runs that overturned or did not.
 
     It is a probit model of the logarithm of the intensity, solved by Newton's method. Runs under one record at several
-    intensities, or in both polarities, are not independent: a wall that stands at 0.5 g stands at 0.4 g too, with few
-    exceptions. Told which record each run belongs to, the fit draws whole records with replacement (the bootstrap over
-    clusters) and repeats itself for every draw. The curve stays the same, its intervals get wider. With few records
-    they are widened once more, as Student's distribution does. Of 90 % intervals from 6, 12 and 40 simulated records
-    91, 91 and 90 % hold the median, 91, 90 and 86 % the dispersion, and 98, 95 and 90 % the probability
+    intensities, or in both polarities, are not independent. Told which record each run belongs to, the fit draws whole
+    records with replacement and repeats itself for every draw. The curve stays the same, its intervals get wider, with
+    few records once more, as Student's distribution does. Of 90 % intervals from 6, 12 and 40 simulated records 91, 91
+    and 90 % hold the median, 91, 90 and 86 % the dispersion, and 98, 95 and 90 % the probability
     (`scripts/studies/fragility_coverage.py`).
 
     Args:
@@ -174,8 +173,8 @@ def fit_fragility(
     Raises:
         TypeError: for intensities that are no real numbers, and results that are neither True nor False.
         ValueError: for an intensity that is not positive, a NaN, a masked value, shapes that differ, fewer than 5
-            groups, or runs that all, or none, overturned, in which a single intensity parts them, so that no curve is
-            more likely than a step, or which overturn the less the stronger the motion is.
+            groups, or runs of which all or none overturned, which a single intensity parts, or which overturn the less
+            the stronger the motion is.
 
     Source: Baker (2015), Efficient analytical fragility function fitting, Earthquake Spectra 31(1); for the bootstrap
     over clusters, Field and Welsh (2007), J. R. Stat. Soc. B 69(3).

@@ -1,10 +1,6 @@
 """Damping matched to a stack: rocking as one, it loses at an impact what rocking theory says.
 
-On the damping that a law gives each joint, two things make a stack lose more than its wall. Its blocks vibrate on the
-joints above the base, which open and close at every impact, and what vibrates is lost. With strong dashpots these
-joints stay closed, as they do in the rigid impact, and one that opens still loses what the rigid impact does. And all
-joints give way under the weight, in series, which costs more than one joint of that stiffness does. The dashpots of the
-base make up for it.
+`docs/impacts.md` says why it loses more on the damping that a law gives each joint.
 """
 
 from __future__ import annotations

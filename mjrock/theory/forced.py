@@ -207,14 +207,8 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, 
 
 
 def rock_forced(case: Case, e: float, least: float, rtol: float) -> Motion:
-    """Rocking over a shaken base, or with ties.
-
-    Args:
-        case: the wall, its release and its effects.
-        e: restitution of an impact [-], negative where the wall leaves to the side that it came from.
-        least: an impact that leaves less energy than this leaves the wall at rest [J].
-        rtol: sets the longest step, see NYSTROEM.
-    """
+    """Rocking over a shaken base, or with ties; `e` and `least` as in `rock_freely`, `rtol` sets the longest step, see
+    NYSTROEM."""
     law = Law.of(case)
     rules = Rules(case.one_sided, e, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = Clock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
