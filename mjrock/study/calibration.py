@@ -105,7 +105,7 @@ def presumed_damping(combination: Combination, e: Restitution, base: Form) -> fl
 
 @dataclass(frozen=True)
 class Calibration:
-    """A fitted law, its regressions for base and side, and every search behind them, reached or not."""
+    """A fitted law, its regressions for base and side, and the tasks and rows of every search, reached or not."""
 
     law: DampingLaw
     base: Regression

@@ -13,17 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import ndtr, ndtri
 
 from ..files import write_text
-from ..quantities import (
-    Array,
-    Flags,
-    Integers,
-    require_path,
-    require_plain,
-    require_reals,
-    require_whole,
-    require_within,
-    shown,
-)
+from ..quantities import Array, Flags, require_path, require_plain, require_reals, require_whole, require_within, shown
 from ..result.table import csv_text
 from .probit import curvature, probit, reflected, resampled, score_of
 
@@ -239,7 +229,7 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
-def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
+def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, NDArray[Any]]:
     """How many groups there are, and the number of that of each value; ValueError for too few for an interval."""
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < least:
@@ -250,7 +240,7 @@ def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, Int
     return len(names), group
 
 
-def drawn(groups: int, resamples: int, seed: int) -> Integers:
+def drawn(groups: int, resamples: int, seed: int) -> NDArray[Any]:
     """How often each resample holds each group, drawn with replacement, shape (resamples, groups)."""
     count = require_whole("resamples", resamples, 20, 100_000)
     rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))

@@ -16,8 +16,10 @@ EVERY = 30.0
 
 
 class Progress:
-    """How far a campaign is, on the standard error: one that keeps so many rows of its store, and has so many tasks in
-    total, None if nobody knows. Use it in a `with` statement."""
+    """How far a campaign is, on the standard error. Use it in a `with` statement.
+
+    `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows.
+    """
 
     def __init__(self, store: Path, kept: int, total: int | None) -> None:
         self.store, self.total = store, total

@@ -22,8 +22,11 @@ def counted(outcomes: Mapping[str, int]) -> str:
 def closing(
     kept: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], seconds: float, total: int | None
 ) -> str:
-    """The last line of a campaign in which some tasks were kept, as they had a row already: how many of the others are
-    done or failed and how they ended, the time that it took [s], and how many tasks there are, None if nobody knows."""
+    """The last line of a campaign.
+
+    It says how many tasks had a row and were kept, how many of the others are done or failed and how they ended, how
+    long that took [s], and how many of the total are left, None if nobody knows.
+    """
     rows = kept + sum(statuses.values())
     of = "" if total is None else f" of {total}"
     left = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
