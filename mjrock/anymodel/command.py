@@ -11,7 +11,7 @@ import mujoco
 from ..files import write_text
 from ..result.table import csv_text
 from .inspect import inspect_contacts
-from .table import HEADER, Filter, report, values, worst_first
+from .table import HEADER, is_of, report, values, worst_first
 
 PAGE = 40
 """Rows that fill a page."""
@@ -34,8 +34,13 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-def inspected(args: argparse.Namespace) -> str:
-    """The table of a model; the rows are also written where --csv says."""
+def answer(argv: Sequence[str]) -> str:
+    """The table of the model that is named; the rows are also written where --csv says.
+
+    Raises:
+        ValueError, TypeError, OSError: for what the user can mend.
+    """
+    args = parser().parse_args(argv)
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is no file")
     load = mujoco.MjModel.from_binary_path if args.model.suffix == ".mjb" else mujoco.MjModel.from_xml_path
@@ -43,8 +48,7 @@ def inspected(args: argparse.Namespace) -> str:
     found = inspect_contacts(
         load(str(args.model)), candidates=not args.pairs, contacts=args.contacts, keyframe=keyframe, load=args.load
     )
-    wanted = Filter(tuple(args.geom), tuple(args.body), None if args.pair is None else (args.pair[0], args.pair[1]))
-    chosen = worst_first([contact for contact in found if wanted.takes(contact)])
+    chosen = worst_first([contact for contact in found if is_of(contact, args.geom, args.body, args.pair)])
     if args.csv is not None:
         header = ["geom1", "geom2", *HEADER[2:]]
         rows = [[*values(contact, args.speed), "; ".join(contact.notes)] for contact in chosen]
@@ -52,12 +56,3 @@ def inspected(args: argparse.Namespace) -> str:
     if found and not chosen:
         return f"None of the {len(found)} contacts of this model is of these geoms, bodies or pairs."
     return report(chosen, speed=args.speed, most=None if args.all else PAGE)
-
-
-def answer(argv: Sequence[str]) -> str:
-    """What is said of the model that is named.
-
-    Raises:
-        ValueError, TypeError, OSError: for what the user can mend.
-    """
-    return inspected(parser().parse_args(argv))

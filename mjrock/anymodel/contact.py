@@ -52,7 +52,7 @@ class PairContact(ContactNumbers):
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
                 have another inverse weight.
         """
-        write([self], model, compiled(model), require_flag("on_geoms", on_geoms))
+        write([self], model, on_geoms)
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
@@ -73,11 +73,7 @@ class PairContact(ContactNumbers):
 
     @property
     def pair_xml(self) -> str:
-        """The explicit pair alone, as text.
-
-        Raises:
-            ValueError: if one of the geoms has no name.
-        """
+        """The explicit pair alone, as text; ValueError if one of the geoms has no name."""
         self._require_names()
         numbers = {"solref": self.solref, "solimp": self.solimp}
         if self.condim > 1:
@@ -107,17 +103,12 @@ class PairContact(ContactNumbers):
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
         """What in a model keeps the contact from being what it says, one sentence each; empty if nothing does.
 
-        Args:
-            model: the model in which the contact is, from `apply` or from the text of `xml`.
+        The model is one with the contact, from `apply` or from the text of `xml`.
 
         Raises:
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.
         """
-        return self.caveats_of(compiled(model))
-
-    def caveats_of(self, whole: mujoco.MjModel) -> tuple[str, ...]:
-        """The same for a compiled model."""
-        pair = self._pair_in(whole)
+        pair = self._pair_in(compiled(model))
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
     def _pair_in(self, model: mujoco.MjModel) -> GeomPair:
@@ -142,10 +133,9 @@ def _text(*values: float) -> str:
     return f'"{" ".join(repr(float(value)) for value in values)}"'
 
 
-def write(
-    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool
-) -> None:
-    """Write contacts of one time step into a model or a specification, of which `whole` is the compiled model."""
+def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool) -> None:
+    """Write contacts of one time step into a model or a specification."""
+    whole, on_geoms = compiled(model), require_flag("on_geoms", on_geoms)
     for contact in contacts:
         contact.put_into(model, whole, on_geoms)
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt

@@ -60,7 +60,6 @@ class CoulombFriction:
         }
         self._given = np.zeros(model.nv)
         self._left = np.zeros(model.nv)
-        self._stopped: set[int] = set()
         self.sliding: tuple[int, ...] = ()
 
     def __call__(self, data: mujoco.MjData) -> tuple[int, ...]:
@@ -75,8 +74,10 @@ class CoulombFriction:
         self.release(data)
         mujoco.mj_forward(self.model, data)
         pairs = self._find(data)
-        while pairs and not self._settle(data, pairs):
-            pairs = self._keep(data, pairs)
+        while pairs and (stopped := self._settle(data, pairs)):
+            pairs -= stopped
+            self.model.pair_dim[:] = self.dimensions
+            data.qfrc_applied[:] = self._left[:] = self._given
         self.sliding = tuple(sorted(pairs))
         return self.sliding
 
@@ -92,16 +93,14 @@ class CoulombFriction:
 
     def _pressing(self, data: mujoco.MjData) -> tuple[Integers, Integers, Integers]:
         """The contacts that press: their numbers, those of their pairs, and those of their normal rows."""
-        number, pairs, rows = [], [], []
+        pressing, forces = [], data.efc_force
         addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
-        forces = data.efc_force
-        for i, (address, (first, second)) in enumerate(zip(addresses, geoms, strict=True)):
-            pair = self._pairs.get(frozenset((first, second)), -1)
+        for i, (address, both) in enumerate(zip(addresses, geoms, strict=True)):
+            pair = self._pairs.get(frozenset(both), -1)
             if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and forces[address] > 0:
-                number.append(i)
-                pairs.append(pair)
-                rows.append(address)
-        return np.array(number, dtype=np.int64), np.array(pairs, dtype=np.int64), np.array(rows, dtype=np.int64)
+                pressing.append((i, pair, address))
+        number, pairs, rows = np.reshape(np.array(pressing, dtype=np.int64), (-1, 3)).T
+        return number, pairs, rows
 
     def _find(self, data: mujoco.MjData) -> set[int]:
         """The pairs of which every contact that presses slides through the step."""
@@ -117,8 +116,8 @@ class CoulombFriction:
         sticks = {int(pair) for pair in pairs[~(saturated & onward)]}
         return {int(pair) for pair in pairs} - sticks
 
-    def _settle(self, data: mujoco.MjData, pairs: set[int]) -> bool:
-        """Find the friction of the pairs that slide; whether all of them slide through the step."""
+    def _settle(self, data: mujoco.MjData, pairs: set[int]) -> set[int]:
+        """Find the friction of the pairs that slide; those of them that it stops within the step."""
         model, h = self.model, float(self.model.opt.timestep)
         model.pair_dim[:] = self.dimensions
         model.pair_dim[list(pairs)] = 1
@@ -147,8 +146,7 @@ class CoulombFriction:
         else:
             stops[:] = True  # beyond some coefficient friction raises the force by more than that gives
         self._left[:] = data.qfrc_applied
-        self._stopped = {int(pair) for pair in owners[stops]}
-        return not self._stopped
+        return {int(pair) for pair in owners[stops]}
 
     def _tangents(self, data: mujoco.MjData, number: Integers, owners: Integers) -> Array:
         """Jacobians of the slip of contacts along their two tangents, shape (n, 2, nv)."""
@@ -161,10 +159,3 @@ class CoulombFriction:
                     mujoco.mj_jac(model, data, side, None, places[i], body)
                     apart[i] += sign * side
         return np.array(frames[:, 1:] @ apart)
-
-    def _keep(self, data: mujoco.MjData, pairs: set[int]) -> set[int]:
-        """The pairs that still slide. All have their rows back, and no friction is applied yet."""
-        self.model.pair_dim[:] = self.dimensions
-        data.qfrc_applied[:] = self._given
-        self._left[:] = self._given
-        return pairs - self._stopped

@@ -90,7 +90,8 @@ def felt(
     mass = _mass(soft, rows, friction)[0]
     if frequency is None:
         frequency = math.sqrt(k / mass) if k is not None and mass < math.inf else 0.0
-    softness = np.where((held.rate < HOLDS * frequency) | held.limit, held.softness, 0.0)
+    limit = ~held.equality
+    softness = np.where((held.rate < HOLDS * frequency) | limit, held.softness, 0.0)
     answer = held.answer(free, softness, held.equality)
     if not _free(answer, rows) > FIXED * _free(free, rows):
         return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
@@ -102,7 +103,7 @@ def felt(
     motion = motion / float(rows[0] @ motion)
     yields = (held.rate < RIGID * frequency) & held.equality
     matters = not math.isclose(_free(free, rows), _free(answer, rows), rel_tol=MATTERS)
-    pressed = held.limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
+    pressed = limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
     limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer
     stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
     return Felt(
@@ -115,56 +116,35 @@ def felt(
     )
 
 
-@dataclass(frozen=True)
 class Held:
-    """The constraints of a pose but for contacts, and what the joints feel of gravity.
+    """The constraints of a model in its pose but for contacts, and what the joints feel of gravity.
 
-    Args:
-        model, data: the model and its pose.
+    Attributes:
+        row, number: which row of the engine each is, and of which equality, joint or tendon.
+        equality: whether each is an equality constraint; the others are limits.
         rows: their Jacobian, shape (n, nv).
         softness: R of each, its regularisation [1/kg and alike].
         rate: circular frequency with which each returns [rad/s].
-        row, number: which row of the engine each is, and of which equality, joint or tendon.
-        equality, limit: what each is.
         weight: force of gravity on the joints, shape (nv,).
     """
 
-    model: mujoco.MjModel
-    data: mujoco.MjData
-    rows: Array
-    softness: Array
-    rate: Array
-    row: Integers
-    number: Integers
-    equality: Flags
-    limit: Flags
-    weight: Array
-
-    @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Held:
-        """The constraints of a pose."""
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self.model, self.data = model, data
         kinds = np.array(data.efc_type[: data.nefc], dtype=int)
-        row = np.flatnonzero((kinds == EQUALITY) | np.isin(kinds, LIMITS))
-        rows = np.zeros((len(row), model.nv))
-        for i, number in enumerate(row):
+        self.row: Integers = np.flatnonzero((kinds == EQUALITY) | np.isin(kinds, LIMITS))
+        self.number = np.array(data.efc_id, dtype=np.int64)[self.row]
+        self.equality: Flags = kinds[self.row] == EQUALITY
+        self.rows = np.zeros((len(self.row), model.nv))
+        for i, number in enumerate(self.row):
             unit = np.zeros(data.nefc)
             unit[number] = 1.0
-            mujoco.mj_mulJacTVec(model, data, rows[i], unit)
-        constants = np.array(data.efc_KBIP).reshape(-1, 4)[row]
+            mujoco.mj_mulJacTVec(model, data, self.rows[i], unit)
+        self.softness: Array = np.array(data.efc_R)[self.row]
+        constants = np.array(data.efc_KBIP).reshape(-1, 4)[self.row]
+        self.rate: Array = np.sqrt(constants[:, 0] * constants[:, 2])
         bias = np.zeros(model.nv)
         mujoco.mj_rne(model, data, 0, bias)
-        return cls(
-            model,
-            data,
-            rows,
-            np.array(data.efc_R)[row],
-            np.sqrt(constants[:, 0] * constants[:, 2]),
-            np.asarray(row, dtype=np.int64),
-            np.array(data.efc_id, dtype=np.int64)[row],
-            kinds[row] == EQUALITY,
-            np.array(np.isin(kinds[row], LIMITS)),
-            np.array(data.qfrc_gravcomp) - bias,
-        )
+        self.weight: Array = np.array(data.qfrc_gravcomp) - bias
 
     @cached_property
     def moved(self) -> Array:

@@ -24,12 +24,8 @@ UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 
 
 def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
-    """The compiled model of either; an MjSpec stays as it is.
-
-    Raises:
-        TypeError: unless it is one of them; for a text or a path with the call that loads it.
-        ValueError: with the compiler's message, if the specification does not compile.
-    """
+    """The compiled model of either; an MjSpec stays as it is. TypeError for any other, and a ValueError with the
+    compiler's message for a specification that does not compile."""
     if isinstance(model, str | os.PathLike):
         load = "from_xml_string" if isinstance(model, str) and model.lstrip().startswith("<") else "from_xml_path"
         raise TypeError(f"model = {shown(model)} is not a MjModel or MjSpec; load it with mujoco.MjModel.{load}")
@@ -45,11 +41,8 @@ def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
 def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
     """The number of a geom, from its name or number, or from the name of a body that has a single geom.
 
-    Messages call the value `argument`.
-
-    Raises:
-        TypeError: unless the value is a text or a whole number.
-        ValueError: if there is no such geom, or the body has none or several.
+    Messages call the value `argument`: TypeError unless it is a text or a whole number, ValueError if there is no such
+    geom, or the body has none or several.
     """
     if isinstance(value, str):
         require_text(argument, value)
@@ -58,7 +51,7 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
             return int(number)
         body = mujoco.mj_name2id(model, BODY, value)
         if body < 0:
-            geoms, bodies = _known(model, GEOM, model.ngeom), _known(model, BODY, model.nbody)
+            geoms, bodies = (", ".join(filter(None, names_of(model, kind))) or "none" for kind in (GEOM, BODY))
             raise ValueError(
                 f"{argument} = {value!r} is no geom or body of this model; its named geoms are: {geoms}; "
                 f"its named bodies are: {bodies}"
@@ -73,14 +66,10 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
     return int(value)
 
 
-def geom_name(model: mujoco.MjModel, geom: int) -> str:
-    """The name of a geom, or an empty text."""
-    return mujoco.mj_id2name(model, GEOM, geom) or ""
-
-
-def _known(model: mujoco.MjModel, kind: mujoco.mjtObj, count: int) -> str:
-    names = (mujoco.mj_id2name(model, kind, number) for number in range(count))
-    return ", ".join(name for name in names if name) or "none"
+def names_of(model: mujoco.MjModel, kind: mujoco.mjtObj) -> list[str]:
+    """The names of all geoms or bodies; one without a name has an empty one."""
+    count = model.ngeom if kind == GEOM else model.nbody
+    return [mujoco.mj_id2name(model, kind, number) or "" for number in range(count)]
 
 
 @dataclass(frozen=True)
@@ -99,11 +88,7 @@ class GeomPair:
 
     @classmethod
     def named(cls, model: mujoco.MjModel, geom1: object, geom2: object) -> GeomPair:
-        """The pair of two geoms given by name or number, or by the name of a body with a single geom.
-
-        Raises:
-            TypeError, ValueError: if one of them is not in the model, or both are one, or neither can move.
-        """
+        """The pair of two geoms that `geom_id` finds; ValueError if both are one, or neither can move."""
         pair = cls(model, (geom_id(model, "geom1", geom1), geom_id(model, "geom2", geom2)))
         if pair.geoms[0] == pair.geoms[1]:
             raise ValueError(f"geom1 and geom2 = {shown(geom1)} are the same geom")
@@ -117,7 +102,8 @@ class GeomPair:
     @property
     def names(self) -> tuple[str, str]:
         """The names; a geom without a name has an empty one."""
-        return geom_name(self.model, self.geoms[0]), geom_name(self.model, self.geoms[1])
+        first, second = (mujoco.mj_id2name(self.model, GEOM, geom) or "" for geom in self.geoms)
+        return first, second
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -158,10 +144,15 @@ class GeomPair:
         return float(sum(self.model.body_invweight0[body, 0] for body in self.bodies))
 
     @property
+    def trees(self) -> list[float]:
+        """Mass of each tree of bodies that moves with one of the two, to its root [kg]."""
+        roots = {int(self.model.body_rootid[body]) for body in self.bodies if self.model.body_weldid[body] != 0}
+        return [float(self.model.body_subtreemass[root]) for root in roots]
+
+    @property
     def makes_several_points(self) -> bool:
         """Whether MuJoCo can make more than one contact of these geoms at a time."""
-        kinds = [self.model.geom_type[geom] for geom in self.geoms]
-        return any(kind in UNEVEN for kind in kinds) or not any(kind in ONE_POINT for kind in kinds)
+        return self.is_uneven or not any(self.model.geom_type[geom] in ONE_POINT for geom in self.geoms)
 
     @property
     def is_uneven(self) -> bool:
@@ -176,13 +167,10 @@ class GeomPair:
         return np.array(mass @ data.xipos[group] / max(mass.sum(), mujoco.mjMINVAL))
 
     def apart(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
-        """The normal along which the first geom parts from the second, and how far they are from each other.
+        """The unit vector along which the first geom parts from the second, their distance [m], and the nearest points
+        of both [m], shape (2, 3), or None where MuJoCo knows none.
 
-        The normal is that of a plane, else it points along the shortest distance of the geoms.
-
-        Returns:
-            The unit vector along which the first geom moves away, the distance [m], and the nearest points of both
-            geoms [m], shape (2, 3), or None where MuJoCo knows none.
+        The vector is the normal of a plane, else it points along the shortest distance of the geoms.
         """
         between = data.geom_xpos[self.geoms[0]] - data.geom_xpos[self.geoms[1]]
         distance, ends = self._shortest(data)
@@ -209,18 +197,3 @@ class GeomPair:
             return 0.0, None
         known = distance < FARTHEST and np.any(ends != 0)
         return (distance, ends.reshape(2, 3)) if known else (0.0, None)
-
-
-def tree_mass(pair: GeomPair) -> float:
-    """Mass of all that moves with the bodies of a pair [kg], to the roots of their trees."""
-    model = pair.model
-    moving = [int(model.body_rootid[body]) for body in pair.bodies if model.body_weldid[body] != 0]
-    return float(sum(model.body_subtreemass[root] for root in {*moving}))
-
-
-def weight_of(pair: GeomPair) -> float:
-    """Weight of the lighter tree of a pair, of those that move [N]."""
-    model = pair.model
-    moving = [int(model.body_rootid[body]) for body in pair.bodies if model.body_weldid[body] != 0]
-    lightest = min((float(model.body_subtreemass[root]) for root in moving), default=0.0)
-    return lightest * float(np.linalg.norm(model.opt.gravity))

@@ -23,14 +23,8 @@ CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
 
 
 def holding(pose: Pose, felt: Felt, k: float, xi: float, mass: float, speed: float = 1.0) -> Iterator[str]:
-    """What holds the bodies of a contact besides, one sentence each.
-
-    Args:
-        pose: the model in its pose.
-        felt: what the contact feels.
-        k, xi, mass: stiffness of the whole contact [N/m], its damping ratio [-] and its mass [kg].
-        speed: speed of approach at which dry friction is judged [m/s].
-    """
+    """What holds the bodies of a contact besides, one sentence each. The whole contact has the stiffness k [N/m], the
+    damping ratio xi [-] and the mass [kg]; dry friction is judged at the speed of approach [m/s]."""
     model, data = pose.model, pose.data
     if felt.slides:
         yield (

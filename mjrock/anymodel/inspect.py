@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
+import numpy as np
 
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within
-from .geoms import GeomPair, compiled, tree_mass, weight_of
+from .geoms import GeomPair, compiled
 from .holding import holding
 from .meeting import Meeting, Pose, elsewhere, meeting
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
@@ -58,7 +59,7 @@ class InspectedContact:
     @property
     def frequency(self) -> float:
         """Circular frequency omega in a contact of these points [rad/s]."""
-        return math.sqrt(self.k / self._moved)
+        return math.sqrt(self.k / self.moved)
 
     @property
     def xi(self) -> float:
@@ -67,7 +68,7 @@ class InspectedContact:
             return math.nan
         if self.k == 0:
             return math.inf if self.c > 0 else 0.0
-        return self.c / (2 * math.sqrt(self.k * self._moved))
+        return self.c / (2 * math.sqrt(self.k * self.moved))
 
     @property
     def restitution(self) -> float:
@@ -87,12 +88,12 @@ class InspectedContact:
         """
         if math.isnan(self.xi):
             return math.nan
-        share = self.mass / self.points / self._moved
+        share = self.mass / self.points / self.moved
         return rebound_at(speed, self.xi, self.frequency, self.gravity, share)
 
     @property
-    def _moved(self) -> float:
-        """What moves with each contact point [kg]."""
+    def moved(self) -> float:
+        """What moves with each contact point: its mass and the inertia of the row [kg]."""
         return self.mass / self.points + self.inertia
 
 
@@ -158,11 +159,11 @@ def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
 
 
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
-    row = Row.of(pair)
-    points = contacts if contacts is not None and pair.makes_several_points else None if contacts is None else 1
-    mu = row.mixed.friction[0] if row.mixed.condim > 1 else 0.0
-    met = meeting(pair, pose, contacts=points, friction=mu, k=row.k)
-    force = load if load is not None else max(weight_of(pair), 1e-9) / met.points
+    row = Row(pair)
+    points = contacts if contacts is None or pair.makes_several_points else 1
+    met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
+    weight = min(pair.trees, default=0.0) * float(np.linalg.norm(pair.model.opt.gravity))  # of the lighter tree
+    force = load if load is not None else max(weight, 1e-9) / met.points
     contact = InspectedContact(
         *pair.labels,
         explicit=pair.explicit >= 0,
@@ -198,7 +199,7 @@ def _notes(
     if not found.mass < math.inf:
         yield "mass is infinite: the geoms cannot approach each other along their normal, and there is no xi and no e"
         return
-    total = tree_mass(pair)
+    total = sum(pair.trees)
     if max(found.mass, 1 / pair.inverse_weight) > IMMOVABLE * total:
         yield (
             f"k, c and mass belong to a body that can hardly move this way: 1/W is {1 / pair.inverse_weight:.2g} kg "
@@ -208,10 +209,7 @@ def _notes(
     if found.k > 0:
         yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
-        mu = row.mixed.friction[0] if row.mixed.condim > 1 else 0.0
-        foreign = elsewhere(pair, pose, met, contacts, mu)
-        if foreign:
-            yield foreign
+        yield from elsewhere(pair, pose, met, contacts, row.mixed.sliding)
 
 
 def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:
@@ -221,10 +219,10 @@ def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:
     """
     if not contact.mass < math.inf:
         return
-    moved = contact.mass / contact.points + contact.inertia
-    longest = resolving_step(contact.k, contact.c, moved)
-    if contact.c * h > 2 * moved:  # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
-        longest = min(longest, moved / contact.c)
+    longest = resolving_step(contact.k, contact.c, contact.moved)
+    # a dashpot centred in the step leaves (1 - c h / 2 m) / (1 + c h / 2 m) of the speed
+    if contact.c * h > 2 * contact.moved:
+        longest = min(longest, contact.moved / contact.c)
     if h <= longest:
         return
     gain = ", and it can gain energy" if contact.frequency * h > UNSOUND else ""

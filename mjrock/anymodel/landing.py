@@ -7,7 +7,6 @@ three, a capsule that lies in two.
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -22,46 +21,15 @@ DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFI
 """Geoms that stay where they are."""
 
 
-@dataclass(frozen=True)
-class Landing:
-    """Where two geoms meet.
-
-    Args:
-        away: unit vector along which the first geom parts from the second.
-        first, second: the points of the contact, on each of the geoms where it is now, in the world's frame [m], shape
-            (n, 3). They are the same points once the geoms have met.
-    """
-
-    away: Array
-    first: Array
-    second: Array
-
-    @property
-    def count(self) -> int:
-        """Contact points."""
-        return len(self.first)
-
-    @property
-    def middles(self) -> tuple[Array, Array]:
-        """The middle of the points on each geom [m]."""
-        return self.first.mean(axis=0), self.second.mean(axis=0)
-
-
 class Ground:
-    """A copy of a model in a pose, in which geoms are tried against each other.
-
-    Args:
-        data: the pose, see `state_of`.
-    """
+    """A copy of a model in a pose, see `state_of`, in which geoms are tried against each other."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self.model = copy.copy(model)
-        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
-        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
-        self.model.opt.disableflags &= ~int(
-            mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-        )
-        self.model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        option, disabled = self.model.opt, mujoco.mjtDisableBit
+        option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
+        option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
+        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self.data = mujoco.MjData(self.model)
         for name in ("qpos", "mocap_pos", "mocap_quat"):
             getattr(self.data, name)[:] = getattr(data, name)
@@ -95,20 +63,22 @@ class Ground:
         self.model.body_contype[bodies] = self.model.body_conaffinity[bodies] = value
 
 
-def landing(pair: GeomPair, data: mujoco.MjData, ground: Ground | None = None) -> Landing:
+def landing(pair: GeomPair, data: mujoco.MjData, ground: Ground | None) -> tuple[Array, Array, Array]:
     """Where two geoms meet.
 
     Args:
         pair: the geoms.
         data: the pose, see `state_of`.
-        ground: a copy of the model in this pose, if there is one.
+        ground: a copy of the model in this pose; None for geoms that meet in a single point.
+
+    Returns:
+        The unit vector along which the first geom parts from the second, and the points of the contact on each of them
+        where it is now, in the world's frame [m], shape (n, 3). They are the same points once the geoms have met.
     """
     away, distance, ends = pair.apart(data)
-    if pair.makes_several_points:
-        points = (ground or Ground(pair.model, data)).points(pair, away, distance)
+    if ground is not None:
+        points = ground.points(pair, away, distance)
         if len(points):
-            return Landing(away, points, points - distance * away)
-    if ends is None:
-        centres = [pair.centre(data, body) for body in pair.bodies]
-        return Landing(away, centres[0][None, :], centres[1][None, :])
-    return Landing(away, ends[0][None, :], ends[1][None, :])
+            return away, points, points - distance * away
+    first, second = [pair.centre(data, body) for body in pair.bodies] if ends is None else ends
+    return away, first[None, :], second[None, :]

@@ -80,9 +80,7 @@ def contact_for(
         newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is average acceleration.
 
     Returns:
-        The contact, with ``.solref .solimp .solreffriction .friction .xml`` and `.apply(model)`. The ``.xml`` of
-        several contacts has an `<option>` each: keep the one with the largest impratio, and let no later `<option>`
-        override it. An impratio of 1e6 to 1e9 is normal here.
+        The contact, with ``.solref .solimp .solreffriction .friction .xml`` and `.apply(model)`.
 
     Raises:
         TypeError, ValueError: for a value outside its range, geoms that the model does not have or that cannot meet,
@@ -132,6 +130,7 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
     rate = None if k is not None else RESOLVED / h
     met = meeting(pair, pose, contacts=points, at=asked.at, friction=grip.sliding, frequency=rate, k=k)
     share = _mass(pair, pose, asked.mass, met)
+    _require_one_loss(asked)
     if k is None:
         k = _stiffest(pair, asked, h, share, met.felt.gravity)
     c = _dashpot(k, share, asked, met.felt.gravity)
@@ -198,7 +197,6 @@ def _require_one_loss(asked: Asked) -> None:
 
 def _dashpot(k: float, mass: float, asked: Asked, gravity: float) -> float:
     """The dashpot of a contact point [N s/m], from the one of the three that is given."""
-    _require_one_loss(asked)
     if asked.c is not None:
         return require_within("damping c", asked.c, 0.0, 1e30, "N s/m")
     return 2 * _damping_ratio(asked, math.sqrt(k / mass), gravity) * math.sqrt(k * mass)
@@ -206,7 +204,6 @@ def _dashpot(k: float, mass: float, asked: Asked, gravity: float) -> float:
 
 def _stiffest(pair: GeomPair, asked: Asked, h: float, mass: float, gravity: float) -> float:
     """The stiffest contact that the step resolves, rounded down [N/m]."""
-    _require_one_loss(asked)
     if asked.c is not None:
         raise ValueError(f"k = None takes restitution or xi, and c = {spelt(asked.c)} is given; give k")
     omega = RESOLVED / h
@@ -225,7 +222,7 @@ def _remarks(pair: GeomPair, pose: Pose, asked: Asked, met: Meeting, k: float, c
     found = list(holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0)))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
-        found += filter(None, [elsewhere(pair, pose, met, contacts, mu)])
+        found += elsewhere(pair, pose, met, contacts, mu)
     return tuple(found)
 
 
@@ -273,13 +270,8 @@ class Grip(NamedTuple):
         return self.friction[0] if self.condim > 1 else 0.0
 
     def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
-        """The same with what stops slip.
-
-        Args:
-            rate: with which friction stops slip, omega at most [1/s]; the page on contacts says why not sooner.
-            impedance, inertia: of the normal row [-, kg].
-            mass: of the contact point [kg].
-        """
+        """The same with what stops slip: at a rate [1/s], omega at most, as the page on contacts says, for the mass of
+        the contact point [kg] and impedance and inertia of its normal row [-, kg]."""
         if self.condim == 1:
             return self
         impratio = max(1.0, HOLD / rate * mass / inertia)
@@ -290,7 +282,6 @@ def _friction(pair: GeomPair, friction: float | None) -> Grip:
     """Friction of the model, or the coefficient that is given."""
     if friction is None:
         mixed = Mixed.of(pair)
-        first, second, torsional, rolling, last = mixed.friction
-        return Grip((first, second, torsional, rolling, last), mixed.condim)
+        return Grip(mixed.friction, mixed.condim)
     sliding = require_within("friction", friction, 0.0, 1e6)
     return Grip((sliding, sliding, *SPINNING), 3 if sliding > 0 else 1)

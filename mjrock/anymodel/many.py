@@ -10,9 +10,9 @@ from typing import Any
 
 import mujoco
 
-from ..quantities import Array, named, require_flag, shown
+from ..quantities import Array, named, shown
 from .contact import PairContact, document, write
-from .geoms import BODY, GEOM, GeomPair, compiled, geom_id
+from .geoms import BODY, GEOM, GeomPair, compiled, geom_id, names_of
 from .make import Asked, contact_of
 from .meeting import Pose
 from .notes import spoilers
@@ -54,13 +54,12 @@ class PairContacts:
 
     def apply(self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False) -> None:
         """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
-        flag = require_flag("on_geoms", on_geoms)
-        write(self.contacts, model, compiled(model), flag)
+        write(self.contacts, model, on_geoms)
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
         """What in a model keeps the contacts from being what they say, one sentence each with the geoms it is about."""
         whole = compiled(model)
-        return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats_of(whole)))
+        return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats(whole)))
 
 
 def contacts_for(
@@ -148,14 +147,13 @@ def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
     """The numbers of the geoms that a name with wildcards means."""
     if not isinstance(value, str) or not any(mark in value for mark in "*?["):
         return [geom_id(model, argument, value)]
-    names = {kind: [mujoco.mj_id2name(model, kind, i) or "" for i in range(count)]
-             for kind, count in ((GEOM, model.ngeom), (BODY, model.nbody))}  # fmt: skip
-    found = [i for i, name in enumerate(names[GEOM]) if name and fnmatchcase(name, value)]
+    geoms = names_of(model, GEOM)
+    found = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
     if not found:
-        single = (i for i, name in enumerate(names[BODY]) if model.body_geomnum[i] == 1 and fnmatchcase(name, value))
-        found = [int(model.body_geomadr[i]) for i in single]
+        alike = (i for i, name in enumerate(names_of(model, BODY)) if fnmatchcase(name, value))
+        found = [int(model.body_geomadr[i]) for i in alike if model.body_geomnum[i] == 1]
     if not found:
-        known = named([name for name in names[GEOM] if name]) or "none"
+        known = named([name for name in geoms if name]) or "none"
         raise ValueError(
             f"{argument} = {shown(value)} matches no geom, nor a body with a single one; geoms are: {known}"
         )

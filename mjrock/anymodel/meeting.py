@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import mujoco
 import numpy as np
 
-from ..quantities import Array, require_array, shown
+from ..quantities import require_array, shown
 from .felt import Felt, Held, felt
 from .geoms import FARTHEST, GeomPair
 from .landing import Ground, landing
@@ -43,12 +44,12 @@ class Pose:
     @cached_property
     def held(self) -> Held:
         """The constraints of the pose."""
-        return Held.of(self.model, self.data)
+        return Held(self.model, self.data)
 
     @cached_property
     def springs(self) -> Springs:
         """The springs and dampers of joints, tendons and actuators."""
-        return Springs.of(self.model, self.data)
+        return Springs(self.model, self.data)
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
@@ -92,36 +93,33 @@ def meeting(
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts` says.
         friction, frequency, k: see `felt`.
-
-    Raises:
-        TypeError, ValueError: unless `at` is a point.
     """
     if at is not None:
         point = require_array("at", at, (3,))
         if np.abs(point).max() > FARTHEST:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
-    landed = landing(pair, pose.data, pose.ground if pair.makes_several_points else None)
-    places: tuple[Array, Array] = landed.middles
+    away, first, second = landing(pair, pose.data, pose.ground if pair.makes_several_points else None)
+    count = len(first) if contacts is None else contacts
     if at is not None:
-        places = (point, point)
-    elif contacts is not None and contacts != landed.count:
-        first, second = (pair.centre(pose.data, body) for body in pair.bodies)
-        places = (first, second)
-    count = landed.count if contacts is None else contacts
+        places = point, point
+    elif count != len(first):
+        places = pair.centre(pose.data, pair.bodies[0]), pair.centre(pose.data, pair.bodies[1])
+    else:
+        places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
-    return Meeting(count, felt(pair, pose.held, landed.away, places, friction=friction, frequency=frequency, k=whole))
+    return Meeting(count, felt(pair, pose.held, away, places, friction=friction, frequency=frequency, k=whole))
 
 
-def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> str | None:
+def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
     names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):
         share = meeting(pair, other, contacts=contacts, friction=friction).share
         if 0 < share < np.inf:
             worst = max(worst, (max(share / here.share, here.share / share), name, share))
-    if not worst[1]:
-        return None
-    return (
-        f"a contact point stops {worst[2]:.3g} kg at keyframe '{worst[1]}' and {here.share:.3g} kg at {pose.label}, "
-        f"for which the contact is made; give keyframe='{worst[1]}' if that is where the model stands"
-    )
+    _, name, share = worst
+    if name:
+        yield (
+            f"a contact point stops {share:.3g} kg at keyframe '{name}' and {here.share:.3g} kg at {pose.label}, "
+            f"for which the contact is made; give keyframe='{name}' if that is where the model stands"
+        )

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ..quantities import Array
 from .geoms import GeomPair
 
 
@@ -26,7 +25,7 @@ class Mixed:
     solref: tuple[float, ...]
     solimp: tuple[float, ...]
     solreffriction: tuple[float, ...]
-    friction: tuple[float, ...]
+    friction: tuple[float, float, float, float, float]
     condim: int
     margin: float
     adhesion: float
@@ -42,10 +41,10 @@ class Mixed:
         model, i = pair.model, pair.explicit
         if i >= 0:
             return cls(
-                _numbers(model.pair_solref[i]),
-                _numbers(model.pair_solimp[i]),
-                _numbers(model.pair_solreffriction[i]),
-                _numbers(model.pair_friction[i]),
+                tuple(model.pair_solref[i].tolist()),
+                tuple(model.pair_solimp[i].tolist()),
+                tuple(model.pair_solreffriction[i].tolist()),
+                tuple(model.pair_friction[i].tolist()),
                 int(model.pair_dim[i]),
                 float(model.pair_margin[i]),
                 float(model.pair_adhesion[i]),
@@ -62,16 +61,21 @@ class Mixed:
             deciding = geoms
         solref = model.geom_solref[deciding]
         averaged = weight @ model.geom_solref[geoms]
-        sliding, torsional, rolling = model.geom_friction[deciding].max(axis=0)
+        sliding, torsional, rolling = model.geom_friction[deciding].max(axis=0).tolist()
         return cls(
-            _numbers(averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)),
-            _numbers(weight @ model.geom_solimp[geoms]),
+            tuple((averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)).tolist()),
+            tuple((weight @ model.geom_solimp[geoms]).tolist()),
             (0.0, 0.0),
-            _numbers((sliding, sliding, torsional, rolling, rolling)),
+            (sliding, sliding, torsional, rolling, rolling),
             int(model.geom_condim[deciding].max()),
             float(model.geom_margin[geoms].sum()),
             float(model.geom_adhesion[geoms].sum()),
         )
+
+    @property
+    def sliding(self) -> float:
+        """Coefficient of sliding friction, 0 without friction [-]."""
+        return self.friction[0] if self.condim > 1 else 0.0
 
     def pyramid(self, impratio: float) -> float:
         """Factor of the pyramidal cone on stiffness, damping and inertia of an approach without sliding [-].
@@ -81,7 +85,3 @@ class Mixed:
         """
         mu = max(self.friction[0], mujoco.mjMINMU)
         return (self.condim - 1) * impratio / (mu**2 * (1 + mu**2))
-
-
-def _numbers(values: Array | tuple[float, ...]) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)

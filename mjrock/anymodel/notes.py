@@ -27,12 +27,10 @@ UNSOUND = 1.0
 GAINS = 0.5
 """omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
 with 1.09 at 0.9 and with 2.4 at 1.9."""
-
 NOTHING, SMALL = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
 MOST_SPEED = 1e4
 """Largest speed of approach that is looked at [m/s]."""
-
 ENABLED = {
     mujoco.mjtEnableBit.mjENBL_OVERRIDE: "the override flag is set, so that o_solref and o_solimp take the place of "
     "the solref and solimp of every contact",
@@ -92,13 +90,10 @@ def duplicates(pair: GeomPair) -> Iterator[str]:
 
 
 def resolving_step(k: float, c: float, mass: float) -> float:
-    """The longest step that resolves the contact of a mass [s].
+    """The longest step [s] that resolves the contact of a mass [kg] on a spring [N/m] and dashpot [N s/m], maybe zero.
 
     A touch lies anywhere in a step, and the dashpot acts from the next step on. Uniform touches give e a standard
     deviation of e c h / (m sqrt(12)).
-
-    Args:
-        k, c, mass: spring [N/m], dashpot [N s/m] and mass [kg] of a contact point, positive; c and k may be zero.
     """
     if k == 0:
         return math.inf

@@ -63,11 +63,8 @@ class ContactNumbers:
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution e of an approach along the normal [-].
-
-        It is that of the speed for which the contact was made, with gravity. Without one it leaves out gravity, see
-        `rebound_restitution`.
-        """
+        """Coefficient of restitution e of an approach along the normal [-], at the speed for which the contact was made
+        with gravity, else without gravity, see `rebound_restitution`."""
         return rebound_restitution(self.xi) if self.speed is None else self.restitution_at(self.speed)
 
     def restitution_at(self, speed: float) -> float:

@@ -16,7 +16,6 @@ Under a load at rest the row is a spring of the stiffness K d^2 / ((1 - d) W), w
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -26,11 +25,10 @@ from .geoms import GeomPair
 from .mixing import Mixed
 
 
-@dataclass(frozen=True)
 class Row:
-    """The row of a contact of a model.
+    """The row of a contact of two geoms of a model.
 
-    Args:
+    Attributes:
         mixed: what the contact takes from its pair or its geoms.
         k, c: spring [N/m] and dashpot [N s/m] at zero penetration.
         inertia: inertia that the row adds, beyond what the Euler step takes [kg].
@@ -43,21 +41,7 @@ class Row:
         elliptic: whether the model has the elliptic cone.
     """
 
-    mixed: Mixed
-    k: float
-    c: float
-    inertia: float
-    impedance: float
-    constant: bool
-    spring: float
-    scale: float
-    solimp: tuple[float, ...]
-    impratio: float
-    elliptic: bool
-
-    @classmethod
-    def of(cls, pair: GeomPair) -> Row:
-        """The row of a pair."""
+    def __init__(self, pair: GeomPair) -> None:
         mixed, option = Mixed.of(pair), pair.model.opt
         if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_OVERRIDE):
             solref, solimp = option.o_solref, option.o_solimp
@@ -65,29 +49,20 @@ class Row:
             solref, solimp = mixed.solref, mixed.solimp
         h = float(option.timestep)
         d, full = (float(np.clip(value, *IMPEDANCE_RANGE)) for value in solimp[:2])
-        constant = d == full or solimp[2] <= mujoco.mjMINVAL
-        if constant:
+        self.constant = d == full or solimp[2] <= mujoco.mjMINVAL
+        if self.constant:
             d = 0.5 * (d + full)
-        spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, _is_safe(pair.model))
-        elliptic = option.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
-        cone = mixed.pyramid(float(option.impratio)) if mixed.condim > 1 and not elliptic else 1.0
-        scale = cone / pair.inverse_weight
-        moved = scale * d / (1 - d)
-        c = moved * dashpot
+        safe = not option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)  # time constants above two steps
+        spring, dashpot = _reference(float(solref[0]), float(solref[1]), full, h, safe)
+        self.mixed, self.impratio, self.impedance = mixed, float(option.impratio), d
+        self.elliptic = option.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
+        cone = mixed.pyramid(self.impratio) if mixed.condim > 1 and not self.elliptic else 1.0
+        self.spring, self.scale = spring, cone / pair.inverse_weight
+        moved = self.scale * d / (1 - d)
+        self.k, self.c = moved * d * spring, moved * dashpot
         staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-        return cls(
-            mixed=mixed,
-            k=moved * d * spring,
-            c=c,
-            inertia=moved if staged else max(0.0, moved - 0.5 * h * c),
-            impedance=d,
-            constant=constant,
-            spring=spring,
-            scale=scale,
-            solimp=(d, d if constant else full, *(float(value) for value in solimp[2:5])),
-            impratio=float(option.impratio),
-            elliptic=elliptic,
-        )
+        self.inertia = moved if staged else max(0.0, moved - 0.5 * h * self.c)
+        self.solimp = d, full, *(float(value) for value in solimp[2:5])
 
     def loaded(self, load: float) -> float:
         """The load [N] over the indentation at which the row carries it [N/m]; 0 without a spring."""
@@ -140,8 +115,3 @@ def _reference(first: float, second: float, full: float, h: float, safe: bool) -
         return -first / full**2, -second / full
     timeconst = max(first, 2 * h) if safe else first
     return 1 / max(mujoco.mjMINVAL, (full * timeconst * second) ** 2), 2 / max(mujoco.mjMINVAL, full * timeconst)
-
-
-def _is_safe(model: mujoco.MjModel) -> bool:
-    """Whether MuJoCo keeps time constants above two steps."""
-    return not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

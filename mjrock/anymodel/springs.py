@@ -7,8 +7,6 @@ resists with up to the sum of |u| times that of each joint.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 
@@ -19,11 +17,10 @@ Owner = tuple[mujoco.mjtObj, int]
 """What holds: a joint, a tendon or an actuator, and its number."""
 
 
-@dataclass(frozen=True)
 class Springs:
-    """The springs and dampers of a model in a pose.
+    """The springs and dampers of a model in its pose.
 
-    Args:
+    Attributes:
         owners: all joints, then the tendons and actuators that have a spring, a damper or dry friction.
         joint_of: the joint of each degree of freedom, shape (nv,).
         joint_k: stiffness of each joint [N/m or N m], shape (njnt,).
@@ -34,19 +31,7 @@ class Springs:
         dry: dry friction of each tendon, and 0 of each actuator, shape (n,).
     """
 
-    owners: tuple[Owner, ...]
-    joint_of: Integers
-    joint_k: Array
-    dof_c: Array
-    stretch: Array
-    k: Array
-    c: Array
-    dof_dry: Array
-    dry: Array
-
-    @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Springs:
-        """Those of a model in its pose."""
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         servo = model.actuator_biastype == int(mujoco.mjtBias.mjBIAS_AFFINE)
         servo_k, servo_c = (np.where(servo, np.maximum(-model.actuator_biasprm[:, n], 0.0), 0.0) for n in (1, 2))
         k = np.concatenate([_first(model.tendon_stiffness, model.ntendon), servo_k])
@@ -60,24 +45,15 @@ class Springs:
         dry = np.concatenate([_first(model.tendon_frictionloss, model.ntendon), np.zeros(model.nu)])
         acts = (k > 0) | (c > 0) | (dry > 0)
         others = [(TENDON, i) for i in range(model.ntendon)] + [(ACTUATOR, i) for i in range(model.nu)]
-        return cls(
-            owners=(*((JOINT, i) for i in range(model.njnt)), *(others[i] for i in np.flatnonzero(acts))),
-            joint_of=np.array(model.dof_jntid, dtype=np.int64),
-            joint_k=_first(model.jnt_stiffness, model.njnt),
-            dof_c=_first(model.dof_damping, model.nv),
-            stretch=stretch[acts],
-            k=k[acts],
-            c=c[acts],
-            dof_dry=_first(model.dof_frictionloss, model.nv),
-            dry=dry[acts],
-        )
+        self.owners: list[Owner] = [(JOINT, i) for i in range(model.njnt)] + [others[i] for i in np.flatnonzero(acts)]
+        self.joint_of = np.array(model.dof_jntid, dtype=np.int64)
+        self.joint_k = _first(model.jnt_stiffness, model.njnt)
+        self.dof_c, self.dof_dry = _first(model.dof_damping, model.nv), _first(model.dof_frictionloss, model.nv)
+        self.stretch, self.k, self.c, self.dry = stretch[acts], k[acts], c[acts], dry[acts]
 
     def along(self, motion: Array) -> tuple[Array, Array]:
-        """What each owner adds to stiffness [N/m] and damping [N s/m] of a contact, shape (owners,).
-
-        Args:
-            motion: velocity of the joints for a unit speed of the contact, shape (nv,).
-        """
+        """What each owner adds to stiffness [N/m] and damping [N s/m] of a contact, shape (owners,), where `motion` is
+        the velocity of the joints for a unit speed of the contact, shape (nv,)."""
         squares, joints = motion**2, len(self.joint_k)
         moved = (self.stretch @ motion) ** 2
         joint_k = self.joint_k * np.bincount(self.joint_of, squares, joints)

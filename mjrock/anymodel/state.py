@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -11,8 +10,6 @@ import numpy as np
 from ..quantities import require_array, require_whole, shown
 
 KEY = mujoco.mjtObj.mjOBJ_KEY
-Pose = tuple[Any, Any]
-"""A keyframe and positions, of which one at most is not None."""
 
 
 def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:
@@ -21,11 +18,7 @@ def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:
 
 
 def keyframe_id(model: mujoco.MjModel, keyframe: object) -> int:
-    """The number of a keyframe that is given by name or number.
-
-    Raises:
-        TypeError, ValueError: with what the model has, if there is none.
-    """
+    """The number of a keyframe given by name or number; TypeError or ValueError with what the model has for none."""
     known = ", ".join(keyframe_names(model)) or "none"
     if isinstance(keyframe, str):
         number = mujoco.mj_name2id(model, KEY, keyframe) if "\0" not in keyframe and keyframe.isprintable() else -1
@@ -40,13 +33,8 @@ def keyframe_id(model: mujoco.MjModel, keyframe: object) -> int:
 def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> mujoco.MjData:
     """The model in a pose, at rest, with its mass matrix, its constraints but for contacts, and its weight.
 
-    Args:
-        model: the model, which is only read.
-        keyframe: name or number of a keyframe.
-        qpos: positions of the joints, shape (nq,). Without either it is `qpos0`.
-
-    Raises:
-        TypeError, ValueError: for a keyframe or positions that the model cannot have, or both.
+    Arguments are those of `Pose`. TypeError or ValueError for a keyframe or positions that the model cannot have, or
+    both.
     """
     if keyframe is not None and qpos is not None:
         raise ValueError(f"keyframe = {shown(keyframe)} and qpos are both given; give one of them")

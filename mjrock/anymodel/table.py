@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from ..quantities import require_within
@@ -22,33 +21,21 @@ VARIES = re.compile(
 """What differs in notes that are alike."""
 
 
-@dataclass(frozen=True)
-class Filter:
-    """Which contacts are shown, by names with the wildcards `*`, `?` and `[...]`.
+def is_of(contact: InspectedContact, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
+    """Whether a contact is of names with the wildcards `*`, `?` and `[...]`.
 
     Args:
-        geoms, bodies: names of geoms and of bodies, of which a contact has at least one; none are all.
-        pair: names of its two geoms or bodies, in any order.
+        contact: the contact.
+        geoms, bodies: names of geoms and of bodies, of which it has at least one; none are all.
+        pair: names of its two geoms or bodies, in any order; None are all.
     """
-
-    geoms: tuple[str, ...] = ()
-    bodies: tuple[str, ...] = ()
-    pair: tuple[str, str] | None = None
-
-    def takes(self, contact: InspectedContact) -> bool:
-        """Whether a contact is shown."""
-        geoms = (contact.geom1, contact.geom2)
-        sides = [{geom, body} for geom, body in zip(geoms, contact.bodies, strict=True)]
-        if self.geoms and not any(_like(geom, pattern) for geom in geoms for pattern in self.geoms):
-            return False
-        if self.bodies and not any(_like(body, pattern) for body in contact.bodies for pattern in self.bodies):
-            return False
-        if self.pair is None:
-            return True
-        return any(
-            all(any(_like(name, pattern) for name in side) for side, pattern in zip(order, self.pair, strict=True))
-            for order in (sides, sides[::-1])
-        )
+    own = contact.geom1, contact.geom2
+    sides = list(zip(own, contact.bodies, strict=True))
+    if (geoms and not _like(own, geoms)) or (bodies and not _like(contact.bodies, bodies)):
+        return False
+    return pair is None or any(
+        all(_like(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
+    )
 
 
 def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:
@@ -90,10 +77,8 @@ def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int |
             f"and {len(found) - len(shown)} more; --all shows them, --geom, --body and --pair choose among them"
         )
     lines.append(f"v is {speed:g} m/s. k loaded carries the static load: the weight of what moves, or --load.")
-    for key, number in numbers.items():
-        others = len(alike[key]) - 1
-        more = f" [and {others} like it]" if others else ""
-        lines.append(f"{number}: {alike[key][0]}{more}")
+    for number, (first, *others) in enumerate(alike.values(), 1):
+        lines.append(f"{number}: {first}" + (f" [and {len(others)} like it]" if others else ""))
     return "\n".join(lines)
 
 
@@ -118,8 +103,9 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
     ]
 
 
-def _like(name: str, pattern: str) -> bool:
-    return name == pattern or fnmatchcase(name, pattern)
+def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:
+    """Whether one of the names is as one of the patterns says."""
+    return any(name == pattern or fnmatchcase(name, pattern) for name in names for pattern in patterns)
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> str:

@@ -1,8 +1,4 @@
-"""The equations of motion of a wall on compliant contacts, written for SciPy.
-
-They share no kinematics with the engine that they check. Each contact point carries f = max(0, -(k r + c dr/dt)) while
-its gap r is negative, so never a tension.
-"""
+"""The equations of motion of a wall on compliant contacts, written for SciPy with kinematics of their own."""
 
 from __future__ import annotations
 
@@ -17,7 +13,6 @@ from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import GRAVITY, Array
-from .dampers import damper_force
 
 
 class Wall:
@@ -112,8 +107,7 @@ class Wall:
     def energy(self, history: Array) -> Array:
         """Kinetic, potential and elastic energy of many states above the wall at rest [J], shape (n,)."""
         rest = np.append(self.rest, np.zeros(3))[None]
-        energy: Array = self._energy(history) - self._energy(rest)
-        return energy
+        return self._energy(history) - self._energy(rest)
 
     def _energy(self, history: Array) -> Array:
         x, z, theta, vx, vz, omega = history.T
@@ -126,8 +120,7 @@ class Wall:
             doubled -= 2 * (fx * (x + pz * sine - px * versine) + fz * (z - px * sine - pz * versine))
         for height, tie in self.ties:
             doubled += tie.stiffness * np.maximum(self._pulled(height, tie, x, z, theta)[0], 0) ** 2
-        energy: Array = doubled / 2
-        return energy
+        return np.asarray(doubled / 2)
 
     def _pulled(self, height: float, tie: Tie, x: Any, z: Any, theta: Any) -> tuple[Any, Any, Any]:
         """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
@@ -135,6 +128,18 @@ class Wall:
         up = z + self.face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
         length = np.hypot(across, up)
         return length - tie.reach, across / length, up / length
+
+    def _damped(self, damper: Damper, y: Array) -> tuple[float, float, float, float]:
+        """Point of a damper from the centroid at rest [m], and its force on the wall [N], x before z each."""
+        x, z, theta, vx, vz, omega = y
+        px, pz = -self.face, damper.height - self.up
+        sine, cosine = math.sin(theta), math.cos(theta)
+        across = damper.length + x + px * (cosine - 1) + pz * sine
+        above = z - px * sine + pz * (cosine - 1)
+        length = math.hypot(across, above)
+        rate_across, rate_above = vx + omega * (pz * cosine - px * sine), vz - omega * (px * cosine + pz * sine)
+        force = -damper.c * (across * rate_across + above * rate_above) / length
+        return px, pz, force * across / length, force * above / length
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:
         """Signed forces of the base points before clipping [N], and their levers about the centroid [m]."""
@@ -178,7 +183,7 @@ class Wall:
             for px, pz, stretched, nx, nz, tie in pulls
             if (pull := tie.stiffness * max(stretched, 0.0)) > 0
         ]
-        applied += [damper_force(damper, self.face, self.up, y) for damper in self.dampers]
+        applied += [self._damped(damper, y) for damper in self.dampers]
         sine, cosine = math.sin(theta), math.cos(theta)
         for px, pz, fx, fz in applied:
             Fx, Fz = Fx + fx, Fz + fz

@@ -19,7 +19,7 @@ from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import GRAVITY
 from ..result.ending import Outcome
 from ..result.response import Response
-from ..result.ties import PLAUSIBLE
+from ..result.ties import PLAUSIBLE, Plastic
 
 Rows = list[tuple[str, ...]]
 """Rows of a table."""
@@ -54,9 +54,8 @@ def of_effects(case: Case) -> Rows:
         said += f"length {tie.length:g} m, strength {tie.strength / 1e3:g} kN, "
         said += "never breaks" if tie.ultimate is None else f"breaks at {1e3 * tie.ultimate:g} mm of yielding"
         rows.append((f"tie_{i}", said))
-    rows += [
-        (f"thrust_{i}", f"{t.force / 1e3:g} kN outwards at {t.height:g} m") for i, t in enumerate(case.each(Thrust))
-    ]
+    for i, thrust in enumerate(case.each(Thrust)):
+        rows.append((f"thrust_{i}", f"{thrust.force / 1e3:g} kN outwards at {thrust.height:g} m"))
     for i, load in enumerate(case.each(Load)):
         rows.append((f"load_{i}", f"{load.force / 1e3:g} kN downwards at {load.height:g} m, x = {load.offset:g} m"))
     for i, damper in enumerate(case.each(Damper)):
@@ -84,15 +83,14 @@ def of_contacts(e: Restitution | None, contacts: Contacts | None) -> Rows:
 
 def of_motions(responses: Sequence[Response]) -> Rows:
     """The ground motions of the responses, each once."""
-    motions: dict[tuple[str, str, str], tuple[str, ...]] = {}
-    for response in responses:
-        for name in ("motion", "vertical"):
-            motion = getattr(response.case, name)
+    rows: Rows = []
+    for case in (response.case for response in responses):
+        for direction, motion in (("horizontal", case.motion), ("vertical", case.vertical)):
             if motion is not None:
                 peak = float(abs(motion.accel).max())
                 said = f"{peak:.4g} m/s² = {peak / GRAVITY:.3g} g, {motion.duration:.4g} s, step {motion.dt:.4g} s"
-                motions[name, motion.name, said] = ("horizontal" if name == "motion" else "vertical", motion.name, said)
-    return list(motions.values())
+                rows.append((direction, motion.name, said))
+    return list(dict.fromkeys(rows))
 
 
 def of_results(responses: Sequence[Response], names: Sequence[str]) -> Rows:
@@ -119,12 +117,10 @@ def of_ties(responses: Sequence[Response], names: Sequence[str]) -> Rows:
     rows: Rows = []
     for response, name in zip(responses, names, strict=True):
         for tie, motion in response.ties.items():
-            drawn = response.plastic.get(tie)
-            yielded = 0.0 if drawn is None else drawn.elongation
-            energy = 0.0 if drawn is None else drawn.energy + drawn.lost
+            drawn = response.plastic.get(tie, Plastic(0.0, 0.0))
+            taken = f"{1e3 * drawn.elongation:.3g} mm", f"{drawn.energy + drawn.lost:.4g} J"
             broke = "-" if motion.broken == float("inf") else f"{motion.broken:.3f} s"
-            force = f"{motion.largest_force / 1e3:.4g} kN"
-            rows.append((name, tie, force, f"{1e3 * yielded:.3g} mm", f"{energy:.4g} J", broke))
+            rows.append((name, tie, f"{motion.largest_force / 1e3:.4g} kN", *taken, broke))
     return rows
 
 
@@ -147,7 +143,8 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
         said.append("There is no ground motion: this is the motion after a release.")
     for response, name in zip(responses, names, strict=True):
         if response.outcome is Outcome.TIME_ENDED:
-            said.append(f"{name}: the wall was still moving when the time ended, at {_share(response):.3g} alpha.")
+            share = abs(float(response.theta[-1])) / float(response.case.wall.alpha)
+            said.append(f"{name}: the wall was still moving when the time ended, at {share:.3g} alpha.")
         for (tie, drawn), effect in zip(response.plastic.items(), response.case.each(Tie), strict=False):
             if effect.ultimate is None and drawn.elongation > PLAUSIBLE * effect.length:
                 said.append(
@@ -157,10 +154,6 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
             elif drawn.broken < float("inf"):
                 said.append(f"{name}: {tie} broke at {drawn.broken:.3f} s.")
     return said
-
-
-def _share(response: Response) -> float:
-    return abs(float(response.theta[-1])) / float(response.case.wall.alpha)
 
 
 def versions() -> Rows:

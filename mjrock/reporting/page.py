@@ -113,12 +113,7 @@ def report(
 
 
 def required_responses(case: Case, responses: object) -> list[Response]:
-    """Responses of walls of the size of a case, at least one.
-
-    Raises:
-        TypeError: if they are none.
-        ValueError: for no response, or one of another wall.
-    """
+    """At least one response, each of a wall of the size of the case; TypeError or ValueError for any other."""
     given = [responses] if isinstance(responses, Response) else responses
     if not isinstance(given, Sequence) or isinstance(given, str):
         raise TypeError(f"responses = {shown(responses)} is no Response and no sequence of them")
@@ -134,12 +129,7 @@ def required_responses(case: Case, responses: object) -> list[Response]:
 
 
 def required_basis(basis: object, known: set[str]) -> dict[str, str]:
-    """What inputs rest on, by their names.
-
-    Raises:
-        TypeError: if it is no mapping of texts.
-        ValueError: for a name that is none of those on the page.
-    """
+    """What inputs rest on, by their names; TypeError for no mapping of texts, ValueError for a name that is unknown."""
     if basis is None:
         return {}
     if not isinstance(basis, Mapping):
@@ -152,22 +142,14 @@ def required_basis(basis: object, known: set[str]) -> dict[str, str]:
 
 
 def required_sections(sections: object) -> dict[str, object]:
-    """Further sections by their headings.
-
-    Raises:
-        TypeError: if they are no mapping of texts.
-    """
+    """Further sections by their headings; TypeError if they are no mapping of texts."""
     if not isinstance(sections, Mapping | None):
         raise TypeError(f"sections = {shown(sections)} is no mapping of headings to texts, figures and results")
     return {require_text("a heading of sections", name): pieces for name, pieces in (sections or {}).items()}
 
 
 def section(name: str, pieces: object) -> list[str]:
-    """A section: texts, figures and the tables of results.
-
-    Raises:
-        TypeError: for anything else.
-    """
+    """A section: texts, figures and the tables of results; TypeError for anything else."""
     parts = [heading(name)]
     for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
         if isinstance(piece, Figure):

@@ -135,6 +135,11 @@ class Analysis:
         return (WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS) + own
 
     @property
+    def law(self) -> str:
+        """The law of the damping, or "restitution" for the analytical solver."""
+        return "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
+
+    @property
     def PEAK(self) -> str:
         """The column that an incremental dynamic analysis gathers; it is infinite for what has overturned."""
         return "peak_over_alpha" if isinstance(self.case, Case) else "largest_rotation_rad"
@@ -165,21 +170,16 @@ class Analysis:
     def _of_wall(self, response: Response) -> tuple[object, ...]:
         """The columns of a wall but the last two."""
         restitution = [float(value) for value in response.restitution[:3]] + [None] * 3
-        law = "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
         peaks = response.peak_over_alpha, response.peak_over_overturning, response.inwards_over_alpha
-        return self.solver, law, response.outcome.value, *peaks, len(response.impacts), *restitution[:3]
+        return self.solver, self.law, response.outcome.value, *peaks, len(response.impacts), *restitution[:3]
 
 
 def _of_ties(response: Response) -> Iterator[float | None]:
     """The columns of ties. A tie that did not yield has an elongation and an energy of zero."""
     for name, tie in response.ties.items():
         drawn = response.plastic.get(name, Plastic(0.0, 0.0))
-        yield from (
-            drawn.elongation,
-            tie.largest_force,
-            drawn.energy + drawn.lost,
-            None if math.isinf(drawn.broken) else drawn.broken,
-        )
+        broken = None if math.isinf(drawn.broken) else drawn.broken
+        yield from (drawn.elongation, tie.largest_force, drawn.energy + drawn.lost, broken)
 
 
 def _of_masonry(response: Response) -> tuple[object, ...]:
@@ -206,7 +206,5 @@ class MasonryAnalysis(Analysis):
 
 def save_history(response: Response, path: Path) -> None:
     """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file."""
-    arrays = {"t": response.t, "theta": response.theta, "omega": response.omega, "energy": response.energy}
-    if response.joints is not None:
-        arrays = {"t": response.t, "pose": response.pose, "velocity": response.velocity, "energy": response.energy}
-    write_arrays(path, **arrays)
+    names = ("theta", "omega") if response.joints is None else ("pose", "velocity")
+    write_arrays(path, **{name: getattr(response, name) for name in ("t", *names, "energy")})

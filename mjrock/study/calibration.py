@@ -1,9 +1,8 @@
 """Calibration of a damping law in the engine: the flowchart of the paper's Figure 2.
 
-For each combination of wall, stiffness and release, and for each restitution that is asked for, a search finds the
-damping ratio whose simulation is closest to the analytical response (`mjrock.study.match`): first two-sided for the
-base, then one-sided for the side with the damping of the base presumed. The matched pairs are regressed on the
-dimensionless groups of `mjrock.problem.damping.forms` (`mjrock.study.regression`).
+For each combination of wall, stiffness and release, and for each restitution that is asked for, a `Match` finds the
+damping ratio: first two-sided for the base, then one-sided for the side with the damping of the base presumed. The
+matched pairs are regressed on the dimensionless groups of `mjrock.problem.damping.forms` (`mjrock.study.regression`).
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.damping.forms import BedLaw, CornerLaw, Form, Groups, SideLaw
+from ..problem.damping.forms import BedLaw, CornerLaw, Form, SideLaw
 from ..problem.damping.law import HIGHEST, LEAST, DampingLaw
 from ..problem.damping.restitution import Restitution
 from ..quantities import keep, require_array, require_kind, require_whole, require_within
@@ -95,7 +94,7 @@ def _housner(combination: Combination) -> float:
 
 
 def _base_damping(combination: Combination, e: Restitution, base: Form) -> float:
-    groups = Groups.of(combination.wall, e, combination.k_base, combination.k_side, combination.amplitude)
+    groups = Match(combination, e).groups
     return float(base.xi(groups, groups.base_loss))
 
 
@@ -106,14 +105,7 @@ def presumed_damping(combination: Combination, e: Restitution, base: Form) -> fl
 
 @dataclass(frozen=True)
 class Calibration:
-    """A fitted law and what it was fitted to.
-
-    Args:
-        law: the law.
-        base, side: its regressions.
-        base_tasks, base_rows: every search for the base, reached or not.
-        side_tasks, side_rows: the same for the side.
-    """
+    """A fitted law, its regressions for base and side, and the tasks and rows of every search, reached or not."""
 
     law: DampingLaw
     base: Regression

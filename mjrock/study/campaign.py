@@ -36,10 +36,10 @@ def campaign(
     Killing a campaign loses only the cases in progress, and the rows of about the last half second. The same call
     carries on from there and does nothing twice that has a row. Warnings that differ in their numbers alone are shown
     once, and the last lines say how often each came. Tasks of the same content and other labels share a row, and a line
-    says so. A task that fails becomes a row with its error, and so
-    does one that calls `sys.exit`, ends its process, or cannot be built, pickled or labelled. The rows do not depend on
-    the order in which tasks finish. Without a terminal a line every 30 s says how far the campaign is. A last line says
-    how many tasks are done, failed and left and how they ended; `python -m mjrock status walls.sqlite` says it later.
+    says so. A task that fails becomes a row with its error, and so does one that calls `sys.exit`, ends its process, or
+    cannot be built, pickled or labelled. The rows do not depend on the order in which tasks finish. Without a terminal
+    a line every 30 s says how far the campaign is. A last line says how many tasks are done, failed and left and how
+    they ended; `python -m mjrock status walls.sqlite` says it later.
 
     Args:
         tasks: `Analysis` objects, a `Grid` of them, or an iterator; they are taken as they are needed.
@@ -135,9 +135,7 @@ def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:
 
 
 def completed(tasks: Iterable[Task], store: str | Path, **options: Any) -> list[Row]:
-    """The rows of the tasks, in the order asked, once a campaign has run those that the store does not hold.
-
-    Options are those of `campaign`.
+    """The rows of the tasks, in the order asked, once a `campaign` with these options has run what the store lacks.
 
     Raises:
         RuntimeError: if a task has failed; its row in the store says how.

@@ -20,18 +20,11 @@ LOOK = 0.2
 class Dispatch:
     """The worker processes of a campaign.
 
-    A process that dies is replaced. If a task ended it, the row of the task says so. If it was killed, the task is run
-    again. After DEATHS deaths it is run while the others wait, in case memory was short. If its process dies again, the
-    row of the task says so.
-
-    Args:
-        run: the campaign.
-        pending: its jobs.
-        count: how many processes.
-        limit: how long a task may take [s]. The process of one that takes longer is ended, and the task gets a failed
-            row. None stands for no limit.
-        script: whether the processes import the script that calls the campaign. Where they do not, tasks that they
-            cannot read for that reason run in this process.
+    One that dies is replaced. If a task ended it, the row of the task says so. If it was killed, the task is run again.
+    After DEATHS deaths it is run while the others wait, in case memory was short. If its process dies again, the row of
+    the task says so. The process of a task that takes longer than the limit [s] is ended, and the task gets a failed
+    row; None stands for no limit. Where the processes do not import the script that calls the campaign, tasks that they
+    cannot read for that reason run in this process.
     """
 
     def __init__(self, run: Runner, pending: Iterator[Job], count: int, limit: float | None, *, script: bool) -> None:
@@ -41,11 +34,7 @@ class Dispatch:
         self.workers: list[Worker] = []
 
     def go(self) -> None:
-        """Run all jobs. Whatever is raised, Ctrl-C included, ends the processes at once.
-
-        Raises:
-            RuntimeError: if processes die as they start.
-        """
+        """Run all jobs. Whatever is raised, Ctrl-C included, ends the processes at once."""
         if not self.look_ahead():
             return
         try:
@@ -133,7 +122,6 @@ class Dispatch:
                 path.unlink(missing_ok=True)
         job.deaths += not overdue
         if overdue:
-            assert self.limit is not None
             row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
             self.run.write([job], [row | {"seconds": self.limit}])
         elif ended or job.deaths > DEATHS:

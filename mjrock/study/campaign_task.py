@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
@@ -91,22 +91,15 @@ def column_names(task: Task) -> tuple[str, ...]:
 def carry_out(task: Task, history: Path | None) -> Row:
     """The row of a task: what it returns, or how it failed; and the seconds that it took."""
     started = time.perf_counter()
-    return checked_row(lambda: task(history), task.COLUMNS) | {"seconds": time.perf_counter() - started}
-
-
-def checked_row(call: Callable[[], Row], columns: Sequence[str]) -> Row:
-    """The row that a call returns, or how it failed.
-
-    Whatever is raised belongs in the row of the case: `sys.exit` in one case does not end the campaign.
-    """
     try:
-        row = {name: _named(f"the column {name}", value) for name, value in call().items()}
-        unexpected = row.keys() - set(columns)
-        if unexpected:
-            raise ValueError(f"the task returned {', '.join(sorted(unexpected))}; its COLUMNS are {', '.join(columns)}")
-        return {"status": "done", **row}
-    except BaseException as error:
-        return failed_row(error)
+        row = {name: _named(f"the column {name}", value) for name, value in task(history).items()}
+        if unexpected := row.keys() - set(task.COLUMNS):
+            names, known = ", ".join(sorted(unexpected)), ", ".join(task.COLUMNS)
+            raise ValueError(f"the task returned {names}; its COLUMNS are {known}")
+        row = {"status": "done", **row}
+    except BaseException as error:  # also `sys.exit` in one case does not end the campaign
+        row = failed_row(error)
+    return row | {"seconds": time.perf_counter() - started}
 
 
 def _named(what: str, value: object) -> Any:

@@ -57,11 +57,7 @@ class Worker:
         self.jobs: list[Any] = []
 
     def send(self, tasks: Sequence[tuple[Task, Path | None]]) -> None:
-        """Hand over tasks to a process that is idle.
-
-        Raises:
-            Exception: whatever pickle raises for a task that it cannot take.
-        """
+        """Hand over tasks to a process that is idle; raises whatever pickle does for a task that it cannot take."""
         content = pickle.dumps(list(tasks))
         with contextlib.suppress(BrokenPipeError, ConnectionError):  # its death shows when rows are received
             self.connection.send_bytes(content)
@@ -69,10 +65,7 @@ class Worker:
     def receive(self) -> list[Row] | Row | None:
         """New rows of the tasks that were sent, in order; one failed row if the list of tasks could not be read.
 
-        None stands for the death of the process.
-
-        Raises:
-            RuntimeError: if the process died as it started.
+        None stands for the death of the process; one that died as it started raises a RuntimeError.
         """
         rows: list[Row] = []
         try:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from ..quantities import Array, Flags, is_iterable, require_row, require_whole, require_within, shown
+from ..quantities import Array, Flags, is_iterable, require_row, require_within, shown
 from ..result.ending import Outcome
-from .fragility import FEWEST_GROUPS, Fragility, labels_of, require_groups
+from .fragility import Fragility, drawn, labels_for, numbered
 
 
 def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
@@ -67,14 +67,10 @@ def fit_capacities(
     engineering, Earthquake Spectra 23(2), method A; the standard deviation with n - 1.
     """
     log_c = _logarithms("capacities", capacities)
-    names, group = _groups(groups, len(log_c))
-    count = require_whole("resamples", resamples, 20, 100_000)
+    names, group = numbered(labels_for(groups, len(log_c)))
     if not log_c.std() > 0:
         raise ValueError("capacities are all equal; a fragility curve needs a spread")
-    draws = np.random.default_rng(require_whole("seed", seed, 0, 2**53)).multinomial(
-        names, np.full(names, 1 / names), size=count
-    )
-    weights = draws[:, group].astype(float)
+    weights = drawn(names, resamples, seed)[:, group].astype(float)
     total = weights.sum(axis=1)
     means = weights @ log_c / total
     squares = np.maximum((weights * (log_c - means[:, None]) ** 2).sum(axis=1) / (total - 1), 0.0)
@@ -143,7 +139,7 @@ def paired_ratio(
     if log_c.shape != log_o.shape:
         raise ValueError(f"over has {len(log_o)} values and capacities {len(log_c)}; they have to be pairs")
     confidence = require_within("confidence", confidence, 0.0, 1.0)
-    names, group = _groups(groups, len(log_c), 2)
+    names, group = numbered(labels_for(groups, len(log_c)), 2)
     ratios = log_c - log_o
     means = np.bincount(group, ratios) / np.bincount(group)
     reach = float(stdtrit(names - 1, 0.5 + 0.5 * confidence)) * means.std(ddof=1) / math.sqrt(names)
@@ -159,13 +155,3 @@ def _logarithms(name: str, values: ArrayLike) -> Array:
     if bad.size:
         raise ValueError(f"{name}[{bad[0]}] = {made[bad[0]]:g} is outside the valid range, which is above 0")
     return np.log(made)
-
-
-def _groups(groups: ArrayLike | None, count: int, least: int = FEWEST_GROUPS) -> tuple[int, NDArray[Any]]:
-    """How many groups there are, and the number of that of each value."""
-    labels = np.arange(count) if groups is None else labels_of(groups)
-    if labels.shape != (count,):
-        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
-    names, group = np.unique(labels, return_inverse=True)
-    require_groups(len(names), least)
-    return len(names), group

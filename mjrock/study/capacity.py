@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import ClassVar
 
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
@@ -19,16 +20,16 @@ GROWTH = 1.25
 a finer ratio misses fewer of such islands."""
 LARGEST, LEAST = 1e3, 1e-6
 """Scales beyond which the search for a bracket gives up, over the scale it starts at [-]."""
-COLUMNS = ("solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "falls_below_g", "runs", "message")
+
+NAMES = ("solver", "law", "capacity_g", "capacity_scale", "stands_at_g", "falls_below_g", "runs", "message")
+"""The columns of a row."""
 
 
 def bracket(falls: Callable[[float], bool], start: float = 1.0, growth: float = GROWTH) -> tuple[float, float]:
     """Two neighbouring scales of which the lower leaves a wall standing and the upper overturns it.
 
-    From `start` the scale goes up by `growth` until the wall falls, or down until it stands.
-
-    Raises:
-        ValueError: if the wall stands at LARGEST times the start, or falls at LEAST times the start.
+    From `start` the scale goes up by `growth` until the wall falls, or down until it stands; ValueError if it stands at
+    LARGEST times the start, or falls at LEAST times the start.
     """
     low = high = start
     if falls(start):
@@ -60,10 +61,9 @@ class Capacity:
     The horizontal and the vertical motion of the case are scaled together. From the scale `start` the search goes up
     by a quarter at a time until the wall falls, or down until it stands, and then halves the interval. Its row has
     `capacity_g`, the peak ground acceleration over g that overturns the wall, `capacity_scale`, the factor on the
-    motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. That is one edge. Where a wall falls
-    at one intensity, stands at a higher one and falls again, `start` decides which. `falls_below_g` is the lowest of
-    `below` weaker intensities, a quarter apart, at which the wall falls too, empty if it stands at all of them; the
-    message then says "Not monotonic". `ida` shows all.
+    motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. Where there are several such edges,
+    `start` decides which it is. `falls_below_g` is the lowest of `below` weaker intensities, a quarter apart, at which
+    the wall falls too, empty if it stands at all of them; the message then says "Not monotonic". `ida` shows all.
 
     Args:
         analysis: the case with its motion, solver and contacts.
@@ -75,6 +75,10 @@ class Capacity:
         TypeError: for what is no `Analysis`.
         ValueError: for a value outside its range, masonry, or a case whose ground does not move.
     """
+
+    COLUMNS: ClassVar[tuple[str, ...]] = NAMES
+    PEAK: ClassVar[str] = "capacity_g"
+    """The column that a study of sensitivity looks at."""
 
     analysis: Analysis
     tolerance: float = 0.01
@@ -103,16 +107,6 @@ class Capacity:
         """The solver of the analysis."""
         return self.analysis.solver
 
-    @property
-    def COLUMNS(self) -> tuple[str, ...]:
-        """The columns of a row."""
-        return COLUMNS
-
-    @property
-    def PEAK(self) -> str:
-        """The column that a study of sensitivity looks at."""
-        return "capacity_g"
-
     def labelled(self, labels: Mapping[str, object]) -> Capacity:
         """The same task with other labels."""
         return replace(self, analysis=replace(self.analysis, labels=labels))
@@ -120,13 +114,10 @@ class Capacity:
     def scaled(self, scale: float) -> Analysis:
         """The analysis with its motions times `scale`."""
         case = self.analysis.case
-        motions = {name: getattr(case, name) for name in ("motion", "vertical")}
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=".* peaks at ", category=UserWarning)  # weak and strong are meant
-            return replace(
-                self.analysis,
-                case=replace(case, **{name: one and one.scaled(scale) for name, one in motions.items()}),
-            )
+            motion, vertical = (ground and ground.scaled(scale) for ground in (case.motion, case.vertical))
+            return replace(self.analysis, case=replace(case, motion=motion, vertical=vertical))
 
     def __call__(self, history: Path | None = None) -> Row:
         """Search, and return the columns of the row; a history is that of the run that overturned the wall."""
@@ -143,11 +134,9 @@ class Capacity:
             self.scaled(high)(history)
         assert self.analysis.case.motion is not None
         peak = self.analysis.case.motion.peak / GRAVITY
-        contacts = self.analysis.contacts
-        law = "restitution" if contacts is None or self.solver == "analytical" else contacts.law
         message = f"The wall overturns at {high * peak:.4g} g and stands at {low * peak:.4g} g."
         lowest = min(weaker) * peak if weaker else None
         if weaker:
             message += f" Not monotonic: it overturns at {', '.join(f'{scale * peak:.4g}' for scale in weaker)} g too."
-        values = self.solver, law, high * peak, high, low * peak, lowest, runs, message
-        return dict(zip(COLUMNS, values, strict=True))
+        values = self.solver, self.analysis.law, high * peak, high, low * peak, lowest, runs, message
+        return dict(zip(self.COLUMNS, values, strict=True))

@@ -146,11 +146,10 @@ def fit_fragility(
     """The lognormal curve of greatest likelihood for runs that overturned or did not.
 
     It is a probit model of the logarithm of the intensity, solved by Newton's method. Runs under one record at several
-    intensities, or in both polarities, are not independent: a wall that stands at 0.5 g stands at 0.4 g too, with few
-    exceptions. Told which record each run belongs to, the fit draws whole records with replacement (the bootstrap over
-    clusters) and repeats itself for every draw. The curve stays the same, its intervals get wider. With few records
-    they are widened once more, as Student's distribution does. Of 90 % intervals from 6, 12 and 40 simulated records
-    91, 91 and 90 % hold the median, 91, 90 and 86 % the dispersion, and 98, 95 and 90 % the probability
+    intensities, or in both polarities, are not independent. Told which record each run belongs to, the fit draws whole
+    records with replacement and repeats itself for every draw. The curve stays the same, its intervals get wider, with
+    few records once more, as Student's distribution does. Of 90 % intervals from 6, 12 and 40 simulated records 91, 91
+    and 90 % hold the median, 91, 90 and 86 % the dispersion, and 98, 95 and 90 % the probability
     (`scripts/studies/fragility_coverage.py`).
 
     Args:
@@ -164,8 +163,8 @@ def fit_fragility(
     Raises:
         TypeError: for intensities that are no real numbers, and results that are neither True nor False.
         ValueError: for an intensity that is not positive, a NaN, a masked value, shapes that differ, fewer than 5
-            groups, or runs that all, or none, overturned, in which a single intensity parts them, so that no curve is
-            more likely than a step, or which overturn the less the stronger the motion is.
+            groups, or runs of which all or none overturned, which a single intensity parts, or which overturn the less
+            the stronger the motion is.
 
     Source: Baker (2015), Efficient analytical fragility function fitting, Earthquake Spectra 31(1); for the bootstrap
     over clusters, Field and Welsh (2007), J. R. Stat. Soc. B 69(3).
@@ -173,7 +172,13 @@ def fit_fragility(
     x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
     fit = _likeliest(x, fell)
-    _warn_beyond(fit.median, fit.tried)
+    low, high = fit.tried
+    if not low <= fit.median <= high:
+        warnings.warn(
+            f"the median {fit.median:.4g} is extrapolated: the intensities tried are {low:.4g} to {high:.4g}; run "
+            "intensities around it",
+            stacklevel=2,
+        )
     if groups is None:
         return fit
     labels = labels_of(groups)
@@ -181,22 +186,19 @@ def fit_fragility(
         raise ValueError(
             f"groups has the shape {labels.shape} and intensity {x.shape}; both need one row of equal length"
         )
-    names, group = np.unique(labels, return_inverse=True)
-    require_groups(len(names))
-    count, shares = require_whole("resamples", resamples, 20, 100_000), np.full(len(names), 1 / len(names))
-    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
-    draws = rng.multinomial(len(names), shares, size=count)
-    at_once = max(1, MOST_VALUES // len(x))
+    names, group = numbered(labels)
+    draws = drawn(names, resamples, seed)
+    count, at_once = len(draws), max(1, MOST_VALUES // len(x))
     fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
     curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(number for _, number in fits)
     curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
         warnings.warn(
-            f"{without} of {count} resamples of {len(names)} groups gave no curve, only a step; a penalised fit stands "
+            f"{without} of {count} resamples of {names} groups gave no curve, only a step; a penalised fit stands "
             "for them, and the band is wide: run intensities between those tried, or more records",
             stacklevel=2,
         )
-    return replace(fit, groups=len(names), resamples=curves, without_curve=without)
+    return replace(fit, groups=names, resamples=curves, without_curve=without)
 
 
 def _likeliest(x: Array, fell: Flags) -> Fragility:
@@ -217,22 +219,8 @@ def _likeliest(x: Array, fell: Flags) -> Fragility:
     )
 
 
-def _warn_beyond(median: float, tried: tuple[float, float]) -> None:
-    """Warn of a median that lies beyond the intensities that were tried."""
-    if not tried[0] <= median <= tried[1]:
-        warnings.warn(
-            f"the median {median:.4g} is extrapolated: the intensities tried are {tried[0]:.4g} to {tried[1]:.4g}; run "
-            "intensities around it",
-            stacklevel=3,
-        )
-
-
 def _flags(overturned: ArrayLike) -> Flags:
-    """Whether each run overturned.
-
-    Raises:
-        TypeError, ValueError: unless each value is True or False, or 1 or 0.
-    """
+    """Whether each run overturned; TypeError or ValueError unless each value is True or False, or 1 or 0."""
     takes = "whether each run overturned: True or False, or 1 or 0; lost(rows) makes it of the rows of a campaign"
     values = require_plain("overturned", overturned, takes, "biuf")
     unclear = np.flatnonzero((values != 0) & (values != 1))
@@ -241,21 +229,34 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
-def require_groups(count: int, least: int = FEWEST_GROUPS) -> None:
-    """Raise ValueError for fewer groups than an interval can be drawn from."""
-    if count < least:
+def numbered(labels: NDArray[Any], least: int = FEWEST_GROUPS) -> tuple[int, NDArray[Any]]:
+    """How many groups there are, and the number of that of each value; ValueError for too few for an interval."""
+    names, group = np.unique(labels, return_inverse=True)
+    if len(names) < least:
         raise ValueError(
-            f"groups names {count} groups; the valid range is {least} or more: fewer give no interval that can be "
+            f"groups names {len(names)} groups; the valid range is {least} or more: fewer give no interval that can be "
             "trusted. Run more records, or report the single values and their range"
         )
+    return len(names), group
+
+
+def drawn(groups: int, resamples: int, seed: int) -> NDArray[Any]:
+    """How often each resample holds each group, drawn with replacement, shape (resamples, groups)."""
+    count = require_whole("resamples", resamples, 20, 100_000)
+    rng = np.random.default_rng(require_whole("seed", seed, 0, 2**53))
+    return rng.multinomial(groups, np.full(groups, 1 / groups), size=count)
+
+
+def labels_for(groups: ArrayLike | None, count: int) -> NDArray[Any]:
+    """What each of so many values belongs to, see `labels_of`; None takes each as a group of its own."""
+    labels = np.arange(count) if groups is None else labels_of(groups)
+    if labels.shape != (count,):
+        raise ValueError(f"groups has the shape {labels.shape}; ({count},) is needed")
+    return labels
 
 
 def labels_of(groups: ArrayLike) -> NDArray[Any]:
-    """What each run belongs to.
-
-    Raises:
-        TypeError, ValueError: unless they are all text or all numbers, without NaN.
-    """
+    """What each run belongs to; TypeError or ValueError unless they are all text or all numbers, without NaN."""
     takes = "the name or the number of the group of each run"
     labels = require_plain("groups", groups, takes, "biufU")
     if labels.dtype.kind == "U" and not all(isinstance(label, str) for label in np.asarray(groups, dtype=object).flat):

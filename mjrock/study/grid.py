@@ -71,11 +71,7 @@ class Grid(Sequence[Any]):
 
 
 def labelled(task: Any, labels: Mapping[str, object]) -> Any:
-    """The task with these labels; its own count where both have one of a name.
-
-    Raises:
-        TypeError: for what is no task.
-    """
+    """The task with these labels; its own count where both have one of a name. TypeError for what is no task."""
     if not hasattr(task, "labels"):
         raise TypeError(f"build gives {shown(task)}, which is no task of a campaign, such as an Analysis")
     labels = dict(labels) | dict(task.labels)

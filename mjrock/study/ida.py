@@ -18,7 +18,7 @@ from .campaign import completed
 from .campaign_task import Row
 from .capacities import lost
 from .capacity import bracket, halved
-from .fragility import Fragility, fit_fragility, labels_of
+from .fragility import Fragility, fit_fragility, labels_for
 
 Build = Callable[[float], Analysis]
 
@@ -61,9 +61,7 @@ class IncrementalAnalysis:
         Raises:
             TypeError, ValueError: as `fit_fragility`, and for groups of another number.
         """
-        own = np.arange(len(self.records)) if groups is None else labels_of(groups)
-        if own.shape != (len(self.records),):
-            raise ValueError(f"groups has the shape {own.shape}; ({len(self.records)},) is needed")
+        own = labels_for(groups, len(self.records))
         used = self.scales > 0
         fell = np.array([lost(rows) for rows in self.rows]).reshape(self.peaks.shape)[:, used]
         levels = self.scales[used]
@@ -77,8 +75,7 @@ class IncrementalAnalysis:
         Shares are 0 to 100 [%].
         """
         levels = [require_within(f"shares[{i}]", share, 0.0, 100.0, "%") for i, share in enumerate(shares)]
-        peaks: Array = np.percentile(self.peaks, levels, axis=0, method="nearest")
-        return peaks
+        return np.asarray(np.percentile(self.peaks, levels, axis=0, method="nearest"))
 
     def __repr__(self) -> str:
         fell = np.isfinite(self.capacity)
@@ -184,11 +181,7 @@ def _peak(build: Build, scale: float) -> float:
 
 
 def built(build: Build, scale: float, name: str) -> Analysis:
-    """The analysis that a function makes of a scale.
-
-    Raises:
-        TypeError: that names the function, unless it is one and returns an `Analysis`.
-    """
+    """The analysis that a function makes of a scale; TypeError with its name unless it returns an `Analysis`."""
     if not callable(build):
         raise TypeError(f"{name} = {shown(build)} is no function of a scale")
     with warnings.catch_warnings():

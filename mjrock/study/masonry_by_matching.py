@@ -1,10 +1,6 @@
 """Damping matched to a stack: rocking as one, it loses at an impact what rocking theory says.
 
-On the damping that a law gives each joint, two things make a stack lose more than its wall. Its blocks vibrate on the
-joints above the base, which open and close at every impact, and what vibrates is lost. With strong dashpots these
-joints stay closed, as they do in the rigid impact, and one that opens still loses what the rigid impact does. And all
-joints give way under the weight, in series, which costs more than one joint of that stiffness does. The dashpots of the
-base make up for it.
+`docs/impacts.md` says why it loses more on the damping that a law gives each joint.
 """
 
 from __future__ import annotations
@@ -95,10 +91,10 @@ def matched_masonry(
         return rebound(damped(masonry), amplitude, accuracy)
 
     if abs(excess(base(TOUCH_DOWN / pile.wall.slenderness), e.base)) > CLOSE:
-        xi[pile.base] = _matched("base", highest_branch(base, e.base, BASE_BOUNDS), e.base).xi
+        xi[pile.base] = _matched("base", highest_branch(base, e.base, BASE_BOUNDS), e.base)
     if pile.sides:
         lumped = abs(e.lumped)
-        xi[list(pile.sides)] = _matched("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped).xi
+        xi[list(pile.sides)] = _matched("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped)
     return damped(masonry)
 
 
@@ -137,12 +133,12 @@ def excess(obtained: float, target: float) -> float:
     return (target**2 - obtained**2) / max(1 - target**2, 1e-9)
 
 
-def _matched(name: str, closest: Found, target: float) -> Found:
-    """The match, with a warning where it is missed."""
+def _matched(name: str, closest: Found, target: float) -> float:
+    """The damping ratio that is matched, with a warning where the match is missed."""
     if abs(excess(closest.value, target)) > MISSED:
         warnings.warn(
             f"no damping of the {name} gives |e| = {target:.4g}; the closest, xi = {closest.xi:.3g}, gives "
             f"{closest.value:.4g} and loses {1 + excess(closest.value, target):.3g} of the energy that is to be lost",
             stacklevel=3,
         )
-    return closest
+    return closest.xi

@@ -1,17 +1,13 @@
-"""Matches of damping to restitution in the engine: the search loop of the paper's Figure 2.
-
-For a wall, its interfaces and a restitution that is asked for, a search finds the damping ratio whose simulation is
-closest to the analytical response: two-sided for the base (`Match` without `xi_base`), one-sided for the side with the
-damping of the base presumed.
-"""
+"""Matches of damping to restitution in the engine: the search loop of the paper's Figure 2, see `Match`."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from functools import cache
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -178,10 +174,10 @@ class Match:
         return simulate(self._case(quarters), contacts, accuracy=self.accuracy)
 
     def _case(self, quarters: float) -> Case:
-        wall = self.combination.wall
-        quarter = math.acosh(1 / (1 - self.combination.amplitude)) / wall.p
-        theta0 = self.combination.amplitude * wall.alpha
-        return Case(wall, theta0, quarters * quarter, side_stop=self.xi_base is not None and self.combination.side_stop)
+        wall, amplitude = self.combination.wall, self.combination.amplitude
+        duration = quarters * (math.acosh(1 / (1 - amplitude)) / wall.p)
+        side_stop = self.xi_base is not None and self.combination.side_stop
+        return Case(wall, amplitude * wall.alpha, duration, side_stop=side_stop)
 
     def restitution(self, xi: float) -> float:
         """|e| of the first rebound with damping ratio `xi`; 0 where the wall does not rock again."""
@@ -247,15 +243,7 @@ def highest_branch(
     fall again the branch of high damping has ended, and what lies below is not looked at. Without `whole` it stops
     looking where the target is passed, and `highest` is what it has seen.
     """
-    known: dict[float, float] = {}
-
-    def at(log_xi: float) -> float:
-        if log_xi not in known:
-            known[log_xi] = measure(math.exp(log_xi))
-        return known[log_xi]
-
-    low, high = (math.log(bound) for bound in bounds)
-    grid = np.linspace(high, low, 1 + math.ceil((high - low) / math.log(SCAN))).tolist()
+    at, grid = _searched(measure, bounds)
     bottom = top = grid[0]
     for here in grid[1:]:
         if at(here) < at(top) and at(top) > at(bottom):
@@ -268,28 +256,26 @@ def highest_branch(
     lowest, highest = at(bottom), at(top)
     if not lowest < target <= highest:
         best = top if target > highest else bottom
-        return Found(False, math.exp(best), at(best), lowest, highest, len(known))
+        return Found(False, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
     best = float(brentq(lambda log_xi: at(log_xi) - target, top, bottom, xtol=XI_TOLERANCE))
     reached = abs(at(best) / target - 1) < E_TOLERANCE  # a wall that no longer rocks drops to 0 from one xi to the next
-    return Found(reached, math.exp(best), at(best), lowest, highest, len(known))
+    return Found(reached, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
 
 
 def least_difference(measure: Callable[[float], float], bounds: tuple[float, float]) -> Found:
     """The damping ratio at which `measure`, a difference, is least; not reached where that is at a bound."""
-    known: dict[float, float] = {}
-
-    def at(log_xi: float) -> float:
-        known[log_xi] = measure(math.exp(log_xi))
-        return known[log_xi]
-
-    low, high = (math.log(bound) for bound in bounds)
-    grid = np.linspace(high, low, 1 + math.ceil((high - low) / math.log(SCAN))).tolist()
+    at, grid = _searched(measure, bounds)
     values = [at(here) for here in grid]
     i = int(np.argmin(values))
-    best = grid[i]
-    inside = 0 < i < len(grid) - 1
+    best, inside = grid[i], 0 < i < len(grid) - 1
     if inside:
         minimum = minimize_scalar(at, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
-        best = min(known, key=lambda log_xi: known[log_xi])
-        inside = bool(minimum.success)
-    return Found(inside, math.exp(best), known[best], min(values), max(values), len(known))
+        best, inside = min(grid[i], float(minimum.x), key=at), bool(minimum.success)
+    return Found(inside, math.exp(best), at(best), min(values), max(values), at.cache_info().currsize)
+
+
+def _searched(measure: Callable[[float], float], bounds: tuple[float, float]) -> tuple[Any, list[float]]:
+    """The measure over ln xi, which remembers what it has simulated, and the grid on which a search goes down."""
+    low, high = (math.log(bound) for bound in bounds)
+    grid = np.linspace(high, low, 1 + math.ceil((high - low) / math.log(SCAN))).tolist()
+    return cache(lambda log_xi: measure(math.exp(log_xi))), grid

@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
 
 from tqdm import tqdm
 
@@ -19,10 +18,7 @@ EVERY = 30.0
 class Progress:
     """How far a campaign is, on the standard error. Use it in a `with` statement.
 
-    Args:
-        store: the store of the campaign.
-        kept: how many rows it holds already.
-        total: how many tasks there are, or None if nobody knows.
+    `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows.
     """
 
     def __init__(self, store: Path, kept: int, total: int | None) -> None:
@@ -72,7 +68,5 @@ class Progress:
     def __enter__(self) -> Progress:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.bar.close()

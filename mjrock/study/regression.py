@@ -70,12 +70,6 @@ def well_matched(row: Mapping[str, Any]) -> bool:
     return bool(row["lowest"] + width <= row["found"] <= row["highest"] - width)
 
 
-def _folds(combinations: Sequence[Combination], folds: int) -> NDArray[np.int64]:
-    """The fold that each pair belongs to; those of one combination belong to the same, shape (n,)."""
-    place = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
-    return np.array([place[combination] % folds for combination in combinations])
-
-
 def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int = 10) -> Regression:
     """Fit a form to the matches that were reached, by least squares on ln xi, robust (soft L1) beyond 10 %.
 
@@ -99,7 +93,9 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
     groups = Groups.stack([task.groups for task, _ in reached])
     loss = np.array([task.loss for task, _ in reached])
     xi = np.array([row["xi"] for _, row in reached])
-    fold = _folds([task.combination for task, _ in reached], folds)
+    combinations = [task.combination for task, _ in reached]
+    place = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
+    fold = np.array([place[combination] % folds for combination in combinations])
     start = np.array(STARTS[form])
     bounds = BASE_BOUNDS if tasks[0].xi_base is None else SIDE_BOUNDS
     if form is PowerLaw:
@@ -107,13 +103,11 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
 
     def predict(values: Array) -> Array:
         fitted: Form = form(*values, r_squared=math.nan)
-        held: Array = np.clip(fitted.xi(groups, loss), *bounds)
-        return held
+        return np.asarray(np.clip(fitted.xi(groups, loss), *bounds))
 
     def fit(kept: NDArray[np.bool_], begin: Array) -> Any:
         def residuals(values: Array) -> Array:
-            ratio: Array = np.log(predict(values) / xi)
-            return ratio[kept]
+            return np.asarray(np.log(predict(values) / xi)[kept])
 
         return least_squares(residuals, begin, x_scale=np.abs(start), loss="soft_l1", f_scale=0.1)
 
@@ -131,7 +125,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
         xi=xi,
         predicted=predicted,
         groups=groups,
-        combinations=[task.combination for task, _ in reached],
+        combinations=combinations,
         loss=loss,
         logarithmic=r_squared(np.log(predicted), np.log(xi)),
         held_out=r_squared(unseen, xi),

@@ -65,8 +65,13 @@ class Sensitivity:
         """
         if setting not in self.settings:
             raise ValueError(f"setting = {shown(setting)} is none of {', '.join(self.settings)}")
-        own = [value for value, names in zip(self.values, self.changed, strict=True) if names in ((), (setting,))]
-        return float(min(own)), float(max(own))
+        own = self._alone(setting)
+        return min(own), max(own)
+
+    def _alone(self, setting: str) -> list[float]:
+        """The values of the base and of the runs in which this setting alone changes."""
+        runs = zip(self.values.tolist(), self.changed, strict=True)
+        return [value for value, names in runs if names in ((), (setting,))]
 
     @property
     def swings(self) -> dict[str, tuple[float, float]]:
@@ -74,15 +79,10 @@ class Sensitivity:
 
         def width(name: str) -> tuple[bool, float]:
             low, high = self.swing(name)
-            return low < high == math.inf, self._widest(name) if high == math.inf else high - low
+            finite = [value for value in self._alone(name) if math.isfinite(value)]
+            return low < high == math.inf, max(finite, default=0.0) - min(finite, default=0.0)
 
         return {name: self.swing(name) for name in sorted(self.settings, key=width, reverse=True)}
-
-    def _widest(self, setting: str) -> float:
-        """The widest finite change that a setting makes alone."""
-        own = [v for v, names in zip(self.values, self.changed, strict=True) if names in ((), (setting,))]
-        finite = [value for value in own if math.isfinite(value)]
-        return max(finite, default=0.0) - min(finite, default=0.0)
 
     @property
     def governs(self) -> str | None:
@@ -166,11 +166,9 @@ def sensitivity(
     for point in points:
         tasks.append(labelled(build(**point), {name: label_of(point[name]) for name in vary}))
     column = _column(tasks[0], measure)
-    if store is None:
-        with TemporaryDirectory() as folder:
-            rows = completed(tasks, Path(folder) / "sensitivity.sqlite", **options)
-    else:
-        rows = completed(tasks, require_path("store", store), **options)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "sensitivity.sqlite" if store is None else require_path("store", store)
+        rows = completed(tasks, path, **options)
     for row in rows:
         if isinstance(row[column], str) or row[column] is None:
             raise ValueError(f"measure = {column!r} is {row[column]!r} in a row; it has to be a number")

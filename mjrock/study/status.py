@@ -15,9 +15,8 @@ ERRORS = 3
 
 def counted(outcomes: Mapping[str, int]) -> str:
     """How many cases ended in each way, the most frequent first."""
-    return ", ".join(
-        f"{number} {name}" for name, number in sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
-    )
+    ordered = sorted(outcomes.items(), key=lambda pair: (-pair[1], pair[0]))
+    return ", ".join(f"{number} {name}" for name, number in ordered)
 
 
 def closing(
@@ -25,11 +24,8 @@ def closing(
 ) -> str:
     """The last line of a campaign.
 
-    Args:
-        kept: tasks that had a row already.
-        statuses, outcomes: how many of the others are done or failed, and how they ended.
-        seconds: how long the campaign took [s].
-        total: how many tasks there are, or None if nobody knows.
+    It says how many tasks had a row and were kept, how many of the others are done or failed and how they ended, how
+    long that took [s], and how many of the total are left, None if nobody knows.
     """
     rows = kept + sum(statuses.values())
     of = "" if total is None else f" of {total}"
@@ -65,11 +61,7 @@ def status(path: str | Path) -> str:
 
 
 def answer(argv: Sequence[str]) -> str:
-    """The status of the store that is named.
-
-    Raises:
-        ValueError, OSError: as `Store`.
-    """
+    """The `status` of the store that is named."""
     parser = argparse.ArgumentParser("python -m mjrock status", description=__doc__)
     parser.add_argument("store", help="the SQLite file of a campaign")
     return status(parser.parse_args(argv).store)

@@ -7,7 +7,6 @@ import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from ..quantities import require_path, spelt
@@ -27,17 +26,9 @@ CHECKSUM = "checksum"
 """The column with the checksum of a row, which is verified and left out when the row is read."""
 UNREADABLE = (sqlite3.Error, UnicodeError, OverflowError)
 """What reading a damaged file raises."""
-ENVIRONMENT = frozenset(
-    (
-        sqlite3.SQLITE_BUSY,
-        sqlite3.SQLITE_CANTOPEN,
-        sqlite3.SQLITE_FULL,
-        sqlite3.SQLITE_IOERR,
-        sqlite3.SQLITE_LOCKED,
-        sqlite3.SQLITE_NOMEM,
-        sqlite3.SQLITE_PERM,
-        sqlite3.SQLITE_READONLY,
-    )
+ENVIRONMENT = tuple(
+    getattr(sqlite3, f"SQLITE_{name}")
+    for name in ("BUSY", "CANTOPEN", "FULL", "IOERR", "LOCKED", "NOMEM", "PERM", "READONLY")
 )
 """Errors of SQLite that the disk, the system or another process causes. All others say that the file is damaged."""
 
@@ -153,18 +144,14 @@ class Store:
     def __enter__(self) -> Store:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def close(self) -> None:
         """Close the file."""
         if hasattr(self, "_rows"):
-            with contextlib.suppress(
-                sqlite3.Error
-            ):  # every row is committed; the journal is taken up at the next opening
-                self._rows.close()
+            with contextlib.suppress(sqlite3.Error):
+                self._rows.close()  # every row is committed; the journal is taken up at the next opening
         if self._lock is not None:
             with contextlib.suppress(OSError):  # Windows deletes it as it is released; the file may stay
                 os.unlink(self._lock.lock_file)

@@ -13,11 +13,8 @@ Value = str | int | float | None
 
 
 def plain(value: object) -> Value:
-    """A value as a table holds it: text, a 64-bit integer, a float or None. NaN becomes None, a truth value 0 or 1.
-
-    Raises:
-        ValueError: for anything else.
-    """
+    """A value as a table holds it: text, a 64-bit integer, a float or None; NaN becomes None, a truth value 0 or 1.
+    ValueError for anything else."""
     if isinstance(value, np.generic):
         value = value.item()
     if value is None:
@@ -26,9 +23,9 @@ def plain(value: object) -> Value:
         if not value.isascii() and value.encode("utf-8", "ignore").decode() != value:
             raise ValueError(f"{shown(value)} is text that UTF-8 cannot hold")
         return str(value)
-    elif isinstance(value, float):
+    if isinstance(value, float):
         return None if value != value else float(value)
-    elif isinstance(value, int):
+    if isinstance(value, int):
         if -(2**63) <= value < 2**63:
             return int(value)
         raise ValueError(f"{shown(value)} is outside the valid range of an integer, -2**63 to 2**63 - 1")

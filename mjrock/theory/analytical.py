@@ -150,11 +150,10 @@ def _with_ties(case: Case, motion: Motion, t: Array, theta: Array) -> tuple[Arra
     times, yielded = motion.plastic
     plastic, ends = np.empty((len(t), len(case.pulls))), {}
     for i, (pull, elongation) in enumerate(zip(case.pulls, yielded.T, strict=True)):
-        drawn, broken = np.where(np.isinf(elongation), pull.ultimate, elongation), np.flatnonzero(np.isinf(elongation))
-        plastic[:, i], gone = np.interp(t, times, drawn), float(drawn[-1])
-        ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength if gone else 0.0)
-        if broken.size:
-            when = float(times[broken[0]])
-            plastic[t >= when, i] = np.inf
-            ends[f"tie_{i}"] = Plastic(gone, gone * pull.strength, when, lost(pull))
+        broken = np.isinf(elongation)
+        drawn, when = np.where(broken, pull.ultimate, elongation), float(times[broken].min(initial=math.inf))
+        plastic[:, i], gone = np.where(t >= when, np.inf, np.interp(t, times, drawn)), float(drawn[-1])
+        ends[f"tie_{i}"] = Plastic(
+            gone, gone * pull.strength if gone else 0.0, when, lost(pull) if broken.any() else 0.0
+        )
     return stored(case.pulls, theta, plastic), ends

@@ -74,16 +74,9 @@ class Room(NamedTuple):
     peaks: Array
     counts: Integers
 
-    @classmethod
-    def empty(cls) -> Room:
-        """Room for CHUNK knots."""
-        few = CHUNK // 4
-        return cls(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64))
-
-    def filled(self) -> tuple[Array, Array, Array]:
+    def filled(self) -> tuple[Array, ...]:
         """Copies of the parts that are filled."""
-        knots, impacts, peaks = self.counts
-        return self.knots[:knots].copy(), self.impacts[:impacts].copy(), self.peaks[:peaks].copy()
+        return tuple(array[:count].copy() for array, count in zip(self[:3], self.counts, strict=True))
 
 
 @jitable
@@ -154,10 +147,8 @@ def noted(room: Room, t: float, theta: float, omega: float) -> None:
 def met(room: Room, law: Law, rules: Rules, t: float, side: float, omega: float) -> float:
     """Write an impact, and return the angular velocity after it."""
     impact, leaving = room.impacts[room.counts[1]], math.copysign(1.0, rules.e * omega)
-    arriving, departing = (
-        (law.outer if side > 0 else law.inner).inertia,
-        (law.outer if leaving > 0 else law.inner).inertia,
-    )
+    arriving = (law.outer if side > 0 else law.inner).inertia
+    departing = (law.outer if leaving > 0 else law.inner).inertia
     after = rules.e * omega * math.sqrt(arriving / departing)
     impact[0], impact[1], impact[2] = t, omega, after
     impact[3], impact[4] = 0.5 * arriving * omega * omega, 0.5 * departing * after * after
@@ -216,25 +207,20 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, 
 
 
 def rock_forced(case: Case, e: float, least: float, rtol: float) -> Motion:
-    """Rocking over a shaken base, or with ties.
-
-    Args:
-        case: the wall, its release and its effects.
-        e: restitution of an impact [-], negative where the wall leaves to the side that it came from.
-        least: an impact that leaves less energy than this leaves the wall at rest [J].
-        rtol: sets the longest step, see NYSTROEM.
-    """
+    """Rocking over a shaken base, or with ties; `e` and `least` as in `rock_freely`, `rtol` sets the longest step, see
+    NYSTROEM."""
     law = Law.of(case)
     rules = Rules(case.one_sided, e, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = Clock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
         take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
-    room, parts = Room.empty(), []
+    few = CHUNK // 4
+    room, parts = Room(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64)), []
     while not clock.ended:
         room.counts[:] = 0
         clock = Clock(*forced_loop(law, rules, clock, room))
         parts.append(room.filled())
-    knots, impacts, peaks = parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
+    knots, impacts, peaks = map(np.concatenate, zip(*parts, strict=True))
     t, theta, omega = np.ascontiguousarray(knots.T)
 
     def sample(times: Array) -> tuple[Array, Array]:

@@ -5,16 +5,15 @@
 s = +1 or -1 the side to which the wall rocks, and P and Q the restoring moment of its weight, loads and thrusts about
 the toe of that side. Without effects this is -p^2 sin(s alpha - theta).
 
-An arc ends where the wall turns (omega = 0), meets the upright position
-(theta = 0), lies on its face, or where the time is over. It is split where the wall turns, so that each of these events
-is crossed once, from a state that is clearly on one side of it.
+An arc ends where the wall turns (omega = 0), meets the upright position (theta = 0), lies on its face, or where the
+time is over. Each event is crossed once, from a state that is clearly on one side of it.
 """
 
 from __future__ import annotations
 
-import enum
 import math
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -24,16 +23,8 @@ from ..quantities import ON_ITS_FACE, Array
 from ..result.rocking import Impact
 from .motion import Motion
 
-
-class Event(enum.Enum):
-    """How an arc ended."""
-
-    PEAK = "omega = 0"
-    IMPACT = "theta = 0"
-    FALL = "on its face"
-    TIME = "the time is over"
-
-
+Event = Literal["peak", "impact", "fall", "time"]
+"""How an arc ended."""
 State = tuple[float, float, float]
 """Time [s], rotation [rad], angular velocity [rad/s]."""
 
@@ -54,11 +45,7 @@ class Arcs:
         self.known: list[tuple[float, float, Callable[[Array], Array]]] = []
 
     def advance(self, state: State, s: float) -> tuple[State, Event]:
-        """Follow the wall from `state` to the next event.
-
-        Raises:
-            RuntimeError: if the integration fails.
-        """
+        """Follow the wall from `state` to the next event; RuntimeError if the integration fails."""
         moment, inertia = self.restoring.towards(s), self.wall.inertia_about(s)
         P, Q = moment.P / inertia, moment.Q / inertia
 
@@ -85,10 +72,10 @@ class Arcs:
         t, theta, omega = float(arc.t[-1]), *map(float, arc.y[:, -1])
         self.known.append((state[0], t, arc.sol))
         if arc.t_events[1].size:
-            return (t, theta, omega), Event.FALL
+            return (t, theta, omega), "fall"
         if not arc.t_events[0].size:
-            return (t, theta, omega), Event.TIME
-        return ((t, theta, 0.0), Event.PEAK) if turns else ((t, 0.0, omega), Event.IMPACT)
+            return (t, theta, omega), "time"
+        return ((t, theta, 0.0), "peak") if turns else ((t, 0.0, omega), "impact")
 
     def sample(self, t: Array) -> tuple[Array, Array]:
         """Rotation and velocity at any times. They are zero between the arcs."""
@@ -109,20 +96,18 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
             side that it came from.
         least: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol, atol: tolerances of the integration, on rotation [rad] and velocity [rad/s].
-
-    Raises:
-        RuntimeError: if the integration fails.
     """
     arcs = Arcs(case, rtol, atol)
-    state, s, event = (0.0, case.theta0, case.omega0), case.direction, Event.TIME
+    state, s = (0.0, case.theta0, case.omega0), case.direction
+    event: Event = "time"
     impacts: list[Impact] = []
     peaks: list[float] = []
     at_rest = case.release_energy == 0
-    while state[0] < case.duration and not at_rest and event is not Event.FALL:
+    while state[0] < case.duration and not at_rest and event != "fall":
         state, event = arcs.advance(state, s)
-        if event is Event.PEAK:
+        if event == "peak":
             peaks.append(abs(state[1]))
-        elif event is Event.IMPACT:
+        elif event == "impact":
             arriving, leaving = case.wall.inertia_about(s), case.wall.inertia_about(math.copysign(1.0, e * state[2]))
             before, after = state[2], e * state[2] * math.sqrt(arriving / leaving)
             impacts.append(Impact(state[0], before, after, 0.5 * arriving * before**2, 0.5 * leaving * after**2))
@@ -133,7 +118,7 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
         peaks=np.array(peaks),
         t=state[0],
         theta=0.0 if at_rest else state[1],
-        fell=event is Event.FALL,
+        fell=event == "fall",
         at_rest=at_rest,
         sample=arcs.sample,
         arcs=len(arcs.known),

@@ -129,22 +129,17 @@ def as_one(pile: Pile) -> Restitution:
 def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple[Array, Array, Array]:
     """The velocity after, the impulses across the ends of each joint and those along it.
 
-    Velocities are those of the blocks times the root of their mass. A rough joint is held unless both of its ends open.
-    Which do is known after the impact only. A held joint that opens is let go, once, and one that closes is held.
-
-    Args:
-        before: velocity before the impact, shape (n,).
-        opens: rates of opening at the two ends of the joints, shape (2 joints, n).
-        slips: rates of slip of the joints, shape (joints, n).
-        rough: which joints have friction, shape (joints,).
+    Velocities are those of the blocks times the root of their mass, shape (n,). Rates of opening are at the two ends of
+    the joints, shape (2 joints, n), those of slip have the shape (joints, n). A joint that is rough, with friction, is
+    held unless both of its ends open. Which do is known after the impact only. A held joint that opens is let go, once,
+    and one that closes is held.
     """
     sizes = np.linalg.norm(slips, axis=1)
     rate = NOTHING * float(np.linalg.norm(before)) * sizes  # of a joint that stays closed
     impulse = NOTHING * float(np.linalg.norm(before)) / sizes  # of a joint that changes nothing
 
     def closed_in(velocity: Array) -> Flags:
-        flags: Flags = (opens @ velocity).reshape(-1, 2).min(axis=1) <= rate
-        return flags
+        return (opens @ velocity).reshape(-1, 2).min(axis=1) <= rate
 
     held, parted = rough & closed_in(before), np.zeros_like(rough)
     while True:

@@ -32,7 +32,10 @@ def test_a_specification_is_compiled_once(monkeypatch):
     spec = mujoco.MjSpec.from_string(ROBOT)
     asked = {("foot*", "floor"): {"k": 1e6, "restitution": 0.5}}
     times = []
-    monkeypatch.setattr("mjrock.anymodel.many.compiled", lambda model: times.append(1) or geoms.compiled(model))
+    for module in ("many", "contact"):
+        monkeypatch.setattr(
+            f"mjrock.anymodel.{module}.compiled", lambda model: times.append(1) or geoms.compiled(model)
+        )
     contacts = mr.contacts_for(spec, asked)
     contacts.apply(spec)
     assert len(times) == 2
