@@ -16,18 +16,18 @@ STABLE = 2 / math.sqrt(1e8 * 0.6 * 0.4 / 960)
 """Longest stable step of the block without damping: as it bounces on its base, 960 kg on 1e8 N/m3 [s]."""
 
 
-def thrown(height, timestep, duration=0.4, spin=(0.0, 0.0, 0.0)):
+def thrown(height, timestep, duration=0.32, spin=(0.0, 0.0, 0.0)):
     """The block without damping, thrown up from a height over its ground, bounces."""
     start = np.array([[0, 0, height, 1.0, 0, 0, 0]]), np.array([[0, 0, THROWN, *spin]])
     case = mr.MasonryCase(BLOCK, duration)
     return mr.solve_explicit(case, timestep=timestep, output_step=timestep or 1e-3, start=start)
 
 
-@pytest.mark.parametrize("share", [0.4, 0.2, 0.1])
+@pytest.mark.parametrize("share", [0.4, 0.1])
 def test_a_bounce_keeps_its_energy_but_for_the_square_of_the_step(share, monkeypatch):
     """It gains or loses up to (h / longest stable step)^2, as the touches happen to lie within their steps."""
     monkeypatch.setattr(reading, "require_no_gain", lambda run, count, stats: None)
-    steps = share * STABLE * np.linspace(0.8, 1.0, 16)
+    steps = share * STABLE * np.linspace(0.8, 1.0, 12)
     runs = [thrown(0.05 + 0.3 * i * steps[-1] * THROWN, h) for i, h in enumerate(steps)]
     assert runs[-1].stats["share"] == pytest.approx(share)
     gained = np.array([run.energy[-1] / run.energy[0] - 1 for run in runs])
