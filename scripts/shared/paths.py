@@ -58,12 +58,18 @@ def apart(one: Path, other: Path) -> Array:
     return difference
 
 
-def parting(one: Path, other: Path) -> tuple[float, float]:
-    """When two paths part [s], infinite if they do not, and the ratio of their peaks until then."""
+def until_parted(one: Path, other: Path) -> tuple[float, float, float]:
+    """When two paths part [s], infinite if they do not, and the peak of either until then [rad]."""
     parted = apart(one, other) > PARTED
     end = int(parted.argmax()) if parted.any() else len(parted)
-    largest = [float(path.tilt[: max(1, end)].max()) for path in (one, other)]
-    return (end * SAMPLE if parted.any() else math.inf), largest[0] / max(largest[1], 1e-12)
+    first, second = (float(path.tilt[: max(1, end)].max()) for path in (one, other))
+    return (end * SAMPLE if parted.any() else math.inf), first, second
+
+
+def parting(one: Path, other: Path) -> tuple[float, float]:
+    """When two paths part [s], infinite if they do not, and the ratio of their peaks until then."""
+    when, first, second = until_parted(one, other)
+    return when, first / max(second, 1e-12)
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,7 @@ class Pairs:
 
     Args:
         parts: when the paths of each record part [s], infinite where they do not.
+        peaks: of the one until then [rad].
         before: ratio of the peaks until then.
         stand: ratio of the peaks of the records under which neither overturns.
         overturn: how many overturn in the one and in the other.
@@ -79,6 +86,7 @@ class Pairs:
     """
 
     parts: Array
+    peaks: Array
     before: Array
     stand: Array
     overturn: tuple[int, int]
@@ -88,9 +96,10 @@ class Pairs:
 def pairs_of(runs: Sequence[dict[str, Path]], name: str, other: str) -> Pairs:
     """What tells two ways to run the same records apart."""
     pairs = [(paths[name], paths[other]) for paths in runs]
-    parts, before = np.array([parting(*pair) for pair in pairs]).T
+    parts, peaks, others = np.array([until_parted(*pair) for pair in pairs]).T
+    before = peaks / np.maximum(others, 1e-12)
     ends = np.array([[path.overturns for path in pair] for pair in pairs])
     first, second = ends.sum(axis=0)
     both = int(ends.all(axis=1).sum())
     stand = np.array([a.peak / b.peak for a, b in pairs if not (a.overturns or b.overturns)])
-    return Pairs(parts, before, stand, (int(first), int(second)), (int(first) - both, int(second) - both))
+    return Pairs(parts, peaks, before, stand, (int(first), int(second)), (int(first) - both, int(second) - both))
