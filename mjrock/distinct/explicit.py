@@ -53,7 +53,7 @@ def solve_explicit(
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
         contacts: the interfaces of the wall; masonry has its own joints.
-        timestep: length of a step [s]; None takes 0.4 of the longest stable one for masonry and 0.02 of it for a wall,
+        timestep: length of a step [s]; None takes 0.4 of the longest stable one for masonry and 0.005 of it for a wall,
             whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
         output_step: spacing of the returned samples [s]. A given timestep is kept, and the spacing is a whole number of
             steps.

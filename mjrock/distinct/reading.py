@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,7 +22,7 @@ from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion, joint_numbers
-from ..result.ledger import Ledger, from_nowhere
+from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.response import Response
 from ..result.rocking import Rocking
 from ..result.ties import Plastic
@@ -84,7 +86,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     """
     reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
     count = reading.pop("count")
-    require_no_gain(run, count)
+    require_no_gain(run, count, stats)
     samples = run.samples
     return Response(
         case=run.case,
@@ -148,8 +150,13 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     }
 
 
-def require_no_gain(run: Run, count: int) -> None:
+def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
     """Make sure that no energy appears from nowhere up to a sample.
+
+    Args:
+        run: the run.
+        count: number of the sample.
+        stats: with the step that was taken, and the longest stable one.
 
     Raises:
         RuntimeError: if it does, or if the motion is not finite.
@@ -161,7 +168,23 @@ def require_no_gain(run: Run, count: int) -> None:
     scale = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     gain = from_nowhere(own, scale)
     if gain is not None:
-        raise RuntimeError(f"{gain[1]} by t = {run.t[gain[0]]:.4g} s; take a shorter timestep")
+        raise RuntimeError(f"{gain[1]} by t = {run.t[gain[0]]:.4g} s; {advice(stats)}")
+
+
+def advice(stats: Mapping[str, Any]) -> str:
+    """What to do against energy from nowhere, in words.
+
+    A contact with a stiffness k that closes or opens between two poses with the gaps a and -b puts k a b / 2 out of
+    place. Without damping this is at most (timestep / longest stable step)^2 of the energy with which the bodies meet,
+    put in as often as taken. The step that is advised keeps it within a quarter of ENERGY_GAIN, since touches add up.
+    """
+    sound = 0.5 * math.sqrt(ENERGY_GAIN) * stats["stable_timestep"]
+    if stats["timestep"] <= sound:
+        return "take a shorter timestep"
+    return (
+        f"a touch inside a step puts in or takes up to {stats['share'] ** 2:.2%} of the energy it meets: damp the "
+        f"joints, or take timestep = {sound:.2g} s"
+    )
 
 
 def ledger_of(run: Run, stride: int) -> Ledger:

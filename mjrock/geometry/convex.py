@@ -17,7 +17,10 @@ def turned(a: Array, b: Array) -> Array:
 
 
 def clipped(polygon: Array, window: Array) -> Array:
-    """The part of a convex polygon within another, by Sutherland and Hodgman (1974); no corners where there is none."""
+    """The part of a convex polygon within another; no corners where there is none.
+
+    It is cut by one edge after the other (Sutherland and Hodgman, Communications of the ACM 17, 1974, 32-42).
+    """
     for start, way in zip(window, np.roll(window, -1, axis=0) - window, strict=True):
         inwards = turned(way, polygon - start)
         if (inwards >= 0).all():
@@ -80,7 +83,7 @@ def width(polygon: Array) -> float:
 def shares(polygon: Array, point: Array) -> Array:
     """Weights of the corners of a convex polygon, all positive, whose sum is 1 and whose mean is a point inside, (n,).
 
-    They are the mean value coordinates of Floater (2003).
+    They are mean value coordinates (Floater, Computer Aided Geometric Design 20, 2003).
     """
     spokes = polygon - point
     lengths = np.hypot(*spokes.T)

@@ -85,7 +85,8 @@ def tangent(normal: Vector) -> Vector:
 def tangents(normal: Vector) -> tuple[Vector, Vector]:
     """Two unit vectors along a face of space, square to each other and to its unit normal.
 
-    They are those of Duff et al., Building an orthonormal basis, revisited (2017), which lose no digits near any axis.
+    They lose no digits near any axis (Duff et al., Building an orthonormal basis, revisited, Journal of Computer
+    Graphics Techniques 6(1), 2017).
     """
     sign = math.copysign(1.0, normal[2])
     a = -1.0 / (sign + normal[2])

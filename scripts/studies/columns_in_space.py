@@ -6,9 +6,15 @@ rigidly, so explicit steps have rigid friction, or shear springs of 100, 10 and 
 largest of a displacement of a centroid from that of explicit steps of 5 us with rigid friction. Times are those of the
 steps alone, the least of some repetitions.
 
-Then 20 pairs of artificial records shake the column, x at the full and y at 0.8 of the peak of 3.5 m/s2: peaks of the
-tilt of the top drum, and how many columns overturn, which are drawn at the edge. A column under a record is chaotic, so
-that single peaks differ where it rocks through many impacts.
+Then 20 pairs of artificial records shake the column, x at the full and y at 0.8 of the peak of 3.5 m/s2. A run
+overturns when a drum has tilted by more than 0.5 rad, or has fallen. To tell the solvers from a motion that scatters
+by itself, explicit steps are repeated with half the step, with 20 us, and with k_n changed by 1e-6 and by 1e-3 of
+itself. Two runs part where a component of the rotation vector of a drum differs by more than 2 mrad, 1 % of the angle
+at which the column overturns as one block. For each pair of ways are given when they part, how far the peaks of the
+tilt until then differ, the largest of those that differ by more than 3 %, how many columns overturn in each and end
+alike, and how far the peaks differ where both stand.
+Explicit steps with shear springs of 0.4 k_n are another model, not another solver: their joints give way, and their
+peaks differ before the paths part.
 
 Last, what a simulated second takes over the number of contact points and the highest frequency, of a column of 12 drums
 and of a facade with return walls under a weak and a strong sine: from this `simulate` estimates what a run takes.
@@ -25,6 +31,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 from tqdm import tqdm
@@ -33,6 +40,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.paths import OVERTURNED, PARTED, SAMPLE, Path, apart, pairs_of, parting, path_of
 
 SIZE, SOFT = (0.6, 0.4, 2.0), 1e8
 """Size of the block [m] and stiffness of its joint [N/m3]."""
@@ -48,8 +56,40 @@ FINE = 5e-6
 """Step of the reference [s]."""
 SETTINGS = ("MuJoCo 1e-3", "MuJoCo 1e-4", "explicit", "explicit 100 k_n", "explicit 10 k_n", "explicit 0.4 k_n")
 """Solvers: the accuracy of fitted steps in MuJoCo, and k_s of the joints of explicit steps, rigid where none stands."""
-COMPARED = ("MuJoCo 1e-3", "explicit", "explicit 0.4 k_n")
-"""Solvers that run the records."""
+FINEST, SLIGHT, SMALL = 20e-6, 1e-6, 1e-3
+"""Step of the finest run of a record [s], and changes of k_n, over k_n [-]."""
+RUNS = {
+    "MuJoCo 1e-3": "C0",
+    "MuJoCo 1e-4": "C0",
+    "explicit": "C1",
+    "half the step": "C1",
+    "20 us": "k",
+    "k_n + 1e-6": "C4",
+    "k_n + 1e-3": "C5",
+    "0.4 k_n": "C2",
+}
+"""Ways to run the records, and their colours. All but those of MuJoCo are explicit steps."""
+COMPARED = {
+    ("explicit", "MuJoCo 1e-3"): "two solvers",
+    ("explicit", "MuJoCo 1e-4"): "two solvers",
+    ("20 us", "MuJoCo 1e-4"): "two solvers",
+    ("MuJoCo 1e-3", "MuJoCo 1e-4"): "one solver",
+    ("explicit", "half the step"): "one solver",
+    ("explicit", "k_n + 1e-6"): "one solver",
+    ("explicit", "k_n + 1e-3"): "one solver",
+    ("explicit", "0.4 k_n"): "two models",
+}
+"""Pairs of them, and what they are."""
+NEARLY = 0.03
+"""Difference of peaks that is counted as small [-]."""
+GROWTH = {
+    ("explicit", "MuJoCo 1e-4"): "-",
+    ("20 us", "MuJoCo 1e-4"): "-",
+    ("explicit", "half the step"): "--",
+    ("explicit", "k_n + 1e-3"): "-.",
+    ("explicit", "k_n + 1e-6"): ":",
+}
+"""Pairs whose difference is drawn over time."""
 COLOURS = {"MuJoCo 1e-3": "C0", "MuJoCo 1e-4": "C0", "explicit": "C1", "explicit 100 k_n": "C3"} | {
     "explicit 10 k_n": "C4",
     "explicit 0.4 k_n": "C2",
@@ -107,9 +147,9 @@ def block(share: float | None) -> mr.Masonry:
     return mr.Masonry.box(SIZE, k_n=SOFT, k_s=None if share is None else share * SOFT, friction=0.6)
 
 
-def column(share: float | None) -> mr.Masonry:
+def column(share: float | None, k_n: float = K_N) -> mr.Masonry:
     """The column of drums."""
-    return mr.Masonry.column(WIDTH, HEIGHT, DRUMS, k_n=K_N, k_s=None if share is None else share * K_N, friction=0.7)
+    return mr.Masonry.column(WIDTH, HEIGHT, DRUMS, k_n=k_n, k_s=None if share is None else share * k_n, friction=0.7)
 
 
 def scenes() -> list[Scene]:
@@ -149,27 +189,55 @@ def records(study: Study) -> list[tuple[mr.GroundMotion, mr.GroundMotion]]:
     ]
 
 
-def peaks(study: Study, setting: str) -> Array:
-    """Peak tilt of the top drum under each record [rad], infinite where a drum has fallen."""
-    found = []
-    for x, y in tqdm(records(study), desc=setting, disable=None, leave=False):
-        answer = Scene("column", column, x, y).run(setting, study.length)
-        found.append(math.inf if answer.fallen else float(answer.tilt[:, -1].max()))
-    return np.array(found)
+def runs(study: Study, motions: tuple[mr.GroundMotion, mr.GroundMotion]) -> dict[str, Path]:
+    """All ways to run a record."""
+    x, y = motions
+
+    def case(share: float | None = None, change: float = 0.0) -> mr.MasonryCase:
+        return mr.MasonryCase(column(share, (1 + change) * K_N), study.length, x, transverse=y)
+
+    def stepped(masonry: mr.MasonryCase, timestep: float | None = None) -> mr.Response:
+        return mr.solve_explicit(masonry, timestep=timestep, output_step=SAMPLE)
+
+    engine = [mr.simulate(case(), accuracy=accuracy, output_step=SAMPLE) for accuracy in (1e-3, 1e-4)]
+    coarse = stepped(case())
+    finer = [stepped(case(), step) for step in (0.5 * coarse.stats["timestep"], FINEST)]
+    changed = [stepped(case(change=change)) for change in (SLIGHT, SMALL)]
+    answers = (*engine, coarse, *finer, *changed, stepped(case(0.4)))
+    return dict(zip(RUNS, map(path_of, answers), strict=True))
 
 
-def statistics(found: dict[str, Array]) -> list[list[object]]:
-    """Quartiles of the peaks, how many columns overturn, and how each solver compares with MuJoCo."""
+def quartiles(paths: Sequence[dict[str, Path]]) -> list[list[object]]:
+    """Quartiles of the peaks of each way, and how many columns overturn."""
     rows: list[list[object]] = []
-    first = found[COMPARED[0]]
-    for setting, values in found.items():
-        quartiles = np.degrees(np.quantile(values, [0.25, 0.5, 0.75], method="nearest"))
-        stood = np.isfinite(values) & np.isfinite(first)
-        off = np.abs(values[stood] / first[stood] - 1)
-        row = [f"{value:.2f}" for value in quartiles] + [int(np.isinf(values).sum())]
-        agreed = int((np.isinf(values) == np.isinf(first)).sum())
-        rows.append([setting, *row, agreed, f"{np.median(off):.1%}", f"{off.max():.1%}"])
+    for name in RUNS:
+        peaks = np.array([own[name].peak for own in paths])
+        values = np.degrees(np.quantile(peaks, [0.25, 0.5, 0.75], method="nearest"))
+        rows.append([name, *(f"{value:.2f}" for value in values), int(np.isinf(peaks).sum())])
     return rows
+
+
+def partings(paths: Sequence[dict[str, Path]]) -> list[list[object]]:
+    """For each pair of ways when they part, and how they compare until then and in the end."""
+    rows: list[list[object]] = []
+    for (name, other), of in COMPARED.items():
+        pairs = pairs_of(paths, name, other)
+        before, off = np.abs(pairs.before - 1), np.abs(pairs.stand - 1)
+        near = before < NEARLY
+        small = "" if near.all() else f"{np.degrees(pairs.peaks[~near].max()):.2f}"
+        parted = [np.isfinite(pairs.parts).sum(), f"{np.median(pairs.parts):.2f}"]
+        parted += [f"{np.median(before):.1e}", near.sum(), small]
+        ends = [f"{pairs.overturn[0]}, {pairs.overturn[1]}", len(paths) - sum(pairs.alone)]
+        rows.append([of, f"{name} : {other}", *parted, *ends, f"{np.median(off):.1%}", f"{off.max(initial=0.0):.1%}"])
+    return rows
+
+
+def growth(paths: Sequence[dict[str, Path]], name: str, other: str) -> Array:
+    """Median over the records of the largest difference of a rotation [rad], for as long as most are followed, (n,)."""
+    differences = [apart(own[name], own[other]) for own in paths]
+    shared = sorted(map(len, differences))[len(differences) // 2]
+    median: Array = np.median([difference[:shared] for difference in differences if len(difference) >= shared], axis=0)
+    return median
 
 
 def costs(study: Study) -> list[list[object]]:
@@ -197,30 +265,72 @@ def costs(study: Study) -> list[list[object]]:
     return rows
 
 
-def drawn(histories: dict[str, dict[str, mr.Response]], found: dict[str, Array]) -> Figure:
-    """Tilts over time, and peaks of explicit steps over those of MuJoCo."""
-    figure = Figure(figsize=(11, 3.4), layout="constrained")
-    *axes, last = figure.subplots(1, len(histories) + 1)
-    for ax, (name, answers) in zip(axes, histories.items(), strict=True):
+def drawn(histories: dict[str, dict[str, mr.Response]], paths: Sequence[dict[str, Path]]) -> Figure:
+    """Tilts over time; a record in several ways, how far apart they are, and the peaks of all records."""
+    figure = Figure(figsize=(11, 6.6), layout="constrained")
+    above, below = figure.subplots(2, len(histories))
+    for ax, (name, answers) in zip(above, histories.items(), strict=True):
         for setting in ("MuJoCo 1e-4", "explicit", "explicit 0.4 k_n"):
             line = "-" if setting.startswith("MuJoCo") else "--"
             answer = answers[setting]
             ax.plot(answer.t, np.degrees(answer.tilt[:, -1]), line, color=COLOURS[setting], label=setting)
-        ax.set(title=name, xlabel="t [s]", ylabel="tilt [deg]")
-    axes[0].legend(frameon=False, fontsize=8)
-    first = np.degrees(found[COMPARED[0]])
-    top = max(float(np.degrees(values[np.isfinite(values)]).max(initial=1.0)) for values in found.values())
-    for setting in COMPARED[1:]:
-        own = np.degrees(found[setting])
-        last.plot(np.minimum(first, 1.5 * top), np.minimum(own, 1.5 * top), "o", color=COLOURS[setting], label=setting)
-        last.lines[-1].set_markerfacecolor("none")
-    low = 0.5 * float(min(np.degrees(values).min() for values in found.values()))
-    last.plot([low, 1.5 * top], [low, 1.5 * top], color="k", linewidth=0.6)
-    last.set(xscale="log", yscale="log", title="peaks under records")
-    last.set_xlabel("MuJoCo 1e-3 [deg]")
-    last.set_ylabel("explicit steps [deg]")
-    last.legend(frameon=False, fontsize=8)
+        ax.set(title=name, xlabel="$t$ [s]", ylabel="tilt [deg]")
+    above[0].legend(frameon=False, fontsize=8)
+    draw_record(below[0], paths)
+    draw_growth(below[1], paths)
+    draw_peaks(below[2], paths)
     return figure
+
+
+def draw_record(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
+    """Of the records under which no column overturns, the one whose paths part at the median time."""
+    ways = ("MuJoCo 1e-4", "explicit", "half the step")
+    times = [parting(own["explicit"], own["MuJoCo 1e-4"])[0] for own in paths]
+    standing = [i for i, own in enumerate(paths) if not any(own[way].overturns for way in ways)] or [0]
+    shown = sorted(standing, key=lambda i: times[i])[len(standing) // 2]
+    for way, line in zip(ways, ("-", "-", "--"), strict=True):
+        tilt = np.degrees(paths[shown][way].tilt[:, -1])
+        colour = "k" if line == "--" else RUNS[way]
+        ax.plot(SAMPLE * np.arange(len(tilt)), tilt, line, color=colour, linewidth=0.9, label=way)
+    title = f"column under record {shown}"
+    if math.isfinite(times[shown]):
+        ax.axvline(times[shown], color="0.5", linewidth=0.8, linestyle=":")
+        title += "; dotted: they part"
+    ax.set(xlabel="$t$ [s]", ylabel="tilt [deg]", ylim=(0, 1.4 * ax.get_ylim()[1]))
+    ax.set_title(title, fontsize=10)
+    ax.legend(frameon=False, fontsize=8, loc="upper left")
+
+
+def draw_growth(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
+    """How far apart two ways are over time."""
+    for (name, other), line in GROWTH.items():
+        difference = 1e3 * growth(paths, name, other)
+        colour = "k" if name == "20 us" else RUNS[other]
+        ax.semilogy(
+            SAMPLE * np.arange(len(difference)), difference, line, color=colour, linewidth=1, label=f"{name} : {other}"
+        )
+    ax.axhline(1e3 * PARTED, color="0.5", linewidth=0.8, linestyle=":")
+    ax.set(xlabel="$t$ [s]", ylabel="difference of a rotation [mrad]", ylim=(1e-6, 1e3))
+    ax.set_title("median of the records; dotted: parted", fontsize=10)
+    ax.legend(frameon=False, fontsize=7, loc="lower right")
+
+
+def draw_peaks(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
+    """Peaks of the same record, those that overturn in the grey."""
+    peaks = {way: np.array([own[way].peak for own in paths]) for way in RUNS}
+    low, edge = 0.7 * min(values.min() for values in peaks.values()), OVERTURNED
+    for way, marker in (("MuJoCo 1e-4", "o"), ("half the step", "x"), ("0.4 k_n", "^")):
+        colour = "k" if marker == "x" else RUNS[way]
+        x, y = (np.degrees(np.minimum(peaks[name], 1.5 * edge)) for name in ("explicit", way))
+        ax.plot(x, y, marker, color=colour, markerfacecolor="none", markersize=5, label=way)
+    low, edge = math.degrees(low), math.degrees(edge)
+    ax.plot([low, edge], [low, edge], color="0.6", linewidth=0.8, zorder=0)
+    for draw in (ax.axvspan, ax.axhspan):
+        draw(edge, 2 * edge, color="0.92", zorder=-1)
+    ax.set(xscale="log", yscale="log", xlim=(low, 2 * edge), ylim=(low, 2 * edge))
+    ax.set(xlabel="peak tilt, explicit [deg]", ylabel="peak tilt [deg]")
+    ax.set_title("peaks of all records; grey: overturned", fontsize=10)
+    ax.legend(frameon=False, fontsize=8, loc="upper left")
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -235,14 +345,25 @@ def main(argv: Sequence[str] | None = None) -> None:
         for scene in tqdm(scenes(), disable=None, leave=False):
             own, histories[scene.name] = compared(scene, study)
             rows += own
-        found = {setting: peaks(study, setting) for setting in COMPARED}
+        paths = [runs(study, motions) for motions in tqdm(records(study), unit="record", disable=None, leave=False)]
         times = costs(study)
     header = ["scene", "solver", "steps", "steps [ms]", "peak tilt [deg]", "off", "apart [mm]"]
-    shares = ["solver", "quartile [deg]", "median [deg]", "quartile [deg]", "overturned", "same end", "off", "most"]
-    text = [cli.table(header, rows), "", f"{study.records} records", "", cli.table(shares, statistics(found))]
+    shares = ["way", "quartile [deg]", "median [deg]", "quartile [deg]", "overturned"]
+    text = [cli.table(header, rows), "", f"{study.records} records", "", cli.table(shares, quartiles(paths))]
+    differ = [
+        "",
+        "pair",
+        "part",
+        "median [s]",
+        "peaks until then",
+        f"within {NEARLY:.0%}",
+        "the others [deg]",
+        "overturned",
+    ]
+    text += ["", cli.table([*differ, "same end", "peaks that stand", "most"], partings(paths))]
     per = ["scene", "sine [m/s2]", "blocks", "points", "MuJoCo [s/s]", "[s2]", "rigid [ns]", "sprung [ns]"]
     text += ["", cli.table(per, times)]
-    plotting.save(drawn(histories, found), out / "columns_in_space.png")
+    plotting.save(drawn(histories, paths), out / "columns_in_space.png")
     cli.report(out / "columns_in_space", "\n".join(text), header, rows)
 
 

@@ -21,6 +21,7 @@ from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 import mjrock as mr
 from mjrock import plotting
@@ -38,6 +39,10 @@ AFTER = 0.2
 """Time that is shown after the first block has fallen [s]."""
 SIZES = ((0.8, 2), (1.6, 2), (1.6, 3), (2.4, 2))
 """Heights [m] and `points` whose time is measured."""
+ROOM = (0.04, 0.0, 0.93, 1.0)
+"""Left, bottom, width and height of the pictures, over the figure [-]: labels of axes in space stand beside them."""
+CLOSE = -9.0
+"""Space between the vertical axis and its name, over what matplotlib leaves, which is wide beside a low facade [pt]."""
 SHORT = 0.1
 """Time that is followed to measure it [s]."""
 
@@ -75,10 +80,11 @@ def cost(height: float, points: int) -> list[object]:
 
 def drawn(answer: mr.Response, moment: int) -> Figure:
     """The facade at rest and at a moment."""
-    figure = Figure(figsize=(9.0, 4.4), layout="constrained")
+    figure = Figure(figsize=(9.6, 4.0), layout=ConstrainedLayoutEngine(rect=ROOM))
     for i, (row, word) in enumerate(((0, "at rest"), (moment, "shaken"))):
         ax = figure.add_subplot(1, 2, i + 1, projection="3d")
         plotting.blocks(ax, answer.case.masonry, answer.pose[row], camera=(20.0, 38.0))
+        ax.zaxis.labelpad = CLOSE
         ax.set_title(f"{word}, $t$ = {answer.t[row]:.2f} s", fontsize=9)
     return figure
 

@@ -19,7 +19,6 @@ import math
 import sys
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,39 +31,13 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
+from scripts.shared.paths import OVERTURNED, SAMPLE, Path, pairs_of, parting, path_of
 
 STRUCTURES = {"column": (5.0, 6.0), "arch": (8.0, 4.0)}
 """Largest acceleration of the records [m/s2], and their duration [s]."""
 AFTER = 1.0
 """How long the motion is followed after a record [s]."""
-OVERTURNED = 0.5
-"""Rotation of a block beyond which a run has overturned [rad]."""
-PARTED = 2e-3
-"""Difference of a rotation at which two paths have parted [rad]."""
-SAMPLE = 2e-3
-"""Spacing of the samples [s]."""
 RUNS = {"MuJoCo": ("#f0a35e", "-"), "explicit": ("#12406b", "-"), "explicit, half the step": ("#6c8a4e", "--")}
-
-
-@dataclass(frozen=True)
-class Path:
-    """Rotations of the blocks until one has overturned [rad], shape (n, blocks), and whether one has."""
-
-    theta: Array
-    overturns: bool
-
-    @property
-    def peak(self) -> float:
-        """Largest rotation [rad], infinite of a run that overturns."""
-        return math.inf if self.overturns else float(np.abs(self.theta).max())
-
-
-def path_of(answer: mr.Response) -> Path:
-    """The part of an answer that counts."""
-    theta = answer.pose[:, :, 2]
-    over = (np.abs(theta) > OVERTURNED).any(axis=1)
-    end = int(over.argmax()) if over.any() else len(theta)
-    return Path(theta[: max(1, end)], bool(over.any()) or bool(answer.fallen))
 
 
 def built(name: str) -> mr.Masonry:
@@ -86,15 +59,6 @@ def runs(name: str, seed: int, accuracy: float, shaken: float) -> dict[str, Path
     return dict(zip(RUNS, map(path_of, (engine, coarse, fine)), strict=True))
 
 
-def parting(one: Path, other: Path) -> tuple[float, float]:
-    """When two paths part [s], infinite if they do not, and the ratio of their largest rotations until then."""
-    count = min(len(one.theta), len(other.theta))
-    apart = (np.abs(one.theta[:count] - other.theta[:count]) > PARTED).any(axis=1)
-    end = int(apart.argmax()) if apart.any() else count
-    largest = [float(np.abs(path.theta[: max(1, end)]).max()) for path in (one, other)]
-    return (end * SAMPLE if apart.any() else math.inf), largest[0] / max(largest[1], 1e-12)
-
-
 def median_interval(values: Array) -> tuple[float, float, float]:
     """The median and its interval of 95 % by order statistics, NaN of fewer than six values."""
     n = len(values)
@@ -107,23 +71,16 @@ def median_interval(values: Array) -> tuple[float, float, float]:
 
 def compared(of: str, found: Sequence[dict[str, Path]], name: str, other: str) -> list[str]:
     """What tells two ways to run the same records apart, in words."""
-    pairs = [(one[name], one[other]) for one in found]
-    times, ratios = np.array([parting(*pair) for pair in pairs]).T
-    off, stay = np.abs(ratios - 1), np.isinf(times)
-    alone = [
-        sum(a.overturns and not b.overturns for a, b in pairs),
-        sum(b.overturns and not a.overturns for a, b in pairs),
-    ]
-    stand = np.array([a.peak / b.peak for a, b in pairs if not (a.overturns or b.overturns)])
+    pairs = pairs_of(found, name, other)
+    off, stay, stand, alone = np.abs(pairs.before - 1), np.isinf(pairs.parts), pairs.stand, pairs.alone
     middle, low, high = median_interval(stand)
-    peaks = [np.array([min(path.peak, 1e3) for path in side]) for side in zip(*pairs, strict=True)]
-    counts = [sum(path.overturns for path in side) for side in zip(*pairs, strict=True)]
-    first = f"at {np.median(times[~stay]):.2f} s in the median" if (~stay).any() else "never"
+    peaks = [np.array([min(one[way].peak, 1e3) for one in found]) for way in (name, other)]
+    first = f"at {np.median(pairs.parts[~stay]):.2f} s in the median" if (~stay).any() else "never"
     return [
-        f"{of}, {name} against {other}, {len(pairs)} records:",
+        f"{of}, {name} against {other}, {len(found)} records:",
         f"  {(~stay).sum()} part, {first}; largest rotations until then differ by {np.median(off):.1e} in the median, "
         f"{off.max():.1e} at most; {(off < 0.01).sum()} within 1 %",
-        f"  overturn: {counts[0]} and {counts[1]}, {alone[0]} and {alone[1]} alone, sign test p = "
+        f"  overturn: {pairs.overturn[0]} and {pairs.overturn[1]}, {alone[0]} and {alone[1]} alone, sign test p = "
         f"{binomtest(alone[0], sum(alone)).pvalue if sum(alone) else 1.0:.2g}",
         f"  peaks where both stand ({len(stand)}): median ratio {middle:.4f}, 95 % {low:.4f} to {high:.4f}, "
         f"smallest {stand.min(initial=math.inf):.3f}, largest {stand.max(initial=0.0):.3f}",
@@ -148,9 +105,9 @@ def draw_paths(ax: Axes, name: str, found: Sequence[dict[str, Path]]) -> None:
     standing = [i for i, one in enumerate(found) if not any(path.overturns for path in one.values())]
     parted = [i for i in standing if math.isfinite(late[i])] or standing or [0]
     shown = sorted(parted, key=lambda i: late[i])[len(parted) // 2]
-    block = int(np.abs(found[shown][second].theta).max(axis=0).argmax())
+    block = int(np.abs(found[shown][second].rotation).max(axis=0).argmax())
     for run, (colour, line) in RUNS.items():
-        theta = 1e3 * found[shown][run].theta[:, block]
+        theta = 1e3 * found[shown][run].rotation[:, block]
         ax.plot(SAMPLE * np.arange(len(theta)), theta, color=colour, linestyle=line, linewidth=1.1, label=run)
     title = f"{name}, record {shown}, block {block}"
     if math.isfinite(late[shown]):

@@ -167,7 +167,11 @@ def faces_of(block: Polyhedron) -> list[Face]:
 
 
 def _depth_across_edges(block: Polyhedron, neighbour: Polyhedron) -> float:
-    """The least depth by which two blocks overlap along the products of an edge of each [m], see Gottschalk (1996)."""
+    """The least depth by which two blocks overlap along the products of an edge of each [m].
+
+    Beside the normals of their faces these are the directions in which convex bodies can be apart (Gottschalk,
+    Separating axis theorem, Technical Report TR96-024, UNC Chapel Hill, 1996).
+    """
     across = np.cross(block.edges[:, None], neighbour.edges[None]).reshape(-1, 3)
     lengths = np.linalg.norm(across, axis=1)
     across = across[lengths > 1e-6] / lengths[lengths > 1e-6, None]
