@@ -28,6 +28,7 @@ from .frequencies import highest_frequency, rocking_frequency, tie_frequency
 from .masses import mass_diagonals, principal, products_of
 from .names import face_names, point_names
 from .potential import Potential
+from .rest_in_space import settled_in_space
 from .structure import Structure, energies
 
 RADIUS = 1e-6
@@ -241,7 +242,11 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, nq)."""
-        return settled(self.potential, self.friction) if self.settled is None else self.settled
+        if self.settled is not None:
+            return self.settled
+        if self.freedom == SPACE:
+            return settled_in_space(self.potential, self.friction)[0]
+        return settled(self.potential, self.friction)
 
     @cached_property
     def bears(self) -> Array:
