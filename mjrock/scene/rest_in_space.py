@@ -114,8 +114,10 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
 
 
 def grips_at(potential: Potential, pose: Array, friction: Array, shear: tuple[float, Array]) -> Grips:
-    """Friction at a pose, with a coefficient of zero where points are open. `shear` is the shear stiffness of the points over their normal stiffness [-], and where their
-    sliders were before."""
+    """Friction at a pose, with a coefficient of zero where points are open.
+
+    `shear` is the shear stiffness of the points over their normal stiffness [-], and where their sliders were before.
+    """
     k, depth, (ratio, slider) = potential.structure.k, -potential.openings(pose)[: len(friction)], shear
     stretch = potential.slips(pose) - slider
     held, most = ratio * k * np.linalg.norm(stretch, axis=1), friction * k * np.maximum(depth, 0.0)
