@@ -32,6 +32,10 @@ SLIPPING, RAISED = 1e-2, 4.0
 """Least share of its shear stiffness that a point that slips lends along its slip, and by how much it is raised each
 time that more force is missing than before [-]."""
 
+ENDED = 0.5
+"""Force that is missing, over that of the pose before, above which a pose that is near enough ends the search [-].
+What only rounding parts, as two faces that touch without a force, is then parted by less than positions resolve."""
+
 
 class Grips(NamedTuple):
     """Friction of the points at a pose, in the axes of their faces, see `Potential.slip_rates`.
@@ -90,14 +94,15 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
     size = np.sqrt(masses / np.repeat(masses[::6], 6))  # moments are compared with forces by radii of gyration
     scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
     slider, closed = np.zeros((len(friction), 2)), touching(potential, pose)
-    for _ in range(poses):
+    for tried in range(poses):
         rates, depth = potential.rates(pose), -potential.openings(pose)
         grips = grips_at(potential, pose, np.where(closed[: len(friction)], friction, 0.0), (shear, slider))
         held = grips.rates[0].T @ grips.drag[:, 0] + grips.rates[1].T @ grips.drag[:, 1]
         missing = (potential.load(pose) + rates.T @ (k * np.maximum(depth, 0.0)) + held) / size
-        if np.abs(missing).max() < tolerance(potential):
-            return pose, grips
         left, slider = float(np.abs(missing).sum()), grips.slider if accumulates else slider
+        ends = left > ENDED * last or tried == poses - 1
+        if ends and np.abs(missing).max() < tolerance(potential):
+            return pose, grips
         if left < last:
             loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
         else:
