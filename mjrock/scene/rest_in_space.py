@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array, diags_array
+from scipy.sparse import csc_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
 from ..geometry.frames import SPACE
@@ -93,12 +93,14 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
     k, masses, pose = potential.springs, potential.structure.masses, potential.unmoved
     size = np.sqrt(masses / np.repeat(masses[::6], 6))  # moments are compared with forces by radii of gyration
     scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
-    slider, closed = np.zeros((len(friction), 2)), touching(potential, pose)
+    m, openings, closed = len(friction), potential.openings(pose), touching(potential, pose)
+    slider = np.zeros((m, 2))
     for tried in range(poses):
-        rates, depth = potential.rates(pose), -potential.openings(pose)
-        grips = grips_at(potential, pose, np.where(closed[: len(friction)], friction, 0.0), (shear, slider))
+        rates, push = potential.rates(pose), k * np.maximum(-openings, 0.0)
+        most = np.where(closed[:m] & (friction > 0), friction * push[:m], -np.inf)
+        grips = grips_at(potential, pose, most, (shear * k[:m], slider))
         held = grips.rates[0].T @ grips.drag[:, 0] + grips.rates[1].T @ grips.drag[:, 1]
-        missing = (potential.load(pose) + rates.T @ (k * np.maximum(depth, 0.0)) + held) / size
+        missing = (potential.load(pose) + rates.T @ push + held) / size
         left, slider = float(np.abs(missing).sum()), grips.slider if accumulates else slider
         ends = left > ENDED * last or tried == poses - 1
         if ends and np.abs(missing).max() < tolerance(potential):
@@ -112,39 +114,39 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
         scaled = scales @ stiffness @ scales
         lent = np.full(len(size), loose * float(scaled.diagonal().max()))
         pose = moved(pose, splu(csc_array(scaled + diags_array(lent))).solve(missing) / size, SPACE)
-        closed = potential.openings(pose) < 0
+        openings = potential.openings(pose)
+        closed = openings < 0
         if not turned(pose, SPACE).max() < TURNED:
             break
     raise UnsettledError(pose.reshape(-1, 7))
 
 
-def grips_at(potential: Potential, pose: Array, friction: Array, shear: tuple[float, Array]) -> Grips:
-    """Friction at a pose, with a coefficient of zero where points are open.
+def grips_at(potential: Potential, pose: Array, most: Array, shear: tuple[Array, Array]) -> Grips:
+    """Friction at a pose.
 
-    `shear` is the shear stiffness of the points over their normal stiffness [-], and where their sliders were before.
+    Args:
+        potential: of the scene.
+        pose: shape (7 n,).
+        most: that each point can have, negative for one that slips freely [N], shape (m,).
+        shear: their shear stiffnesses [N/m], shape (m,), and where their sliders were before [m], shape (m, 2).
     """
-    k, depth, (ratio, slider) = potential.structure.k, -potential.openings(pose)[: len(friction)], shear
+    k_s, slider = shear
     stretch = potential.slips(pose) - slider
-    held, most = ratio * k * np.linalg.norm(stretch, axis=1), friction * k * np.maximum(depth, 0.0)
+    held = k_s * np.linalg.norm(stretch, axis=1)
     slips = held > most
-    stays = np.where(slips, most / np.where(slips, held, 1.0), 1.0)
-    stiffness = stays * ratio * k
-    return Grips(
-        potential.slip_rates(pose),
-        -stiffness[:, None] * stretch,
-        np.where(friction == 0, 0.0, stiffness),
-        slips,
-        slider + (1 - stays)[:, None] * stretch,
-    )
+    stays = np.where(slips, np.maximum(most, 0.0) / np.where(held > 0, held, 1.0), 1.0)
+    stiffness, slider = stays * k_s, slider + (1 - stays)[:, None] * stretch
+    return Grips(potential.slip_rates(pose), -stiffness[:, None] * stretch, stiffness, slips, slider)
 
 
 def shear_stiffness(grips: Grips, share: float) -> csr_array:
     """Stiffness of the points along their faces, shape (6 n, 6 n). Along its slip a point has a share of it."""
-    (first, second), size = grips.rates, np.linalg.norm(grips.drag, axis=1)
-    a, b = np.where(size[:, None] > 0, grips.drag / np.where(size > 0, size, 1.0)[:, None], (1.0, 0.0)).T
-    along, across = diags_array(a) @ first + diags_array(b) @ second, diags_array(a) @ second - diags_array(b) @ first
-    slipping = np.where(grips.slips, share, 1.0) * grips.stiffness
-    return csr_array(sprung(csr_array(along), slipping) + sprung(csr_array(across), grips.stiffness))
+    (first, second), slips = grips.rates, grips.slips & (grips.stiffness > 0)
+    ways = grips.drag[slips] / np.linalg.norm(grips.drag[slips], axis=1)[:, None]
+    along = diags_array(ways[:, 0]) @ first[slips] + diags_array(ways[:, 1]) @ second[slips]
+    less = (share - 1) * grips.stiffness[slips]
+    springs = np.concatenate([grips.stiffness, grips.stiffness, less])
+    return csr_array(sprung(csr_array(vstack([first, second, along])), springs))
 
 
 def stands(potential: Potential, grips: Grips, pose: Array) -> bool:

@@ -242,11 +242,9 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, nq)."""
-        if self.settled is not None:
-            return self.settled
-        if self.freedom == SPACE:
+        if self.settled is None and self.freedom == SPACE:
             return settled_in_space(self.potential, self.friction)[0]
-        return settled(self.potential, self.friction)
+        return settled(self.potential, self.friction) if self.settled is None else self.settled
 
     @cached_property
     def bears(self) -> Array:
@@ -266,8 +264,7 @@ class Scene:
         """Energy above the scene at rest [J], shape (steps,), of poses (steps, n, nq) and velocities (steps, n, nv)."""
         flat = (len(pose), -1)
         parts, _ = self.accounts(np.reshape(pose, flat), np.reshape(velocity, flat))
-        total: Array = parts.sum(axis=1) - self.rest_energies.sum()
-        return total
+        return np.asarray(parts.sum(axis=1) - self.rest_energies.sum())
 
     @cached_property
     def highest_frequency(self) -> float:
