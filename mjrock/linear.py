@@ -127,7 +127,7 @@ def is_definite(matrix: csr_array, grip: csr_array, flat: float) -> bool:
     """Whether a symmetric matrix has no eigenvalue up to -flat along the motions that grip leaves."""
     n = matrix.shape[0]
     if n <= FEW:
-        free = null_space(grip.toarray(), rcond=DEPENDENT)
+        free = null_space(grip.toarray(), rcond=DEPENDENT) if grip.shape[0] else np.eye(n)
         return not free.size or float(np.linalg.eigvalsh(free.T @ (matrix @ free))[0]) > -flat
     stiff = HOLD * float(np.abs(matrix.diagonal()).max())
     return _is_positive(csc_array(matrix + stiff * (grip.T @ grip) + flat * eye_array(n)))

@@ -28,7 +28,14 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 MARKS = b"\n@compiled\n", b"\n@jitable\n", b"\n@inlined\n"
 """What stands before a compiled function."""
-OTHERS = ("engine/solref.py", "engine/run.py", "scene/equilibrium.py", "scene/masonry.py", "result/history.py")
+OTHERS = (
+    "engine/solref.py",
+    "engine/run.py",
+    "scene/equilibrium.py",
+    "scene/masonry.py",
+    "scene/rest_in_space.py",
+    "result/history.py",
+)
 """Modules of the method without compiled functions."""
 TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
@@ -42,6 +49,7 @@ OWN = {
     "scene/dampers.py": ("damper",),
     "scene/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),
     "scene/equilibrium.py": ("potential", "masonry_statics", "masonry_effects"),
+    "scene/rest_in_space.py": ("rest_in_space", "scene_in_space"),
     "scene/potential.py": ("potential", "kinematics", "masonry_statics", "scene_in_space"),
     "scene/masses.py": ("scene_in_space",),
     "geometry/poses.py": ("scene_in_space",),
@@ -49,7 +57,6 @@ OWN = {
     "distinct/encounters.py": ("encounters",),
     **{f"distinct/space/{name}.py": ("explicit_in_space",) for name in (*STEPS, "system", "turning")},
     "distinct/space/encounters.py": ("encounters_in_space",),
-    "distinct/space/rest.py": ("rest_in_space",),
     "result/joint_motion.py": ("masonry_motion", "masonry"),
     "result/joint_motion_in_space.py": ("masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),

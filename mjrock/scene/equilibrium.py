@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array, vstack
+from scipy.sparse import csr_array
 
 from ..geometry.kinematics import Forces, Places, gaps
 from ..geometry.poses import moved, turned
@@ -13,6 +13,8 @@ from .potential import Potential
 
 ITERATIONS = 1000
 """Most iterations of Newton's method. A wall that is nearly too heavy for its base takes hundreds."""
+EXACT = 1e-9
+"""Force that may be missing at rest, over the weight of the heaviest body [-]."""
 ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the length of a tie, over that length [-]."""
 LEANING = 1e-6
@@ -65,11 +67,9 @@ def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
     Where nothing holds a direction, the bodies stay where they are. Friction holds the joints that touch, or those that
     are `pressed`.
     """
-    places, ties, masses = potential.structure.places, potential.structure.ties, potential.structure.masses
-    freedom, m, pose, k = places.freedom, len(friction), potential.unmoved, potential.springs
-    closed = np.append(np.ones(m, dtype=bool), potential.openings(pose)[m:] < 0)
-    scale = GRAVITY * float(masses[freedom.translations - 1 :: freedom.nv].max())
-    tolerated = max(1e-9 * scale, ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+    freedom, pose, k = potential.structure.places.freedom, potential.unmoved, potential.springs
+    closed = touching(potential, pose)
+    scale, tolerated = heaviest(potential), tolerance(potential)
     for _ in range(ITERATIONS):
         rates, depth = fitting(potential.rates(pose)), -potential.openings(pose)
         stiffness = sprung(rates, np.where(closed, k, LEANING * k))
@@ -94,6 +94,25 @@ def _settled(potential: Potential, friction: Array, *, pressed: bool) -> Array:
     raise UnsettledError(pose.reshape(-1, freedom.nq))
 
 
+def touching(potential: Potential, pose: Array) -> Flags:
+    """What is closed at the start of a search, shape (m + t,): all contacts, and the ties that are taut."""
+    contacts = np.arange(len(potential.springs)) < len(potential.structure.k)
+    closed: Flags = contacts | (potential.openings(pose) < 0)
+    return closed
+
+
+def heaviest(potential: Potential) -> float:
+    """Weight of the heaviest body [N]."""
+    freedom = potential.structure.places.freedom
+    return GRAVITY * float(potential.structure.masses[:: freedom.nv].max())
+
+
+def tolerance(potential: Potential) -> float:
+    """Force that may be missing at rest [N]."""
+    ties = potential.structure.ties
+    return max(EXACT * heaviest(potential), ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+
+
 def is_stable(potential: Potential, friction: Array, closed: Flags, pose: Array) -> bool:
     """Whether no motion that friction allows takes energy from a pose at rest, of shape (n nq,)."""
     stiffness = potential.stiffness(pose, np.where(closed, potential.springs, 0.0))
@@ -104,9 +123,8 @@ def is_stable(potential: Potential, friction: Array, closed: Flags, pose: Array)
 def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array) -> csr_array:
     """Rates of the slip between bodies that friction holds, for unit velocities, shape (held, n nv).
 
-    It is the mean slip of the closed points with friction of each pair. Two edges of one joint that both held would
-    lock its rotation. In space it is the mean along both tangents, and the mean moment of the slips about the middle of
-    the points, by which a body would spin on its joint.
+    It is the mean slip of the closed lines with friction of each pair. Two edges of one joint that both held would
+    lock its rotation.
     """
     places = potential.structure.places
     holds = closed[: len(friction)] & (friction > 0)
@@ -114,14 +132,7 @@ def held_slips(potential: Potential, friction: Array, closed: Flags, pose: Array
     pairs, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
     group = np.full(len(friction), -1)
     group[holds] = np.argsort(np.argsort(first))[number]  # in the order in which the contacts name them
-    rates = potential.slip_rates(pose)
-    if len(rates) == 1:
-        return averaged(rates[0], group, len(pairs))
-    arms, grouped, middles = potential.spots(pose), group[holds], np.zeros((len(pairs), 2))
-    np.add.at(middles, grouped, arms[np.flatnonzero(holds)] / np.bincount(grouped)[grouped, None])
-    arms[np.flatnonzero(holds)] -= middles[grouped]
-    spins = csr_array(diags_array(arms[:, 0]) @ rates[1] - diags_array(arms[:, 1]) @ rates[0])
-    return csr_array(vstack([averaged(rows, group, len(pairs)) for rows in (*rates, spins)]))
+    return averaged(potential.slip_rates(pose)[0], group, len(pairs))
 
 
 def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:

@@ -55,10 +55,7 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
     try:
         _ = standing_masonry(masonry, effects).at_rest
     except UnsettledError as error:
-        if masonry.in_space:
-            advice = "raise k_n, or take solve_explicit, whose search for rest lets joints slip"
-            raise unsettled(masonry, error.pose[:, :3], advice) from None
-        raise unsettled(masonry, error.pose[:, :2]) from None
+        raise unsettled(masonry, error.pose) from None
 
 
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
@@ -70,13 +67,12 @@ def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
 
 
-def unsettled(masonry: Masonry, displacement: Array, advice: str = "raise k_n") -> ValueError:
+def unsettled(masonry: Masonry, pose: Array) -> ValueError:
     """What is said of masonry that stands as rigid blocks, but of which no pose of rest was found.
 
     Args:
         masonry: the masonry.
-        displacement: how far its free blocks have moved in the search [m], shape (free, axes).
-        advice: what to do about it.
+        pose: of its free blocks at the end of the search, shape (free, nq).
     """
     slide, joints = slippery(masonry)
     if slide:
@@ -84,11 +80,11 @@ def unsettled(masonry: Masonry, displacement: Array, advice: str = "raise k_n") 
             f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
             f"joints that need friction, of any coefficient above 0: {named(joints)}"
         )
-    moved = np.linalg.norm(displacement, axis=1)
+    moved = np.linalg.norm(pose[:, : 3 if masonry.in_space else 2], axis=1)
     gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= GONE * moved.max()]
     return ValueError(
         f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
-        f"{advice}"
+        "raise k_n"
     )
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 
 from ..compiled import compiled, inlined
-from ..geometry.frames import frames_of, push_body, swung, unswung, velocities
-from ..geometry.kinematics import Forces, Places, Ties, along, meeting, opening, over_face
+from ..geometry.frames import displaced, frames_of, place, push_body, swung, unswung, velocities
+from ..geometry.kinematics import Forces, Places, Ties, along, meeting, opening, over_face, where_friction_acts
 from ..geometry.poses import at_rest
-from ..geometry.vectors import dot, plus, tangents, vector
+from ..geometry.vectors import dot, minus, plus, tangents, vector
 from ..linear import entries, sprung
 from ..quantities import GRAVITY, Array, Integers
 from .structure import Structure, force_energy, weight_energy
@@ -56,19 +56,21 @@ class Potential:
     def slip_rates(self, pose: Array) -> tuple[csr_array, ...]:
         """Rates at which the points move along their faces for unit velocities, shape (m, n nv).
 
-        One matrix for each direction along a face: one in the plane, and the two `tangents` in space.
+        One matrix for each direction along a face: one in the plane, and in space the two `tangents` of the face at
+        rest, which turn with its body, where friction acts: halfway between the point and the face.
         """
-        places, masses = self.structure.places, self.structure.masses
+        places, masses = self.structure.places._replace(radius=0.0), self.structure.masses
         bodies, freedom = self._bodies[: len(places.body)], places.freedom
         rates = np.zeros((freedom.translations - 1, *bodies.shape, freedom.nv))
         _slip_rates(places, frames_of(pose, freedom), places.axes, np.zeros_like(masses), rates)
         return tuple(entries(values, bodies, len(masses)) for values in rates)
 
-    def spots(self, pose: Array) -> Array:
-        """Where each point of space is on its face along the two `tangents` [m], shape (m, 2)."""
-        places, frames = self.structure.places, frames_of(pose, self.structure.places.freedom)
-        met = [meeting(places, i, frames) for i in range(len(places.body))]
-        return np.array([[dot(along_face, one.across) for along_face in tangents(one.normal)] for one in met])
+    def slips(self, pose: Array) -> Array:
+        """How far each point of space has moved along its face from rest, see `slip_rates` [m], shape (m, 2)."""
+        places = self.structure.places
+        slips = np.empty((len(places.body), 2))
+        _slips(places, frames_of(pose, places.freedom), slips)
+        return slips
 
     @property
     def unmoved(self) -> Array:
@@ -188,10 +190,28 @@ def _slip_rates(places: Places, frames: Array, axes: tuple[int, ...], unit: Arra
                 if len(axes) == 2:
                     rates[0, i, side, j] = along(places, i, frames, unit).rate
                 else:
-                    meets = meeting(places, i, frames)
-                    velocity, (first, second) = over_face(places, i, meets, frames, unit), tangents(meets.normal)
+                    meets = where_friction_acts(places, meeting(places, i, frames))
+                    velocity = over_face(places, i, meets, frames, unit)
+                    first, second = tangents(vector(places.normal, i, axes))
+                    if bodies[1] >= 0:
+                        first = displaced(first, frames, bodies[1], first)
+                        second = displaced(second, frames, bodies[1], second)
                     rates[0, i, side, j], rates[1, i, side, j] = dot(first, velocity), dot(second, velocity)
                 unit[nv * bodies[side] + j] = 0.0
+
+
+@compiled
+def _slips(places: Places, frames: Array, slips: Array) -> None:
+    for i in range(len(slips)):
+        axes, body, face = places.axes, places.body[i], places.face_body[i]
+        at = vector(places.at, i, axes)
+        apart = displaced(place(frames, body, axes), frames, body, at)
+        first, second = tangents(vector(places.normal, i, axes))
+        if face >= 0:
+            at = plus(vector(places.face_at, i, axes), vector(places.between, i, axes))
+            apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
+            first, second = displaced(first, frames, face, first), displaced(second, frames, face, second)
+        slips[i, 0], slips[i, 1] = dot(first, apart), dot(second, apart)
 
 
 @compiled

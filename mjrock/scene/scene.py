@@ -28,6 +28,7 @@ from .frequencies import highest_frequency, rocking_frequency, tie_frequency
 from .masses import mass_diagonals, principal, products_of
 from .names import face_names, point_names
 from .potential import Potential
+from .rest_in_space import settled_in_space
 from .structure import Structure, energies
 
 RADIUS = 1e-6
@@ -240,6 +241,8 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, nq)."""
+        if self.settled is None and self.freedom == SPACE:
+            return settled_in_space(self.potential, self.friction)[0]
         return settled(self.potential, self.friction) if self.settled is None else self.settled
 
     @cached_property
@@ -260,8 +263,7 @@ class Scene:
         """Energy above the scene at rest [J], shape (steps,), of poses (steps, n, nq) and velocities (steps, n, nv)."""
         flat = (len(pose), -1)
         parts, _ = self.accounts(np.reshape(pose, flat), np.reshape(velocity, flat))
-        total: Array = parts.sum(axis=1) - self.rest_energies.sum()
-        return total
+        return np.asarray(parts.sum(axis=1) - self.rest_energies.sum())
 
     @cached_property
     def highest_frequency(self) -> float:

@@ -83,7 +83,7 @@ short. It says what the step of the scene costs in accuracy.
 
 
 def pushed(masonry: mr.Masonry, speed: float) -> np.ndarray:
-    """Velocities of a blow out of a facade, which grow with the height [m/s], shape (bodies, 6)."""
+    """Velocities of a blow along x, which grow with the height [m/s], shape (bodies, 6)."""
     height = masonry.centroids[list(masonry.free), 2]
     velocity = np.zeros((len(height), 6))
     velocity[:, 0] = np.round(speed * height / height.max(), 6)
@@ -104,4 +104,12 @@ def _facade() -> SpaceModel:
     return SpaceModel("facade_return_walls", "A facade with return walls", case, about, 2.5e-4)
 
 
-IN_SPACE = (_corner_block(), _facade())
+def _dome() -> SpaceModel:
+    masonry = mr.Masonry.dome(2.5, 0.25, 8, 4, k_n=1e9, friction=0.7)
+    case = mr.MasonryCase(masonry, 0.1, velocity=pushed(masonry, 0.3))
+    about = "A hemispherical dome of 8 lunes and 4 hoops, 2.5 m in radius and 0.25 m thick, without an oculus. A blow\n"
+    about += "along x grows with the height."
+    return SpaceModel("dome", "A dome of thirty-two voussoirs", case, about, 1e-4)
+
+
+IN_SPACE = (_corner_block(), _facade(), _dome())

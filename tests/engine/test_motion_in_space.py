@@ -16,6 +16,8 @@ import mjrock as mr
 from mjrock.engine.energy_work import ledger
 from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import Engine
+from mjrock.geometry.frames import SPACE
+from mjrock.geometry.poses import at_rest
 from mjrock.quantities import GRAVITY
 
 BLOCK = (0.6, 0.4, 2.0)
@@ -278,6 +280,18 @@ def test_a_damper_between_two_blocks_slows_both():
     explicit = mr.solve_explicit(case, timestep=1e-5)
     assert np.abs(run.pose - explicit.pose).max() < 1e-5
     stock_takes(mr.simulate(case, timestep=1e-3).pose, mr.masonry_mjcf(case, 1e-3), 1e-13)
+
+
+def test_a_dome_stays_where_it_rests():
+    """A ring of voussoirs wedges itself, and its friction is within the cones from the first step on."""
+    scene = mr.masonry_scene(mr.MasonryCase(mr.Masonry.dome(2.5, 0.25, 6, 3, k_n=1e9, friction=0.7), 1.0))
+    sunk = np.abs(scene.at_rest[:, :3]).max()
+    assert sunk > 1e-4
+    for pose, least, most in ((None, 0.0, 1e-4), (at_rest(18, SPACE), 0.1, 10.0)):
+        run = fixed(scene, course(scene, 0.01, pose=pose, velocity=np.zeros((18, 6))), 2e-4)
+        place = run.pose.reshape(-1, 18, 7)[:, :, :3]
+        far = np.abs(place - place[0]).max()
+        assert least * sunk <= far < most * sunk
 
 
 def test_a_fallen_block_is_named_and_ends_the_run():

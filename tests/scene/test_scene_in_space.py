@@ -14,9 +14,8 @@ import mjrock as mr
 from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.geometry.poses import angles, at_rest, coordinate_rates, from_rates, moved, turned
 from mjrock.quantities import GRAVITY
-from mjrock.scene.equilibrium import held_slips
-from mjrock.scene.masonry import require_standing
 from mjrock.scene.masses import coupling, products_of
+from mjrock.scene.rest_in_space import settled_in_space
 
 SKEW = Rotation.from_euler("xyz", (0.4, -0.3, 0.7)).as_matrix()
 
@@ -121,26 +120,40 @@ class TestPotential:
                 second[i, j] = ends / (4 * h * h)
         np.testing.assert_allclose(potential.hessian(pose).toarray(), second, atol=1e-5 * np.abs(second).max())
 
-    def test_at_rest_only_friction_holds_what_springs_do_not(self):
-        scene = pulled()
-        pose = scene.at_rest.ravel()
-        closed = scene.potential.openings(pose) < 0
-        grip = held_slips(scene.potential, scene.friction, closed, pose).toarray()
-        assert grip.shape == (3, 6)
-        left = scene.potential.gradient(pose)
-        assert np.linalg.norm(left) > 100.0
-        held = np.linalg.lstsq(grip.T, left, rcond=None)[0]
-        assert np.abs(left - grip.T @ held).max() < 1e-5
-
-    def test_friction_holds_two_slips_and_the_spin_of_a_joint(self):
-        scene = box((0.6, 0.4, 2.0))
-        pose = scene.potential.unmoved
-        grip = held_slips(scene.potential, scene.friction, np.ones(4, dtype=bool), pose).toarray()
-        base = np.array([(1, 0, 0, 0, -1, 0), (0, 1, 0, 1, 0, 0), (0, 0, 0, 0, 0, 1)])  # at its middle, 1 m below
-        assert np.linalg.matrix_rank(grip) == np.linalg.matrix_rank(np.vstack([grip, base])) == 3
+    def test_rates_of_slips_are_derivatives(self):
+        """Of two drums that have turned as one, the upper of them spun and slid on its joint, which does not open."""
+        column = mr.masonry_scene(mr.MasonryCase(mr.Masonry.column(0.5, 1.0, 2, k_n=1e9, friction=0.6), 1.0))
+        turn = Rotation.from_euler("xyz", (0.2, -0.1, 0.3))
+        places = turn.apply(column.rest + np.array([(0, 0, 0), (0.02, -0.01, 0)])) - column.rest
+        drums = np.column_stack([places, np.tile(np.roll(turn.as_quat(), 1), (2, 1))]).ravel()
+        potential, pose, h = column.potential, moved(drums, 0.4 * np.eye(12)[11], SPACE), 1e-6
+        on_joint = column.face_body >= 0
+        for j, way in enumerate(h * np.eye(12)):
+            ends = (potential.slips(moved(pose, sign * way, SPACE)) for sign in (1, -1))
+            slid = np.subtract(*ends) / (2 * h)
+            for rates, wanted in zip(potential.slip_rates(pose), slid.T, strict=True):
+                np.testing.assert_allclose(rates.toarray()[on_joint, j], wanted[on_joint], rtol=0, atol=1e-8)
 
 
 class TestRest:
+    def test_friction_within_its_cones_holds_what_springs_do_not(self):
+        scene = pulled()
+        pose, drag = settled_in_space(scene.potential, scene.friction)
+        left = scene.potential.gradient(pose.ravel())
+        assert np.linalg.norm(left) > 100.0
+        held = sum(
+            rates.T @ along for rates, along in zip(scene.potential.slip_rates(pose.ravel()), drag.T, strict=True)
+        )
+        np.testing.assert_allclose(left, held, rtol=0, atol=1e-5)
+        assert (np.linalg.norm(drag, axis=1) <= scene.friction * scene.k * scene.bears * (1 + 1e-9)).all()
+
+    def test_a_block_that_is_too_tall_for_its_base_falls(self):
+        """Upright all forces balance. The corners resist a tilt by k_n w t (t / 2)^2, and m g h drives it."""
+        soft = 960 * GRAVITY * 1.0 / (0.24 * 0.2**2)
+        assert box((0.6, 0.4, 2.0), k_n=1.1 * soft).at_rest[0, 2] < -0.03
+        with pytest.raises(ValueError, match="do not stand on their contacts"):
+            _ = box((0.6, 0.4, 2.0), k_n=0.9 * soft).at_rest
+
     def test_a_block_sinks_by_its_weight(self):
         scene = box((0.6, 0.4, 2.0))
         np.testing.assert_allclose(scene.at_rest, [(0, 0, -960 * GRAVITY / 24e6, 1, 0, 0, 0)], atol=1e-15)
@@ -181,8 +194,11 @@ class TestRest:
         x, z, theta = planar.at_rest.T
         none = np.zeros(2)
         wanted = np.column_stack([x, none, z, np.cos(theta / 2), none, np.sin(theta / 2), none])
-        np.testing.assert_allclose(space.at_rest, wanted, atol=1e-12)
-        np.testing.assert_allclose(space.rest_energies, planar.rest_energies, rtol=1e-9, atol=1e-9)
+        shear = np.abs(space.potential.slips(space.at_rest.ravel())).max()  # friction is that of stiff springs in space
+        np.testing.assert_allclose(space.at_rest, wanted, rtol=0, atol=shear)
+        assert shear < 2e-4 * np.abs(wanted[:, 2]).max()
+        there = space.accounts(wanted.reshape(1, -1), np.zeros((1, 12)))[0][0]
+        np.testing.assert_allclose(there, planar.rest_energies, rtol=1e-9, atol=1e-9)
         assert space.masses[[0, 2, 4]] == pytest.approx(planar.masses[:3])
 
     def test_effects_act_where_they_are(self):
@@ -205,9 +221,3 @@ class TestRest:
         added = 960 * 240 / 1200 * (apart @ apart * np.eye(3) - np.outer(apart, apart))
         np.testing.assert_allclose(scene.inertia[0], wall.inertia + added)
         assert dataclasses.replace(scene, title="another").key == scene.key
-
-
-def test_a_dome_on_joints_that_hold_is_sent_to_explicit_steps():
-    """Friction that holds three slips of each joint leaves the voussoirs no motion by which they could settle."""
-    with pytest.raises(ValueError, match=r"67 more would fall; raise k_n, or take solve_explicit"):
-        require_standing(mr.Masonry.dome(5.0, 0.5, 12, 6, k_n=1e10, friction=0.9))

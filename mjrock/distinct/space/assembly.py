@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...geometry.vectors import tangents
 from ...problem.masonry.faces_of_joints import faces_of_joints
 from ...problem.masonry.joints_in_space import Face
 from ...problem.masonry.masonry import Masonry
@@ -144,6 +145,15 @@ def started(system: System, pose: Array, velocity: Array) -> None:
     columns = named((*PLACE, *QUATERNION), pose) | named(("vx", "vy", "vz"), velocity[:, :3])
     for name, values in (columns | named_vectors(momentum=momentum)).items():
         bodies[name] = values
+
+
+def take_grips(points: Rows, drag: Array) -> None:
+    """Let points start with the friction at rest, see `settled_in_space`, in the axes of their faces."""
+    first, second = np.array([tangents(tuple(normal)) for normal in vectors(points, "normal").tolist()]).swapaxes(0, 1)
+    force, sprung = drag[:, :1] * first + drag[:, 1:] * second, np.isfinite(points["k_s"])[:, None]
+    grip = np.where(sprung, -force / np.where(sprung, points["k_s"][:, None], 1.0), force)
+    for name, values in named_vectors(grip=grip).items():
+        points[name] = values
 
 
 def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.sparse import block_diag, csr_array
 
-from ...quantities import Array, Integers
+from ...quantities import Array
 from ..system import Rows
 from .system import AXES
 
@@ -72,10 +72,3 @@ def turns(quaternions: Array) -> Array:
         (2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)),
     )
     return np.moveaxis(np.array(rows), 2, 0)
-
-
-def applied(matrices: Array, number: Integers, values: Array) -> Array:
-    """A matrix of each row times its vector; rows with a negative number have none, and zero comes out."""
-    products: Array = np.einsum("mij,mj->mi", matrices[np.maximum(number, 0)], values)
-    products[number < 0] = 0.0
-    return products

@@ -12,16 +12,16 @@ from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.effects import Effect
 from ...result.response import State
+from ...scene.equilibrium import UnsettledError
 from ...scene.explicit_step import SHARE
 from ...scene.masonry import masonry_course, require_carried, standing_masonry, unsettled
+from ...scene.rest_in_space import settled_in_space
 from ...scene.scene import Scene
 from ..following import Setup
-from .assembly import copied, masonry_system, moved_by, started
-from .columns import PLACE, QUATERNION, stacked
+from .assembly import copied, masonry_system, moved_by, started, take_grips
 from .encounters import EncountersInSpace
 from .limit import longest_step
 from .loop import advance
-from .rest import UnsettledError, settle
 from .system import System
 
 
@@ -48,9 +48,10 @@ def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene,
     scene = standing_masonry(masonry, effects)
     system = masonry_system(scene, masonry)
     try:
-        settle(system)
+        pose, drag = settled_in_space(scene.potential, scene.friction)
     except UnsettledError as error:
         require_carried(masonry, effects)
-        raise unsettled(masonry, error.place) from None
-    pose = np.column_stack([stacked(system.bodies, PLACE), stacked(system.bodies, QUATERNION)])
+        raise unsettled(masonry, error.pose) from None
+    started(system, pose, np.zeros((len(pose), 6)))
+    take_grips(system.lines, drag)
     return replace(scene, settled=pose), system
