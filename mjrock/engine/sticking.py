@@ -33,7 +33,9 @@ from .points import Points, Reach
 from .record import Record
 from .rows import Step, row_of
 from .sliding import slipping
-from .touches import ROUNDING
+
+EQUAL = 1e-6
+"""Difference of two penetrations, over the lesser one, that is rounding, as of the two ends of an edge in space [-]."""
 
 
 class Joints(NamedTuple):
@@ -107,14 +109,14 @@ def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, s
 def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
     """The deepest point of a joint, -1 where none is closed.
 
-    Of two that are equally deep but for rounding, as on an edge in space, it is the one that stuck.
+    On an edge in space two points are equally deep but for rounding. It is the one that stuck.
     """
-    point, most = -1, 0.0
+    point, most, stuck = -1, 0.0, joints.stuck[j]
+    if len(places.axes) == 3 and stuck >= 0 and depth(places, stuck, frames) > 0:
+        point, most = stuck, (1 + EQUAL) * depth(places, stuck, frames)
     for i in range(len(places.body)):
-        if joints.of[i] == j:
-            deep = depth(places, i, frames)
-            if deep > most + (ROUNDING if most > 0 and joints.stuck[j] == point else 0.0):
-                point, most = i, deep
+        if joints.of[i] == j and depth(places, i, frames) > most:
+            point, most = i, depth(places, i, frames)
     return point
 
 
