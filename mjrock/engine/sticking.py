@@ -12,8 +12,8 @@ Friction acts halfway between the faces that overlap at the point, not at the po
 slip, the point still moves along its face as the body turns, by half the penetration times the rotation. The place that
 is remembered moves with it.
 
-In space it is the same along both tangents of the face. Only the displacement is put back. A spin about the normal is
-left as it is, since none of the two terms adds to it where a body turns about an edge.
+In space it is the same along both tangents of the face. Only the displacement is put back: a spin about the normal is
+left as it is, because two points that stick hardly creep against each other.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
 
 @inlined
 def ways_along(places: Places, i: int, frames: Array, axes: tuple[int, ...]) -> tuple[Vector, ...]:
-    """Unit vectors along the face of point i: one in the plane, and in space two that turn with the body of the face."""
+    """Unit vectors along the face of point i: one in the plane, and in space two that turn with its body."""
     face = places.face_body[i]
     if len(axes) == 2:
         return (tangent(meeting(places, i, frames).normal),)
