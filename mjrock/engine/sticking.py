@@ -12,7 +12,8 @@ Friction acts halfway between the faces that overlap at the point, not at the po
 slip, the point still moves along its face as the body turns, by half the penetration times the rotation. The place that
 is remembered moves with it.
 
-Bodies of space are not put back. Their edges drift by the two terms above.
+In space it is the same along both tangents of the face. Only the displacement is put back: a spin about the normal is
+left as it is, because two points that stick hardly creep against each other.
 """
 
 from __future__ import annotations
@@ -22,15 +23,19 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined, jitable
-from ..geometry.frames import PLANE, take_frames
-from ..geometry.kinematics import Places, along, depth, gap, meeting
-from ..geometry.vectors import scaled, tangent
+from ..geometry.frames import coordinates, displaced, take_frames, turn_between
+from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, where_friction_acts
+from ..geometry.vectors import Vector, dot, minus, spun, tangent, tangents, vector
 from ..quantities import Array, Integers
 from ..scene.scene import Scene
 from .pace import Pace, step_of
 from .points import Points, Reach
 from .record import Record
 from .rows import Step, row_of
+from .sliding import slipping
+
+EQUAL = 1e-6
+"""Difference of two penetrations, over the lesser one, that is rounding, as of the two ends of an edge in space [-]."""
 
 
 class Joints(NamedTuple):
@@ -40,7 +45,7 @@ class Joints(NamedTuple):
         of: the joint of each contact point, -1 where it has none, shape (m,).
         body: the body that stands on each joint, shape (joints,).
         stuck: the point of each joint that sticks, -1 where none does, shape (joints,).
-        anchor: where that point stuck on its face [m], shape (joints,).
+        anchor: where that point stuck along each tangent of its face [m], shape (joints, 1 in the plane or 2).
     """
 
     of: Integers
@@ -50,18 +55,19 @@ class Joints(NamedTuple):
 
     @classmethod
     def of_scene(cls, scene: Scene) -> Joints:
-        """The joints of a planar scene in which every body stands on one other body or on the ground; else none."""
+        """The joints of a scene in which every body stands on one other body or on the ground; else none."""
         rough = (scene.friction > 0) & (scene.bears > 0)
         below = {
             int(body): set(scene.face_body[rough & (scene.point_body == body)]) for body in scene.point_body[rough]
         }
         order: list[int] = []
-        if scene.freedom == PLANE and all(len(bodies) == 1 for bodies in below.values()):
+        if all(len(bodies) == 1 for bodies in below.values()):
             order = sorted(below, key=lambda body: _height(body, below))
         of = np.full(len(scene.k), -1)
         for joint, body in enumerate(order):
             of[rough & (scene.point_body == body)] = joint
-        return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros(len(order)))
+        tangents = scene.freedom.translations - 1
+        return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), tangents)))
 
 
 def _height(body: int, below: dict[int, set[int]]) -> int:
@@ -95,14 +101,19 @@ def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, s
     dashpot, inertia = row_of(law, points.inertia, i, step)
     acceleration = (gap(places, i, frames, after, after).rate - start.rate) / step.h
     pressing = -(law.k[i] * start.value + dashpot * start.rate + inertia * acceleration)
-    dragging = impratio * inertia * along(places, i, frames, after).bodies / step.h
-    return pressing > 0 and abs(dragging) <= law.friction[i] * pressing
+    slip = slipping(places, i, where_friction_acts(places, meeting(places, i, frames)), frames, after).speed
+    return pressing > 0 and abs(impratio * inertia * slip / step.h) <= law.friction[i] * pressing
 
 
 @jitable
 def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
-    """The deepest point of a joint, -1 where none is closed."""
-    point, most = -1, 0.0
+    """The deepest point of a joint, -1 where none is closed.
+
+    On an edge in space two points are equally deep but for rounding. It is the one that stuck.
+    """
+    point, most, stuck = -1, 0.0, joints.stuck[j]
+    if len(places.axes) == 3 and stuck >= 0 and depth(places, stuck, frames) > 0:
+        point, most = stuck, (1 + EQUAL) * depth(places, stuck, frames)
     for i in range(len(places.body)):
         if joints.of[i] == j and depth(places, i, frames) > most:
             point, most = i, depth(places, i, frames)
@@ -119,38 +130,63 @@ def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
     return False
 
 
-@jitable
-def rolled(places: Places, i: int, moved: Moved) -> float:
-    """How far point i moves along its face in a step without slip, as the bodies turn in the plane [m]."""
-    body, face = places.body[i], places.face_body[i]
-    turned = moved.pose[3 * body + 2] - moved.from_pose[3 * body + 2]
+@inlined
+def ways_along(places: Places, i: int, frames: Array, axes: tuple[int, ...]) -> tuple[Vector, ...]:
+    """Unit vectors along the face of point i: one in the plane, and in space two that turn with its body."""
+    face = places.face_body[i]
+    if len(axes) == 2:
+        return (tangent(meeting(places, i, frames).normal),)
+    first, second = tangents(vector(places.normal, i, axes))
+    if face < 0:
+        return first, second
+    return displaced(first, frames, face, first), displaced(second, frames, face, second)
+
+
+@inlined
+def rolled(places: Places, i: int, meets: Meeting, way: Vector, moved: Moved) -> float:
+    """How far point i moves along one way of its face in a step without slip, as the bodies turn [m]."""
+    axes, face = places.axes, places.face_body[i]
+    turned = turn_between(moved.from_pose, moved.pose, places.body[i], axes)
     if face >= 0:
-        turned -= moved.pose[3 * face + 2] - moved.from_pose[3 * face + 2]
-    return -0.25 * turned * (depth(places, i, moved.from_frames) + depth(places, i, moved.frames))
+        turned = minus(turned, turn_between(moved.from_pose, moved.pose, face, axes))
+    along = turned[0] if len(way) == 2 else dot(way, spun(turned, meets.normal))
+    return -0.25 * along * (depth(places, i, moved.from_frames) + depth(places, i, moved.frames))
+
+
+@inlined
+def shift(frames: Array, body: int, way: Vector, distance: float) -> None:
+    """Shift a body along a way."""
+    for axis in range(len(way)):
+        frames[body, axis] += distance * way[axis]
 
 
 @jitable
 def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> None:
-    """Shift the body on joint j so that point i, the deepest of the joint and sticking, is where it stuck.
-
-    A body of the plane is shifted along the one direction of the face.
+    """Shift the body on joint j along its face so that point i, its deepest and sticking, is where it stuck.
 
     i is -1 where the deepest point does not stick. Joints, and pose and frames after the step, are brought up to date.
     """
-    places, q, frames = points.places, moved.pose, moved.frames
-    if i < 0 or joints.stuck[j] != i:
-        joints.stuck[j] = i
-        if i >= 0:
-            joints.anchor[j] = along(places, i, frames, q).place
+    places, frames, body = points.places, moved.frames, joints.body[j]
+    first, start = joints.stuck[j] != i, coordinates(places.axes) * body
+    joints.stuck[j] = i
+    if i < 0:
         return
-    joints.anchor[j] += rolled(places, i, moved)
-    drift, body = along(places, i, frames, q).place - joints.anchor[j], joints.body[j]
-    back = scaled(-drift, tangent(meeting(places, i, frames).normal))
-    frames[body, 0], frames[body, 1] = q[3 * body] + back[0], q[3 * body + 1] + back[1]
-    if presses(places, points.reach, body, frames):
-        frames[body, 0], frames[body, 1] = q[3 * body], q[3 * body + 1]
-    else:
-        q[3 * body], q[3 * body + 1] = frames[body, 0], frames[body, 1]
+    meets, ways = meeting(places, i, frames), ways_along(places, i, frames, places.axes)
+    for k in range(len(ways)):
+        place = dot(ways[k], meets.across)
+        if first:
+            joints.anchor[j, k] = place
+        else:
+            joints.anchor[j, k] += rolled(places, i, meets, ways[k], moved)
+            shift(frames, body, ways[k], joints.anchor[j, k] - place)
+    if first:
+        return
+    pressed = presses(places, points.reach, body, frames)
+    for axis in range(len(places.axes)):
+        if pressed:
+            frames[body, axis] = moved.pose[start + axis]
+        else:
+            moved.pose[start + axis] = frames[body, axis]
 
 
 @inlined

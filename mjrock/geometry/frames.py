@@ -18,7 +18,13 @@ import numpy as np
 
 from ..compiled import inlined, jitable
 from ..quantities import Array
-from .vectors import Vector, moment, plus, vector
+from .vectors import Vector, minus, moment, plus, scaled, spun, vector
+
+
+@inlined
+def coordinates(axes: tuple[int, ...]) -> int:
+    """Coordinates of a body."""
+    return 3 if len(axes) == 2 else 7
 
 
 @inlined
@@ -39,7 +45,7 @@ class Freedom(NamedTuple):
     @property
     def nq(self) -> int:
         """Coordinates of a body."""
-        return 3 if len(self.axes) == 2 else 7
+        return coordinates(self.axes)
 
     @property
     def nv(self) -> int:
@@ -144,6 +150,17 @@ def spin(frames: Array, v: Array, body: int, axes: tuple[int, ...]) -> Vector:
         return (v[3 * body + 2],)
     local = v[6 * body + 3], v[6 * body + 4], v[6 * body + 5]
     return plus(local, swung(frames, body, local))
+
+
+@inlined
+def turn_between(start: Array, pose: Array, body: int, axes: tuple[int, ...]) -> Vector:
+    """Rotation of a body from one pose to the next, in the axes of the world; in space twice the sine of its half."""
+    if len(axes) == 2:
+        return (pose[3 * body + 2] - start[3 * body + 2],)
+    w, later = start[7 * body + 3], pose[7 * body + 3]
+    old = start[7 * body + 4], start[7 * body + 5], start[7 * body + 6]
+    new = pose[7 * body + 4], pose[7 * body + 5], pose[7 * body + 6]
+    return scaled(2.0, plus(minus(scaled(w, new), scaled(later, old)), spun(old, new)))
 
 
 @jitable

@@ -13,7 +13,8 @@ from mjrock.engine.points import points_of
 from mjrock.engine.sticking import Joints, Moved, deepest, presses, rolled
 from mjrock.engine.touches import Openings
 from mjrock.geometry.frames import frames_of
-from mjrock.geometry.kinematics import gap, gaps
+from mjrock.geometry.kinematics import gap, gaps, meeting
+from mjrock.geometry.vectors import tangent
 from mjrock.method import METHOD
 from mjrock.scene.wall import wall_course, wall_scene
 
@@ -203,8 +204,11 @@ def test_an_edge_rolls_about_the_place_of_friction(i):
         later[2] += 3 * turn  # the face turns as well, and only what is left turns the point against it
     depth = [-gap(scene.places, i, frames_of(q), q, q).value for q in (pose, later)]
     relative = turn if i == 1 else -2 * turn
-    moved = rolled(scene.places, i, Moved(pose, frames_of(pose), later, frames_of(later)))
-    assert moved == pytest.approx(-relative * 0.5 * np.mean(depth), rel=1e-12)
+    meets = meeting(scene.places, i, frames_of(later))
+    step = Moved(pose, frames_of(pose), later, frames_of(later))
+    assert rolled(scene.places, i, meets, tangent(meets.normal), step) == pytest.approx(
+        -relative * 0.5 * np.mean(depth), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(("share", "slides"), [(0.9, False), (1.2, True)])
