@@ -53,16 +53,14 @@ class Run:
     @cached_property
     def t(self) -> Array:
         """Times of the samples [s]."""
-        times: Array = self.spacing * np.arange(len(self.samples.pose), dtype=float)
-        return times
+        return np.asarray(self.spacing * np.arange(len(self.samples.pose), dtype=float))
 
     @cached_property
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
         at_rest = float(self.scene.rest_energies.sum()) + self._preloaded
         kinetic, potential, elastic = self.samples.energy.T
-        total: Array = kinetic + potential + elastic - at_rest
-        return total
+        return np.asarray(kinetic + potential + elastic - at_rest)
 
     @property
     def _preloaded(self) -> float:

@@ -122,8 +122,7 @@ class Solids:
     @cached_property
     def rests(self) -> Array:
         """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
-        rests: Array = laden(self.masonry, self.effects)[1][list(self.shown)]
-        return rests
+        return laden(self.masonry, self.effects)[1][list(self.shown)]
 
     @cached_property
     def facets(self) -> Facets:
@@ -135,8 +134,7 @@ class Solids:
         bodies = zip(blocks, self.rests, strict=True)
         about = [(block.corners - rest)[list(face)] for block, rest in bodies for face in block.faces]
         for row, face in zip(corners, about, strict=True):
-            row[:] = face[-1]
-            row[: len(face)] = face
+            row[: len(face)], row[len(face) :] = face, face[-1]
         return Facets(corners, body, counts)
 
     def displaced(self, frame: int, block: int | None, point: Array) -> Array:
@@ -144,8 +142,7 @@ class Solids:
         if block not in self.shown:
             return point
         body = self.shown.index(block)
-        drawn: Array = self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0]
-        return drawn
+        return np.asarray(self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0])
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
@@ -210,5 +207,4 @@ class Solids:
         """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
         frames = self._frames(frame)[body]
         moved = frames[:, None, :3] + points @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
-        drawn: Array = self.rests[body, None] + points + self.magnify * moved
-        return drawn
+        return self.rests[body, None] + points + self.magnify * moved

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects_in_space import anchored_at, held_at
 from ..problem.wall.effects import Tie
 from ..quantities import Array
-from ..result.ties_in_space import elongation_in_space
+from .section import Update, pulling
 from .solids import Solids
 
 GROUND, STEEL = "#e6e6e2", "#12406b"
@@ -33,8 +33,6 @@ ZOOM = 1.15
 """Size of the picture, over that which leaves room for labels on every side [-]."""
 FILLED = (0.84, 0.74)
 """Share of the width and of the height of a figure that moving blocks and their ground fill [-]."""
-
-Update = Callable[[int], None]
 
 
 class Faces(PolyCollection):
@@ -54,11 +52,7 @@ class Faces(PolyCollection):
 
 
 def in_three(ax: Axes) -> Any:
-    """Axes of three dimensions.
-
-    Raises:
-        ValueError: for axes of two.
-    """
+    """Axes of three dimensions; a ValueError says if they have two."""
     if not isinstance(ax, Axes3D):
         raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
     return ax
@@ -118,18 +112,16 @@ def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
     gone once it broke."""
     space, moves = in_three(ax), []
     for tie in (effect for effect in case.effects if isinstance(effect, Tie)):
-        elongation = elongation_in_space(case, tie, bodies.poses)
-        yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
         ends = [(held_at(tie), tie.block), (anchored_at(tie), tie.anchor_block)]
         (line,) = space.plot([], [], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
-        moves.append((line, tie, ends, elongation, yielded))
+        moves.append((line, ends, *pulling(case, tie, bodies.poses)))
 
     def update(frame: int) -> None:
-        for line, tie, ends, elongation, yielded in moves:
+        for line, ends, pulls, broken in moves:
             points = [bodies.displaced(frame, block, point) for point, block in ends]
             line.set_data_3d(*np.transpose(points))
-            line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
-            line.set_visible(bool(yielded[frame] <= tie.breaks_at))
+            line.set_linestyle("-" if pulls[frame] else ":")
+            line.set_visible(not broken[frame])
 
     return update
 
@@ -169,8 +161,8 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                ground = Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5, clip_on=False)
-                ax.add_collection3d(ground)
+                look = {"facecolors": GROUND, "edgecolors": "0.6", "zorder": 0.5, "clip_on": False}
+                ax.add_collection3d(Poly3DCollection(patch, **look))
     return level
 
 
@@ -178,12 +170,10 @@ def _normals(corners: Array) -> Array:
     """Unit normals out of faces, shape (faces, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    unit: Array = normals / np.where(length > 0, length, 1.0)
-    return unit
+    return np.asarray(normals / np.where(length > 0, length, 1.0))
 
 
 def _lit(colours: Array, normals: Array) -> Array:
     """Colours of faces in the light, shape (faces, 3)."""
     bright = DARKEST + (1 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
-    shown: Array = colours * bright[:, None]
-    return shown
+    return np.asarray(colours * bright[:, None])

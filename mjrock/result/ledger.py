@@ -71,8 +71,7 @@ class Ledger:
         taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values())
         gone = sum(taken, self.friction) - self.ground
         total: Array = self.held + gone
-        residual: Array = total - total[0]
-        return residual
+        return np.asarray(total - total[0])
 
     def at(self, t: Array) -> Ledger:
         """The ledger at other times, interpolated."""

@@ -119,5 +119,4 @@ def displacement_at(case: Case, pose: Array, z: float) -> Array:
     """
     wall = case.wall
     above = require_within("height z", z, 0.0, 2 * wall.h * (1 + 1e-12), "m") - wall.centroid_height
-    moved: Array = pose[:, 0] + above * np.sin(pose[:, 2]) + wall.centroid_offset * (1 - np.cos(pose[:, 2]))
-    return moved
+    return np.asarray(pose[:, 0] + above * np.sin(pose[:, 2]) + wall.centroid_offset * (1 - np.cos(pose[:, 2])))

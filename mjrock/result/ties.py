@@ -96,8 +96,7 @@ def elongation_at(pose: Array, tie: Tie, arm: Array) -> Array:
     sine, cosine = np.sin(theta), np.cos(theta)
     across = tie.length + x + arm[0] * (cosine - 1) + arm[1] * sine
     up = z - arm[0] * sine + arm[1] * (cosine - 1) - tie.rise
-    elongation: Array = np.hypot(across, up) - tie.reach
-    return elongation
+    return np.asarray(np.hypot(across, up) - tie.reach)
 
 
 def held_by(case: Any, tie: Tie) -> tuple[int, Array, Array]:

@@ -17,8 +17,7 @@ def elongation_in_space(case: MasonryCase, tie: Tie, pose: Array) -> Array:
     across = held - anchor + _displaced(case, tie.block, held, pose)
     if tie.anchor_block is not None:
         across = across - _displaced(case, tie.anchor_block, anchor, pose)
-    elongation: Array = np.linalg.norm(across, axis=1) - tie.reach
-    return elongation
+    return np.asarray(np.linalg.norm(across, axis=1) - tie.reach)
 
 
 def _displaced(case: MasonryCase, block: int, point: Array, pose: Array) -> Array:
@@ -30,5 +29,4 @@ def _displaced(case: MasonryCase, block: int, point: Array, pose: Array) -> Arra
     w, v, arm = moved[:, 3:4], moved[:, 4:], point - laden(case.masonry, case.effects)[1][block]
     # (R - 1) r = 2 w v x r + 2 v x (v x r)
     turned = np.cross(v, np.broadcast_to(arm, v.shape))
-    displaced: Array = moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned)
-    return displaced
+    return np.asarray(moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned))

@@ -138,8 +138,7 @@ def margins(points: Rows, edges: Rows) -> Array:
     margin = np.empty(len(points))
     for i, (place, first, last) in enumerate(zip(places, points["first"], points["last"], strict=True)):
         margin[i] = max(float((edges["reach"][first:last] - ways[first:last] @ place).min()), 0.0)
-    square: Array = margin**2
-    return square
+    return np.asarray(margin**2)
 
 
 def started(system: System, pose: Array, velocity: Array) -> None:

@@ -57,8 +57,7 @@ def anchored_at(effect: Tie | Damper) -> Array:
     if effect.anchor is not None:
         return np.array(effect.anchor)
     rise = effect.rise if isinstance(effect, Tie) else 0.0
-    anchor: Array = held_at(effect) + np.array([-effect.length, 0.0, rise])
-    return anchor
+    return np.asarray(held_at(effect) + np.array([-effect.length, 0.0, rise]))
 
 
 def force_of(effect: Effect) -> Array:

@@ -131,8 +131,7 @@ def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list
 def _normals(corners: Array) -> Array:
     """Unit normals out of the edges of a counterclockwise outline, shape (n, 2)."""
     edges = np.roll(corners, -1, axis=0) - corners
-    made: Array = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None]
-    return made
+    return np.asarray(np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None])
 
 
 def _overlap(one: Outline, other: Outline) -> float:

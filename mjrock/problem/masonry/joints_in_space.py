@@ -55,14 +55,12 @@ class SpaceJoint:
     @cached_property
     def axes(self) -> Array:
         """Two unit vectors in the plane of the joint, right-handed with the normal, shape (2, 3)."""
-        axes: Array = axes_across(self.normal[None])[0]
-        return axes
+        return np.asarray(axes_across(self.normal[None])[0])
 
     @cached_property
     def flat(self) -> Array:
         """The outline along `axes`, from its first corner [m], shape (n, 2)."""
-        flat: Array = (self.outline - self.outline[0]) @ self.axes.T
-        return flat
+        return np.asarray((self.outline - self.outline[0]) @ self.axes.T)
 
     @cached_property
     def area(self) -> float:
@@ -82,8 +80,7 @@ class SpaceJoint:
     @cached_property
     def middle(self) -> Array:
         """Centroid of the area of the joint [m], shape (3,)."""
-        middle: Array = self.outline[0] + convex.centroid(self.flat) @ self.axes
-        return middle
+        return np.asarray(self.outline[0] + convex.centroid(self.flat) @ self.axes)
 
     @property
     def is_bed(self) -> bool:
@@ -104,8 +101,7 @@ def axes_across(normals: Array) -> Array:
     """Two unit vectors across each of some normals, shape (m, 3), right-handed with it, shape (m, 2, 3)."""
     first = np.cross(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
     first /= np.linalg.norm(first, axis=1)[:, None]
-    axes: Array = np.stack([first, np.cross(normals, first)], axis=1) + 0.0
-    return axes
+    return np.asarray(np.stack([first, np.cross(normals, first)], axis=1) + 0.0)
 
 
 def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:

@@ -289,5 +289,4 @@ class Masonry(FormsInSpace, Exchange):
         if not xi.any():
             return np.zeros(len(xi))
         omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)
-        made: Array = 2 * xi / omega
-        return made
+        return np.asarray(2 * xi / omega)

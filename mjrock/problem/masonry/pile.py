@@ -84,14 +84,12 @@ class Pile:
     @cached_property
     def _arms(self) -> Array:
         """Centroid of each block that is not fixed from the middle of the base [m], shape (bodies, 2)."""
-        arms: Array = self.masonry.centroids[list(self.masonry.free)] - self.masonry.joints[self.base].middle
-        return arms
+        return np.asarray(self.masonry.centroids[list(self.masonry.free)] - self.masonry.joints[self.base].middle)
 
     @cached_property
     def centroid(self) -> Array:
         """Centroid of the whole from the middle of the base [m], shape (2,)."""
-        centroid: Array = self.masses @ self._arms / self.masses.sum()
-        return centroid
+        return np.asarray(self.masses @ self._arms / self.masses.sum())
 
     @cached_property
     def inertia(self) -> float:

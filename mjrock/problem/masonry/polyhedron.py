@@ -128,8 +128,7 @@ class Polyhedron:
         ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
         ways /= np.linalg.norm(ways, axis=1)[:, None]
         apart = np.abs(ways @ ways.T) < 1 - 1e-12
-        first: Array = ways[[bool(apart[i, :i].all()) for i in range(len(ways))]]
-        return first
+        return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
 
     @cached_property
     def _bulk(self) -> Bulk:

@@ -241,8 +241,7 @@ class Case:
 
     def returns_from(self, theta: Array) -> Flags:
         """Whether the wall may still come back from rotations of either sign [rad], shape (n,)."""
-        returns: Flags = (theta <= self.overturning_rotation) & (theta >= -self.inward_limit)
-        return returns
+        return np.asarray((theta <= self.overturning_rotation) & (theta >= -self.inward_limit))
 
     def returning(self, theta: Array) -> int:
         """How many samples of a motion come before the wall can no longer come back, one at least."""
@@ -253,8 +252,7 @@ class Case:
         """Kinetic and potential energy of the rigid wall, above the wall at rest [J], without ties; shape (n,)."""
         outwards = np.where(theta == 0, omega, theta) >= 0
         inertia = np.where(outwards, self.wall.inertia_about(1), self.wall.inertia_about(-1))
-        energy: Array = self.restoring.energy(theta) + 0.5 * inertia * omega**2
-        return energy
+        return np.asarray(self.restoring.energy(theta) + 0.5 * inertia * omega**2)
 
     @cached_property
     def release_energy(self) -> float:
