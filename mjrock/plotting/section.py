@@ -94,7 +94,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
 def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     """Ties of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
     low, high = bodies.extent()
-    ties, updates = [effect for effect in case.effects if isinstance(effect, Tie)], []
+    ties, updates = case.each(Tie), []
     edge = float(low[0]) - 0.25 * float(high[1] - low[1])
     for i, tie in enumerate(ties):
         updates.append(_tie(ax, case, tie, bodies, markersize=5, edge=edge))

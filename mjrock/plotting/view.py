@@ -111,7 +111,7 @@ def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
     """Ties of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
     gone once it broke."""
     space, moves = in_three(ax), []
-    for tie in (effect for effect in case.effects if isinstance(effect, Tie)):
+    for tie in case.each(Tie):
         ends = [(held_at(tie), tie.block), (anchored_at(tie), tie.anchor_block)]
         (line,) = space.plot([], [], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
         moves.append((line, ends, *pulling(case, tie, bodies.poses)))

@@ -45,6 +45,11 @@ class Comparison:
     def _both(self) -> tuple[Response, Response]:
         return self.reference, self.candidate
 
+    @property
+    def _labels(self) -> tuple[str, str]:
+        reference, candidate = (response.solver for response in self._both)
+        return (reference, candidate) if reference != candidate else (f"{reference} 1", f"{candidate} 2")
+
     @cached_property
     def pairs(self) -> Integers | None:
         """Numbers of the impacts that belong to each other, -1 for none, shape (n, 2); None on a base at rest."""
@@ -89,12 +94,13 @@ class Comparison:
         if self.pairs is not None:
             return self._values(*(_largest_after(r) / alpha for r in self._both))
         skip = 0 if self.reference.case.released_outwards else 1
-        return _columns(*(r.peaks[skip:] / alpha for r in (self.reference, self.candidate)))
+        return _columns(*(r.peaks[skip:] / alpha for r in self._both))
 
     @property
     def first_rebound_peak(self) -> tuple[float, float]:
         """The first rotation maximum after an impact as a share of alpha, reference and candidate [-]."""
-        return _first(self.rebound_peaks)
+        first, second = self.rebound_peaks[0].tolist() if len(self.rebound_peaks) else (math.nan, math.nan)
+        return first, second
 
     @property
     def outcomes(self) -> tuple[Outcome, Outcome]:
@@ -110,7 +116,7 @@ class Comparison:
             "energy loss": ("J", self.energy_loss),
             "energy loss share": ("of release", self.energy_share),
         }
-        solvers = _labels(self.reference, self.candidate)
+        solvers = self._labels
         count = max(len(values) for _, values in columns.values())
         return [
             {"impact": i + 1}
@@ -131,7 +137,7 @@ class Comparison:
 
     def table(self, most: int = 6) -> str:
         """The first `most` impacts and the totals as text, for a terminal."""
-        labels = _labels(self.reference, self.candidate)
+        labels = self._labels
         columns = (
             ("time [s]", self.impact_times, "10.4f"),
             ("restitution [-]", self.restitution, "10.4f"),
@@ -155,7 +161,7 @@ class Comparison:
         if self.reference.case.shaken:
             lines.append("Under ground motion the restitution is that of single impacts, and none of free rocking.")
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
-        for label, response in zip(labels, (self.reference, self.candidate), strict=True):
+        for label, response in zip(labels, self._both, strict=True):
             lines.append(f"{label}: {response.message}")
         return "\n".join(lines)
 
@@ -189,13 +195,3 @@ def _columns(left: Array | list[float], right: Array | list[float]) -> Array:
     table = np.full((max(len(left), len(right)), 2), np.nan)
     table[: len(left), 0], table[: len(right), 1] = left, right
     return table
-
-
-def _first(table: Array) -> tuple[float, float]:
-    return (float(table[0, 0]), float(table[0, 1])) if len(table) else (math.nan, math.nan)
-
-
-def _labels(reference: Response, candidate: Response) -> tuple[str, str]:
-    if reference.solver == candidate.solver:
-        return f"{reference.solver} 1", f"{candidate.solver} 2"
-    return reference.solver, candidate.solver

@@ -28,7 +28,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
         TypeError: if it is no pose and velocity.
         ValueError: for another shape, a value out of range, or ties that yield among the effects.
     """
-    if any(isinstance(effect, Tie) and effect.strength < math.inf for effect in case.effects):
+    if any(tie.strength < math.inf for tie in case.each(Tie)):
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
@@ -51,8 +51,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
 
 def require_unbreakable(case: Case | MasonryCase) -> None:
     """Raise ValueError for a tie that breaks, of which the text of a model, which a fixed step is, knows nothing."""
-    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
-    for i, tie in enumerate(ties):
+    for i, tie in enumerate(case.each(Tie)):
         if tie.ultimate is not None:
             raise ValueError(
                 f"a fixed step is the text of a model, in which no tie breaks, and tie_{i} has ultimate = "

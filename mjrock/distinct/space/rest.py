@@ -15,10 +15,11 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
+from ...linear import rates_of
 from ...problem.masonry.joints_in_space import axes_along
 from ...quantities import GRAVITY, Array, Flags, Integers
-from .columns import PLACE, QUATERNION, applied, named, named_vectors, stacked, turns, vectors
-from .limit import rates_of
+from ..system import named, stacked
+from .columns import PLACE, QUATERNION, applied, named_vectors, turns, vectors
 from .system import System
 
 SEARCHES = ((1e3, 20, False), (1.0, 150, True), (0.1, 300, True))

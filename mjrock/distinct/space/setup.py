@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 
-import numpy as np
-
 from ...geometry.frames import SPACE
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
@@ -17,8 +15,9 @@ from ...scene.explicit_step import SHARE
 from ...scene.masonry import masonry_course, require_carried, standing_masonry, unsettled
 from ...scene.scene import Scene
 from ..following import Setup
+from ..system import stacked
 from .assembly import copied, masonry_system, moved_by, started
-from .columns import PLACE, QUATERNION, stacked
+from .columns import PLACE, QUATERNION
 from .encounters import EncountersInSpace
 from .limit import longest_step
 from .loop import advance
@@ -55,5 +54,4 @@ def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene,
     except UnsettledError as error:
         require_carried(masonry, effects)
         raise unsettled(masonry, error.place) from None
-    pose = np.column_stack([stacked(system.bodies, PLACE), stacked(system.bodies, QUATERNION)])
-    return replace(scene, settled=pose), system
+    return replace(scene, settled=stacked(system.bodies, (*PLACE, *QUATERNION))), system

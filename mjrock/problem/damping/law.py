@@ -193,11 +193,8 @@ class DampingLaw:
         Raises:
             OSError: if the file cannot be written.
         """
-        head = {
-            entry.name: getattr(self, entry.name)
-            for entry in fields(self)
-            if entry.name not in ("base", "side", "errors")
-        }
+        names = [entry.name for entry in fields(self) if entry.name not in ("base", "side", "errors")]
+        head = {name: getattr(self, name) for name in names}
         lines = [f"{key} = {_toml(value)}" for key, value in head.items() if value is not None]
         for part, form in (("base", self.base), ("side", self.side)):
             lines += ["", f"[{part}]", f'form = "{type(form).__name__}"']

@@ -6,8 +6,8 @@ import numpy as np
 
 from ...quantities import GRAVITY, Array
 from ..wall.damper import Damper
-from ..wall.effects import AddedMass, Effect, Load, Thrust, Tie
-from .effects_in_space import applied_in_space, held_at
+from ..wall.effects import AddedMass, Effect, Tie
+from .effects_in_space import force_of, held_at
 from .masonry import Masonry
 
 
@@ -22,23 +22,20 @@ def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
 
 
 def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
-    """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them."""
-    if masonry.in_space:
-        return applied_in_space(masonry, effects)
-    total = np.zeros((len(masonry.free), 3))
+    """Forces [N] and moments about the centroids [N m] of loads, thrusts and added masses on the free blocks.
+
+    The shape is (free, 3), in space (free, 6), as `falling` takes them.
+    """
+    total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        if not isinstance(effect, Tie):
-            row = masonry.free.index(effect.block)
-            x, z = np.array(placed(masonry, effect)) - masonry.blocks[effect.block].centroid
-            across = effect.force if isinstance(effect, Thrust) else 0.0
-            down = (
-                effect.force
-                if isinstance(effect, Load)
-                else GRAVITY * effect.mass
-                if isinstance(effect, AddedMass)
-                else 0.0
-            )
-            total[row] += across, -down, across * z + down * x
+        force = force_of(effect)
+        if isinstance(effect, AddedMass):
+            force = np.array([0.0, 0.0, -GRAVITY * effect.mass])
+        arm, row = np.array(placed(masonry, effect)) - masonry.centroids[effect.block], masonry.free.index(effect.block)
+        if masonry.in_space:
+            total[row] += [*force, *np.cross(arm, force)]
+        else:
+            total[row] += force[0], force[2], force[0] * arm[1] - force[2] * arm[0]
     return total
 
 

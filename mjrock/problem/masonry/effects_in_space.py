@@ -1,10 +1,10 @@
-"""Effects on masonry in space: where they act, where they are anchored, and the forces that they bring."""
+"""Effects on masonry in space: where they act, where they are anchored, and their forces."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array, require_whole
+from ...quantities import Array, require_whole
 from ..wall.damper import Damper
 from ..wall.effects import AddedMass, Effect, Load, Thrust, Tie
 from .masonry import Masonry
@@ -67,18 +67,3 @@ def force_of(effect: Effect) -> Array:
     if isinstance(effect, Thrust):
         return np.array([effect.force * part for part in effect.direction or (1.0, 0.0, 0.0)])
     return np.zeros(3)
-
-
-def applied_in_space(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
-    """Forces [N] and moments about the centroids [N m] of loads, thrusts and added masses on the free blocks.
-
-    The shape is (free, 6), as `falling` takes them.
-    """
-    total = np.zeros((len(masonry.free), 6))
-    for effect in effects:
-        force = force_of(effect)
-        if isinstance(effect, AddedMass):
-            force = np.array([0.0, 0.0, -GRAVITY * effect.mass])
-        arm = held_at(effect) - masonry.centroids[effect.block]
-        total[masonry.free.index(effect.block)] += [*force, *np.cross(arm, force)]
-    return total

@@ -106,14 +106,16 @@ def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint,
     names, found = names_of(blocks), []
     outlines = [Outline(block.corners, np.roll(block.corners, -1, axis=0), _normals(block.corners)) for block in blocks]
     for i, j in neighbours(blocks, tolerance):
-        deep = _overlap(outlines[i], outlines[j])
-        if deep > tolerance:
-            raise ValueError(
-                f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the tolerance, "
-                f"{tolerance:g} m"
-            )
+        require_apart(names[i], names[j], _overlap(outlines[i], outlines[j]), tolerance)
         found += list(_between(blocks, (i, j), (outlines[i], outlines[j]), names, tolerance))
     return tuple(found)
+
+
+def require_apart(name: str, other: str, deep: float, tolerance: float) -> None:
+    """Raise a ValueError that names two blocks, if they overlap by more than the tolerance [m]."""
+    if deep > tolerance:
+        overlap = f"blocks {name} and {other} overlap by {deep:.3g} m"
+        raise ValueError(f"{overlap}; the valid range is up to the tolerance, {tolerance:g} m")
 
 
 def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list[tuple[int, int]]:

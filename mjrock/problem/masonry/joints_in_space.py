@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry import convex
-from ...quantities import Array
-from .joints import LEVEL, SHORTEST, names_of, neighbours
+from ...quantities import Array, frozen
+from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart
 from .polyhedron import Polyhedron, Vertices
 
 OPPOSITE = -1 + 1e-3
@@ -43,9 +43,7 @@ class SpaceJoint:
     @cached_property
     def outline(self) -> Array:
         """Corners of the joint, counterclockwise about the normal [m], shape (n, 3)."""
-        outline = np.array(self.vertices)
-        outline.setflags(write=False)
-        return outline
+        return frozen(self.vertices)
 
     @property
     def normal(self) -> Array:
@@ -145,11 +143,7 @@ def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[Spa
             continue
         if deep > tolerance:
             deep = min(deep, _depth_across_edges(blocks[i], blocks[j]))
-            if deep > tolerance:
-                raise ValueError(
-                    f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the "
-                    f"tolerance, {tolerance:g} m"
-                )
+        require_apart(names[i], names[j], deep, tolerance)
         for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
             joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), names, tolerance)
     return tuple(joints)
@@ -183,11 +177,10 @@ def _between(
 ) -> Iterator[SpaceJoint]:
     """The joint between two faces that look at each other, if they touch."""
     face, other = faces
-    heights = other.corners @ face.normal - face.offset
+    normal, origin, axes = face.normal, face.corners[0], face.axes
+    heights = other.corners @ normal - face.offset
     if heights.min() > tolerance or heights.max() < -tolerance:
         return
-    normal, origin = face.normal, face.corners[0]
-    axes = face.axes
     outline = convex.clipped((face.corners - origin) @ axes.T, ((other.corners - origin) @ axes.T)[::-1])
     outline = convex.cleaned(outline, tolerance)
     if not len(outline) or convex.width(outline) <= SHORTEST * tolerance:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import block_diag, csr_array, vstack
 
 from ...geometry.convex import spread
-from ...linear import averaged, entries, lowest_square, sprung
+from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
@@ -128,32 +128,20 @@ def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
 
 
 def rates(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, directions: Array) -> csr_array:
-    """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
+    """Rates at which the lines move apart in given directions, see `mjrock.linear.rates_of`.
 
-    They are the generalised forces of unit forces that press the two blocks of a line apart.
-
-    Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps.
-
-    Returns:
-        Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies). In space for x, y,
-        z and the rotations about the three axes, shape (m, 6 bodies).
+    Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
+    bodies are the blocks that are not fixed, in order.
     """
-    carriers = np.column_stack([lines.body, lines.face])
-    arms = lines.at[:, None] - np.array([block.centroid for block in blocks])[carriers]
-    if directions.shape[1] == 2:
-        x, z = directions.T[:, :, None] * np.array([1.0, -1.0])
-        values = np.stack([x, z, arms[..., 1] * x - arms[..., 0] * z], axis=-1)
-    else:
-        forces = directions[:, None] * np.array([[1.0], [-1.0]])
-        values = np.concatenate([forces, np.cross(arms, forces)], axis=-1)
-    number, bodies = _free_numbers(blocks)
-    return entries(values, number[carriers], values.shape[2] * bodies)
+    centroids, number = np.array([block.centroid for block in blocks]), free_numbers(blocks)
+    arms = lines.at - centroids[lines.body], lines.at - centroids[lines.face]
+    return rates_of(number[np.column_stack([lines.body, lines.face])], arms, directions, int(number.max()) + 1)
 
 
-def _free_numbers(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Integers, int]:
-    """Number of each block among those that are not fixed, -1 for one that is, and how many are not."""
+def free_numbers(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> Integers:
+    """Number of each block among those that are not fixed, -1 for one that is, shape (blocks,)."""
     free = np.array([not block.fixed for block in blocks])
-    return np.where(free, np.cumsum(free) - 1, -1), int(free.sum())
+    return np.where(free, np.cumsum(free) - 1, -1)
 
 
 def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints: int) -> csr_array:
@@ -164,10 +152,10 @@ def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints
     """
     parts = [averaged(rates(blocks, lines, direction), lines.joint, joints) for direction in lines.across]
     if lines.normal.shape[1] == 3:
-        number, bodies = _free_numbers(blocks)
+        number = free_numbers(blocks)
         spins = lines.normal[:, None] * np.array([[1.0], [-1.0]])
         values = np.concatenate([np.zeros_like(spins), spins], axis=-1)
-        twists = entries(values, number[np.column_stack([lines.body, lines.face])], 6 * bodies)
+        twists = entries(values, number[np.column_stack([lines.body, lines.face])], parts[0].shape[1])
         parts.append(averaged(twists, lines.joint, joints))
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
@@ -198,8 +186,6 @@ def masses_of(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Array, 
     """
     solids = [block for block in blocks if isinstance(block, Polyhedron) and not block.fixed]
     if solids:
-        turns = [part for block in solids for part in (np.eye(3), block.principal[1])]
-        return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), csr_array(
-            block_diag(turns)
-        )
+        axes = csr_array(block_diag([part for block in solids for part in (np.eye(3), block.principal[1])]))
+        return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), axes
     return np.array([(block.mass, block.mass, block.inertia) for block in blocks if not block.fixed]).ravel(), None

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
-from ...quantities import Array, keep, require_stiffness, require_whole, require_within, shown
-from ..damping.contacts import Law
-from ..damping.law import law_named
-from ..wall.block import Block
-from ..wall.effects import SideStop
-from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
+from ...quantities import Array, frozen, keep, require_whole, require_within, shown
+from ..damping.contacts import Law, required_law
+from .builders import MOST_BLOCKS, Forms
 from .exchange import Exchange
 from .forms_in_space import FormsInSpace
 from .joints import joints_in_plane, names_of
 from .joints_in_space import joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
-from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
+from .of_joint import OF_JOINTS, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
@@ -32,7 +28,7 @@ MOST_POINTS = 50
 
 
 @dataclass(frozen=True)
-class Masonry(FormsInSpace, Exchange):
+class Masonry(Forms, FormsInSpace, Exchange):
     """Rigid convex blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
@@ -116,117 +112,17 @@ class Masonry(FormsInSpace, Exchange):
         if self.frequency is not None:
             keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
         keep(self, **{name: required(name, getattr(self, name)) for name in OF_JOINTS})
-        if isinstance(self.law, str):
-            keep(self, law=law_named(self.law))
-        elif self.law is not None and not callable(self.law):
-            raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
-        if self.law is not None and self.frequency is not None:
-            raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
+        if self.law is not None:
+            keep(self, law=required_law(self.law, self.points))
+            if self.frequency is not None:
+                given = f"frequency = {self.frequency:g} rad/s"
+                raise ValueError(f"{given} is given with a law, which has its own; leave it")
         if not self.joints:
             raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
         for name in OF_JOINTS:
             values_of(name, getattr(self, name), self.joints)
         if self.law is not None:
             _ = self.retardation
-
-    @classmethod
-    def stack(
-        cls,
-        blocks: Sequence[Block],
-        k_n: OfJoint,
-        *,
-        ground: bool = True,
-        side_stop: bool | SideStop = False,
-        k_side: float | None = None,
-        side_friction: float = 0.0,
-        **options: Any,
-    ) -> Self:
-        """Rectangular blocks one on the other, centred, from the lowest upwards.
-
-        A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
-
-        Args:
-            blocks: the blocks, whose insets are zero.
-            k_n: stiffness of the joints [N/m3].
-            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
-            side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
-                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
-                with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
-            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
-            side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
-            options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
-                joints refers to the lowest natural frequency without it.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        made = stacked(blocks, ground)
-        side = side_of(made, side_stop)
-        side_friction = require_within("side_friction", side_friction, 0.0, 10.0)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
-        if side is None:
-            if k_side is not None or side_friction:
-                raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
-            return cls(tuple(made), k_n=k_n, **options)
-        if options.get("law") is None and options.get("frequency") is None:
-            bare = cls(tuple(made), k_n=k_n, **options)
-            options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-        k_n = required("k_n", k_n)
-        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
-        return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
-
-    @classmethod
-    def arch(
-        cls,
-        radius: float,
-        thickness: float,
-        span_angle: float = math.pi,
-        voussoirs: int = 17,
-        *,
-        density: float = 2000.0,
-        length: float = 1.0,
-        **options: Any,
-    ) -> Self:
-        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
-
-        Args:
-            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
-            thickness: [m], 0.001 to 1 times the radius.
-            span_angle: angle between the two springings [rad], 0.1 to pi.
-            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
-            density: mass density [kg/m3], 100 to 30000.
-            length: length out of the plane [m], 1e-3 to 1000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(tuple(voussoirs_of(radius, thickness, span_angle, voussoirs, density, length)), **options)
-
-    @classmethod
-    def running_bond(
-        cls,
-        length: float,
-        height: float,
-        unit: tuple[float, float],
-        thickness: float = 1.0,
-        density: float = 2000.0,
-        **options: Any,
-    ) -> Self:
-        """A wall of units in running bond on the ground, which moves in the plane of its face.
-
-        Args:
-            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
-                is a piece of a unit.
-            unit: length and height of a unit [m], 0.01 to 100.
-            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(tuple(bonded(length, height, unit, thickness, density)), **options)
 
     @property
     def in_space(self) -> bool:
@@ -251,9 +147,7 @@ class Masonry(FormsInSpace, Exchange):
     @cached_property
     def centroids(self) -> Array:
         """Centroid of each block at rest, fixed ones too [m], shape (blocks, 2), in space (blocks, 3)."""
-        made = np.array([block.centroid for block in self.blocks])
-        made.setflags(write=False)
-        return made
+        return frozen([block.centroid for block in self.blocks])
 
     @cached_property
     def joints(self) -> tuple[Any, ...]:

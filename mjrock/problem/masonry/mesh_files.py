@@ -193,6 +193,9 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
     def key(kind: str, name: object) -> str:
         return str(uuid.uuid5(uuid.NAMESPACE_URL, f"{kind} {name}"))
 
+    def held(kind: str, data: dict[str, Any], guid: str) -> dict[str, Any]:
+        return {"dtype": kind, "data": data, "guid": guid}
+
     elements: dict[str, Any] = {}
     for block, name in zip(blocks, names, strict=True):
         mesh = {
@@ -207,25 +210,14 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
             "max_vertex": len(block.vertices) - 1,
             "max_face": len(block.faces) - 1,
         }
-        inside: dict[str, Any] = {
-            "transformation": None,
-            "features": [],
-            "name": name,
-            "material": key("density", block.density),
-        }
+        stone = key("density", block.density)
+        inside: dict[str, Any] = {"transformation": None, "features": [], "name": name, "material": stone}
         inside |= {"geometry": {"dtype": "compas.datastructures/Mesh", "data": mesh}, "is_support": block.fixed}
-        elements[key("block", name)] = {
-            "dtype": "compas_dem.elements/Block",
-            "data": inside,
-            "guid": key("block", name),
-        }
+        guid = key("block", name)
+        elements[guid] = held("compas_dem.elements/Block", inside, guid)
     stones = {
-        key("density", density): {
-            "dtype": "compas_dem.material/Stone",
-            "data": {"name": "Stone", "density": density},
-            "guid": key("density", density),
-        }
-        for density in densities
+        guid: held("compas_dem.material/Stone", {"name": "Stone", "density": density}, guid)
+        for guid, density in ((key("density", density), density) for density in densities)
     }
     children = [{"name": "ElementNode", "element": element} for element in elements]
     graph = {

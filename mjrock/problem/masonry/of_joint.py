@@ -84,6 +84,5 @@ class ByName:
         for name, value in self.values:
             if name == joint.name:
                 return value
-        raise ValueError(
-            f"the joint {joint.name} has no value among those of {', '.join(name for name, _ in self.values)}"
-        )
+        names = ", ".join(name for name, _ in self.values)
+        raise ValueError(f"the joint {joint.name} has no value among those of {names}")
