@@ -52,11 +52,7 @@ class Setup:
 
 
 def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
-    """Length of a step [s], and how many lie between two samples.
-
-    Raises:
-        ValueError: for a step that is not stable.
-    """
+    """Length of a step [s], and how many lie between two samples; a ValueError says if it is not stable."""
     if timestep is None:
         every = max(1, math.ceil(spacing / taken))
         return spacing / every, every

@@ -18,11 +18,6 @@ from ..quantities import Array
 from ..scene.explicit_step import stable_step
 from .system import Rows, System, stacked
 
-SMALL = 20
-"""Number of springs up to which the eigenvalues are those of a full matrix."""
-ALLOWANCE = 1.01
-"""Allowance for the tolerance of the search for an eigenvalue [-]."""
-
 
 def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
@@ -59,10 +54,11 @@ def highest(rates: csr_array, weights: Array, root: Any) -> float:
         return 0.0
     scaled = diags_array(np.sqrt(weights[acting])) @ rates[acting] @ root
     matrix = scaled @ scaled.T
-    if len(acting) <= SMALL:
+    if len(acting) <= 20:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(acting))
-    return ALLOWANCE * float(eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0])
+    largest = eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0]
+    return 1.01 * float(largest)  # an allowance for the tolerance
 
 
 def ways_of(lines: Rows) -> tuple[Array, Array]:

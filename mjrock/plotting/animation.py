@@ -27,10 +27,7 @@ from .solids import Solids
 from .style import Drawing
 from .view import fill, solids, ties_in_view
 
-ENDINGS = (".gif", ".mp4", ".html")
-"""Endings of the files that are written."""
 MOST_FRAMES = 20_000
-"""Most frames of one picture."""
 HUNDREDTHS = 100
 """A GIF counts the time of a frame in hundredths of a second, and browsers slow down below two of them [1/s]."""
 
@@ -163,7 +160,7 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
             return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
-    raise ValueError(f"path = {path.name!r} ends in none of {', '.join(ENDINGS)}")
+    raise ValueError(f"path = {path.name!r} ends in none of .gif, .mp4, .html")
 
 
 def frame_times(t: Array, step: float) -> Array:

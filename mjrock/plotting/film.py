@@ -11,9 +11,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-COLOURS = 128
-"""Colours of a frame: flat drawings with smooth edges need no more, and the file is some three times smaller."""
-
 
 class Stage:
     """A figure whose artists that move are marked as animated, at its resolution [1/inch]."""
@@ -36,7 +33,7 @@ class Stage:
         size = self.canvas.get_width_height()
         drawn = Image.frombuffer("RGBA", size, self.canvas.buffer_rgba(), "raw", "RGBA", 0, 1).convert("RGB")
         if self.palette is None:
-            self.palette = drawn.quantize(COLOURS)
+            self.palette = drawn.quantize(128)  # flat drawings need no more colours, and files are three times smaller
         return drawn.quantize(palette=self.palette, dither=Image.Dither.NONE)
 
 

@@ -15,13 +15,6 @@ from ..result.response import Response
 from .style import below_figure, several, styles_of
 
 TIME = "time $t$ [s]"
-BEYOND = 1.2
-"""Rotation up to which a wall that overturns is shown, in multiples of alpha [-]."""
-
-DIFFERS = 0.01
-"""Difference of the rotation that overturns a wall from alpha that is drawn [-]."""
-FAR = 4.0
-"""That rotation over the largest of the motion, from which it is left out, as it would flatten the motion [-]."""
 
 
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
@@ -40,14 +33,14 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
-        if abs(limit - 1) > DIFFERS and limit < FAR * max(reached):
+        if abs(limit - 1) > 0.01 and limit < 4 * max(reached):  # one that is far would flatten the motion
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
     if said:
-        top = max(BEYOND, 1.05 * max(reached))
+        top = max(1.2, 1.05 * max(reached))
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]

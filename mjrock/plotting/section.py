@@ -20,10 +20,6 @@ STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
 """Colours of masonry, of what does not move, of ties, and of forces."""
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
-MANY = 100
-"""Number of bodies beyond which their edges are drawn thin."""
-FARTHEST = 0.5
-"""Distance behind the wall up to which an anchor is shown, over the height of the wall [-]."""
 
 Update = Callable[[int], None]
 """Moves what is drawn to a frame."""
@@ -43,7 +39,7 @@ def blocks(ax: Axes, bodies: Bodies) -> Update:
     """Draw the outlines of bodies true to scale."""
     for outline in bodies.fixed:
         ax.add_patch(Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8))
-    width = 1.2 if len(bodies.outlines) <= MANY else 0.4
+    width = 1.2 if len(bodies.outlines) <= 100 else 0.4
     moving = PolyCollection([], facecolor=STONE, edgecolor="0.15", linewidth=width, zorder=2, animated=True)
     ax.add_collection(moving, autolim=False)
     ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
@@ -66,7 +62,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     wall, height = case.block, 2 * case.block.h
     ties, forces = case.each(Tie), case.each(Load) + case.each(Thrust)
     low, high = bodies.extent()
-    behind = max([0.2 * height, *(min(1.03 * tie.length, FARTHEST * height) for tie in ties)])
+    behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
     reach = (1.5 * ARROW if case.each(Thrust) else 0.08) * height
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)

@@ -19,12 +19,8 @@ from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
 from .bodies import interpolated
 
-CAMERA = (18.0, 35.0)
-"""Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""
 TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
 """Colours of blocks, which take turns so that neighbours are told apart."""
-FIXED = "#bdbdbd"
-"""Colour of fixed blocks that are no ground."""
 
 
 class Facets(NamedTuple):
@@ -67,7 +63,7 @@ class Solids:
     effects: tuple[Effect, ...] = ()
 
     def __post_init__(self) -> None:
-        elevation, azimuth = require_array("camera", CAMERA if self.camera is None else self.camera, (2,))
+        elevation, azimuth = require_array("camera", (18.0, 35.0) if self.camera is None else self.camera, (2,))
         elevation = require_within("elevation of the camera", elevation, -90.0, 90.0, "degrees")
         keep(
             self,
@@ -115,8 +111,8 @@ class Solids:
 
     @property
     def colours(self) -> list[str]:
-        """Colour of each facet."""
-        tints = [FIXED if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
+        """Colour of each facet, grey of fixed blocks."""
+        tints = ["#bdbdbd" if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
         return [tints[body] for body in self.facets.body]
 
     @cached_property

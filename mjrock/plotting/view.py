@@ -27,12 +27,8 @@ LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
 DARKEST = 0.62
 """Brightness of a face that is turned away from the light [-]."""
-MARGIN = 0.15
-"""Width of the ground around the blocks, over their largest extent [-]."""
 ZOOM = 1.15
 """Size of the picture, over that which leaves room for labels on every side [-]."""
-FILLED = (0.84, 0.74)
-"""Share of the width and of the height of a figure that moving blocks and their ground fill [-]."""
 
 
 class Faces(PolyCollection):
@@ -67,8 +63,7 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """
     space = in_three(ax)
     low, high = bodies.extent()
-    margin = MARGIN * float((high - low).max())
-    around = margin * np.array([1.0, 1.0, 0.0])
+    around = 0.15 * float((high - low).max()) * np.array([1.0, 1.0, 0.0])  # ground
     low, high = low - around, high + around
     level = _ground(space, bodies, (low, high))
     if level is not None:
@@ -96,14 +91,14 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
 
 
 def fill(ax: Axes) -> None:
-    """Enlarge a view until it fills its figure, which has been laid out."""
+    """Enlarge a view until it fills 0.84 of the width or 0.74 of the height of its figure, which has been laid out."""
     space = in_three(ax)
     figure: Any = ax.get_figure(root=True)
     limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
     corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
     x, y, _ = proj_transform(*corners, space.get_proj())
     spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0) / figure.bbox.size
-    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array(FILLED) / spans).min()))
+    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array([0.84, 0.74]) / spans).min()))
     figure.draw_without_rendering()
 
 

@@ -19,12 +19,8 @@ TOGETHER = 0.25
 def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least: float) -> Integers:
     """Numbers of the impacts of two motions that belong to each other, -1 where one has none, shape (n, 2).
 
-    Two impacts are a pair where each is the nearest to the other in time. All are in the order of their times.
-
-    Args:
-        left, right: the impacts.
-        within: how far apart the two of a pair may be [s].
-        least: energy before an impact below which it is left out [J].
+    Two impacts are a pair where each is the nearest to the other in time, `within` [s] of it. Those are left out before
+    which the wall has less energy than `least` [J]. All are in the order of their times.
     """
     kept = [[i for i, impact in enumerate(side) if impact.energy_before >= least] for side in (left, right)]
     a, b = (np.array([side[i].t for i in own]) for side, own in zip((left, right), kept, strict=True))
@@ -42,7 +38,6 @@ def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least
 
 def taken_by(numbers: Integers, left: Sequence[float] | Array, right: Sequence[float] | Array) -> Array:
     """Values of the impacts of each pair, NaN where there is none, shape (n, 2)."""
-    columns = []
-    for own, values in zip(numbers.T, (left, right), strict=True):
-        columns.append([values[i] if 0 <= i < len(values) else np.nan for i in own])
+    sides = zip(numbers.T, (left, right), strict=True)
+    columns = [[values[i] if 0 <= i < len(values) else np.nan for i in own] for own, values in sides]
     return np.array(columns, dtype=float).T.reshape(-1, 2)

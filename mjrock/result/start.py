@@ -14,11 +14,8 @@ from ..quantities import ON_ITS_FACE, require_array, require_within, shown
 from .response import State
 
 PARTS = ("pose", "velocity")
-"""What a state is made of."""
 UNIT = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
-LARGEST = 1e3
-"""Largest displacement or rate of a start [m, m/s, rad/s]."""
 
 
 def required_start(start: object, case: Case | MasonryCase) -> State:
@@ -41,7 +38,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
     if isinstance(case, Case):
         require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
     for name, values in zip(PARTS, (pose, velocity), strict=True):
-        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, LARGEST)
+        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
     if freedom is SPACE:
         size = np.linalg.norm(pose[:, 3:], axis=1)
         for length in size[np.abs(size - 1) > UNIT].tolist():

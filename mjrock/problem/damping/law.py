@@ -269,11 +269,7 @@ NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 
 
 def law_named(name: str) -> DampingLaw:
-    """The law of that name, in any case of letters, with a hyphen or a blank for the underscore too.
-
-    Raises:
-        ValueError: if there is none.
-    """
+    """The law of that name in any case of letters, with a hyphen or blank for the underscore too, or a ValueError."""
     spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
     if spelt not in NAMED:
         raise ValueError(f"law = {name!r} is none of {', '.join(NAMED)}")

@@ -27,10 +27,14 @@ from ...quantities import (
     spelt,
 )
 from .pulses import Pulses
-from .records import COARSEST, FINEST, Record, checked, doubts, parse_at2, parse_columns, parse_sac, read
+from .records import COARSEST, FINEST, Record, checked, parse_at2, parse_columns, parse_sac, read
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
+FAINT = 1e-3 * GRAVITY
+"""A file whose peak acceleration is below this is probably in another unit [m/s2]."""
+DRIFT = 0.2
+"""A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,8 +237,17 @@ class GroundMotion(Pulses):
     @classmethod
     def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> GroundMotion:
         motion = cls(*read(path, parse), name := Path(path).stem)
-        for doubt in doubts(name, motion.peak, motion.residual_velocity, motion.peak_velocity):
-            warnings.warn(doubt, stacklevel=3)
+        peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
+        if peak < FAINT:
+            warnings.warn(
+                f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?", stacklevel=3
+            )
+        if abs(final) > DRIFT * fastest:
+            warnings.warn(
+                f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
+                "it needs a baseline correction",
+                stacklevel=3,
+            )
         return motion
 
 

@@ -79,8 +79,7 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
 def side_of(blocks: Sequence[Polygon], side_stop: bool | SideStop) -> Polygon | None:
     """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
 
-    Raises:
-        ValueError: if the stop ends above the stack.
+    A ValueError says if the stop ends above the stack.
     """
     require_kind("side_stop", side_stop, bool, SideStop)
     if not side_stop:

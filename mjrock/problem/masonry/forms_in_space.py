@@ -28,11 +28,7 @@ def ground_below(low: ArrayLike, high: ArrayLike, surface: float = 0.0) -> Polyh
 
 
 def whole_units(name: str, extent: float, unit: float, most: int) -> int:
-    """How many units an extent has.
-
-    Raises:
-        ValueError: unless it is a whole number of them, from 1 to `most`.
-    """
+    """How many units an extent has; a ValueError says unless it is a whole number of them, from 1 to `most`."""
     count = require_real(name, extent) / unit
     if not 0 < count < most + 1 or not abs(count - round(count)) <= WHOLE or not 1 <= round(count) <= most:
         raise ValueError(

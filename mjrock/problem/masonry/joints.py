@@ -91,17 +91,10 @@ def names_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[str, ...]:
 
 
 def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...]:
-    """The joints between blocks, in the order of the blocks.
+    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
-    Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance. The joint
-    lies halfway between them. Two fixed blocks make none.
-
-    Args:
-        blocks: the blocks.
-        tolerance: largest distance between edges that touch, and largest overlap of blocks [m].
-
-    Raises:
-        ValueError: if two blocks overlap by more than the tolerance. The message names both.
+    Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance [m], which
+    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names, found = names_of(blocks), []
     outlines = [Outline(block.corners, np.roll(block.corners, -1, axis=0), _normals(block.corners)) for block in blocks]
@@ -171,37 +164,22 @@ def _between(
         ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
         # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
         travel = (float((b - a) @ way - first), float(last))
-        yield _joint(blocks, i, j, ends, n, names, tolerance, travel)
-
-
-def _joint(
-    blocks: Sequence[Polygon],
-    i: int,
-    j: int,
-    ends: list[Array],
-    n: Array,
-    names: Sequence[str],
-    tolerance: float,
-    travel: tuple[float, float],
-) -> Joint:
-    """The joint between blocks i and j with these ends, n the normal out of block i, which j can travel along."""
-    upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
-    below, above = (i, j) if upwards > 0 else (j, i)
-    if blocks[above].fixed:
-        below, above = above, below
-    start, end = ends
-    normal = n if below == i else -n
-    if normal @ np.array([-(end - start)[1], (end - start)[0]]) < 0:
-        start, end = end, start
-    near = SHORTEST * tolerance
-    corners = tuple(bool(np.hypot(*(blocks[above].corners - place).T).min() < near) for place in (start, end))
-    return Joint(
-        below=below,
-        above=above,
-        start=(float(start[0]), float(start[1])),
-        end=(float(end[0]), float(end[1])),
-        travel=travel,
-        length=min(blocks[i].length, blocks[j].length),
-        corners=(corners[0], corners[1]),
-        name=f"{names[below]}|{names[above]}",
-    )
+        upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
+        below, above = (i, j) if upwards > 0 else (j, i)
+        if blocks[above].fixed:
+            below, above = above, below
+        start, end = ends
+        normal = n if below == i else -n
+        if normal @ np.array([-(end - start)[1], (end - start)[0]]) < 0:
+            start, end = end, start
+        near = [np.hypot(*(blocks[above].corners - place).T).min() < SHORTEST * tolerance for place in (start, end)]
+        yield Joint(
+            below=below,
+            above=above,
+            start=(float(start[0]), float(start[1])),
+            end=(float(end[0]), float(end[1])),
+            travel=travel,
+            length=min(blocks[i].length, blocks[j].length),
+            corners=(bool(near[0]), bool(near[1])),
+            name=f"{names[below]}|{names[above]}",
+        )

@@ -103,11 +103,9 @@ def axes_across(normals: Array) -> Array:
 
 
 def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
-    """Two unit vectors across each of some normals, the first along a force where it can be, shape (m, 3) each.
+    """Two unit vectors across each of some normals, the first along its force, or one for all, where it can be.
 
-    Args:
-        normals: shape (m, 3).
-        forces: of each, shape (m, 3), or one for all, shape (3,).
+    Shapes are (m, 3) each.
     """
     first = forces - (normals * forces).sum(axis=1)[:, None] * normals
     lengths = np.linalg.norm(first, axis=1)
@@ -117,17 +115,10 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
 
 
 def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[SpaceJoint, ...]:
-    """The joints between blocks, in the order of the blocks.
+    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
-    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance. The
-    joint lies halfway between them. Two fixed blocks make none.
-
-    Args:
-        blocks: the blocks.
-        tolerance: largest distance between faces that touch, and largest overlap of blocks [m].
-
-    Raises:
-        ValueError: if two blocks overlap by more than the tolerance. The message names both.
+    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
+    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names = names_of(blocks)
     faces = [faces_of(block) for block in blocks]
@@ -189,27 +180,15 @@ def _between(
     gaps = (other.offset - places @ other.normal) / float(normal @ other.normal)
     if np.abs(gaps).max() > tolerance:
         return
-    yield _joint(blocks, pair, places + 0.5 * gaps[:, None] * normal, normal, names, SHORTEST * tolerance)
-
-
-def _joint(
-    blocks: Sequence[Polyhedron],
-    pair: tuple[int, int],
-    places: Array,
-    normal: Array,
-    names: Sequence[str],
-    near: float,
-) -> SpaceJoint:
-    """The joint between two blocks with these corners, counterclockwise about the normal out of the first block."""
+    places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block
     (below, above), upwards = pair, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
-    turned = blocks[above].fixed or (upwards < 0 and not blocks[below].fixed)
-    if turned:
+    if blocks[above].fixed or (upwards < 0 and not blocks[below].fixed):
         below, above, normal, places = above, below, -normal, places[::-1]
 
     def is_corner(block: Polyhedron, place: Array) -> bool:
-        return bool(np.linalg.norm(block.corners - place, axis=1).min() < near)
+        return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST * tolerance)
 
-    return SpaceJoint(
+    yield SpaceJoint(
         below=below,
         above=above,
         vertices=tuple((float(x), float(y), float(z)) for x, y, z in places),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,56 +63,39 @@ class Lines(NamedTuple):
 def lines_of(blocks: Sequence[Any], joints: Sequence[Any], k_n: Array, points: int) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
-    Args:
-        blocks: the blocks.
-        joints: their joints.
-        k_n: stiffness of each joint [N/m3], shape (joints,).
-        points: how many lines a joint has. In space, see `geometry.convex.spread`.
+    The point is on the block above. Where that one overhangs, the corner is that of the block below, and the point is
+    on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,). A joint
+    has so many lines as `points` says, in space see `geometry.convex.spread`.
     """
-    in_space = isinstance(joints[0], SpaceJoint)
-    return (_points_of if in_space else _lines_of)(blocks, joints, k_n, points)
-
-
-def _lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int) -> Lines:
-    """The lines of all joints, evenly spaced from end to end of each, the outer two with half the tributary width.
-
-    The point is on the block above. At an end where the block above overhangs, the corner is that of the block below,
-    and the point is on the block below, unless that one is fixed.
-    """
-    rows: list[tuple[int, int, int]] = []
-    at, normal, k = [], [], []
-    for number, joint in enumerate(joints):
-        places, widths = contact_lines(joint.width, points)
-        for i, (place, width) in enumerate(zip(places, widths, strict=True)):
-            overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
-            turned = overhangs and not blocks[joint.below].fixed
-            rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
-            at.append(joint.middle + place * joint.along)
-            normal.append(-joint.normal if turned else joint.normal)
-            k.append(k_n[number] * joint.length * width)
-    joint_of, body, face = np.array(rows, dtype=np.int64).reshape(-1, 3).T
-    return Lines(joint_of, body, face, np.reshape(at, (-1, 2)), np.reshape(normal, (-1, 2)), np.array(k))
-
-
-def _points_of(blocks: Sequence[Polyhedron], joints: Sequence[SpaceJoint], k_n: Array, points: int) -> Lines:
-    """The points of all joints in space.
-
-    The point is on the block above. A corner of the joint that is a corner of the block below alone is on that block,
-    unless it is fixed.
-    """
+    places = _on_face if isinstance(joints[0], SpaceJoint) else _on_edge
     rows, at, normal, k = [], [], [], []
     for number, joint in enumerate(joints):
-        flat, areas = spread(joint.flat, points)
-        places = joint.outline[0] + flat @ joint.axes
-        for place, area in zip(places, areas, strict=True):
-            apart = np.abs(joint.outline - place).max(axis=1)
-            turned = bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())] and not blocks[joint.below].fixed)
+        for place, stiffness, overhangs in places(joint, points, k_n[number]):
+            turned = overhangs and not blocks[joint.below].fixed
             rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
             at.append(place)
             normal.append(-joint.normal if turned else joint.normal)
-            k.append(k_n[number] * area)
+            k.append(stiffness)
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
+
+
+def _on_edge(joint: Joint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+    """Places of the lines of a joint, evenly from end to end, their stiffness, and whether the block above overhangs.
+
+    The outer two have half the tributary width.
+    """
+    for i, (place, width) in enumerate(zip(*contact_lines(joint.width, points), strict=True)):
+        overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
+        yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
+
+
+def _on_face(joint: SpaceJoint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+    """The same of the points of a joint in space; those at its corners may be of the block below alone."""
+    flat, areas = spread(joint.flat, points)
+    for place, area in zip(joint.outline[0] + flat @ joint.axes, areas, strict=True):
+        apart = np.abs(joint.outline - place).max(axis=1)
+        yield place, k_n * area, bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
 
 
 def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:

@@ -23,31 +23,24 @@ from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
 
-MOST_POINTS = 50
-"""Largest `points` of blocks in space."""
-
 
 @dataclass(frozen=True)
 class Masonry(Forms, FormsInSpace, Exchange):
     """Rigid convex blocks on compliant joints.
 
-    The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
-    touch at a corner only have no joint. A joint is a few contact lines, like the base of a wall: each is a spring and
-    a dashpot that push only, with Coulomb friction. Lines lie at the ends of the joint and evenly between. A joint that
-    opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
-    `points` and `k_n`, and a structure near its limit can depend on that.
+    The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
+    few contact lines, at its ends and evenly between: each is a spring and a dashpot that push only, with Coulomb
+    friction. A joint that opens turns about its last line. How stiff this hinge is depends on `points` and `k_n`, and a
+    structure near its limit can depend on that.
 
     Blocks in space, of the kind `Polyhedron`, have their joints where two faces cover a common area, with contact
     points in place of the lines.
 
-    In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
-    does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the
-    motion the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block
-    has turned by 90 degrees. In explicit steps, see `solve_explicit`, faces end and blocks that fall meet others.
-
-    Friction that holds is a strong dashpot in MuJoCo. A joint under a sustained force F along it creeps at about
-    F / (3e8 m) [m/s], with m the reduced mass of its two blocks [kg]: an arch at rest by some 0.05 mm in a minute. What
-    stands on one joint alone, as in a stack, is put back to where it stuck.
+    In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
+    of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
+    that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
+    m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
+    meet others.
 
     Args:
         blocks: the blocks, all `Polygon` or all `Polyhedron`, at least one fixed and one that is not, at most 5000.
@@ -106,7 +99,7 @@ class Masonry(Forms, FormsInSpace, Exchange):
                 raise ValueError(f"blocks: {number} of them have the name {name}")
         keep(
             self,
-            points=require_whole("points", self.points, 2, MOST_POINTS if self.in_space else 1000),
+            points=require_whole("points", self.points, 2, 50 if self.in_space else 1000),
             tolerance=require_within("tolerance", self.tolerance, 1e-9, 0.1, "m"),
         )
         if self.frequency is not None:

@@ -49,10 +49,7 @@ def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list
 def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> Block:
     """Some blocks as one rigid wall on a joint: as thick as the joint, with their mass, its centroid where theirs is.
 
-    In space the joint is as thick as it is in the direction in which it is thinnest, about whose edges they rock.
-
-    Raises:
-        ValueError: if they are too squat for a rocking wall.
+    In space the joint is as thick as where it is thinnest. A ValueError says if they are too squat for a rocking wall.
     """
     mass = np.array([blocks[i].mass for i in part])
     height = float(mass @ [blocks[i].centroid[-1] - joint.middle[-1] for i in part]) / float(mass.sum())

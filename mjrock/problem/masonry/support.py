@@ -42,9 +42,7 @@ class Support:
 def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     """The supports, from a mapping of names of fixed blocks to (t, dx, dz), in space to (t, dx, dy, dz).
 
-    Raises:
-        TypeError: for what is no such mapping.
-        ValueError: for a block that is not fixed, times that do not increase, or rows of different lengths.
+    A TypeError or ValueError names the block and what is wrong.
     """
     if isinstance(given, tuple) and all(isinstance(support, Support) for support in given):
         return given
