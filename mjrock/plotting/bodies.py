@@ -87,9 +87,8 @@ class Bodies:
         require_kind("response", response, Response)
         case: Any = response.case
         if isinstance(case, Case):
-            wall = case.wall
-            rests = np.array([[wall.centroid_offset, wall.centroid_height]])
-            return cls(response.t, (wall.outline,), rests, response.pose, magnify)
+            rests = np.array([[case.wall.centroid_offset, case.wall.centroid_height]])
+            return cls(response.t, (case.wall.outline,), rests, response.pose, magnify)
         if response.in_space:
             case.masonry.require_plane("Bodies")
         blocks, free = case.masonry.blocks, list(case.masonry.free)

@@ -24,14 +24,8 @@ TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9
 
 
 class Facets(NamedTuple):
-    """The faces of bodies.
-
-    Args:
-        corners: of each face about the centroid of its body, at rest [m], shape (faces, most, 3). A face with fewer
-            corners than another repeats its last one.
-        body: number of the body of each face, shape (faces,).
-        counts: number of corners of each face, shape (faces,).
-    """
+    """The faces of bodies: corners about the centroid of the body, at rest [m], shape (faces, most, 3), of which a face
+    with few repeats the last one, the number of the body, and that of the corners, shape (faces,) each."""
 
     corners: Array
     body: Integers
@@ -94,20 +88,18 @@ class Solids:
     @cached_property
     def shown(self) -> tuple[int, ...]:
         """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
-        return tuple(i for i, block in enumerate(self.masonry.blocks) if not self._is_ground(block))
+        return tuple(i for i, is_ground in enumerate(self._are_ground) if not is_ground)
 
     @property
     def ground(self) -> list[Polyhedron]:
         """The fixed blocks below all that move."""
-        return [block for block in self.masonry.blocks if self._is_ground(block)]
-
-    def _is_ground(self, block: Polyhedron) -> bool:
-        return block.fixed and bool(block.corners[:, 2].max() <= self._lowest + 1e-3)
+        return [block for block, is_ground in zip(self.masonry.blocks, self._are_ground, strict=True) if is_ground]
 
     @cached_property
-    def _lowest(self) -> float:
-        """The lowest z of the blocks that move, at rest [m]."""
-        return min(float(self.masonry.blocks[i].corners[:, 2].min()) for i in self.masonry.free)
+    def _are_ground(self) -> list[bool]:
+        blocks = self.masonry.blocks
+        lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
+        return [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
 
     @property
     def colours(self) -> list[str]:

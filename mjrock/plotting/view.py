@@ -81,9 +81,10 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
             seen &= corners[..., 2].mean(axis=1) > level
         place = np.argsort(bodies.order(frame))  # of each body in the order
         number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.body[seen]], kind="stable")]
-        counts, colours = bodies.facets.counts[number], cast(Any, _lit(tints[number], normals[number]))
+        bright = DARKEST + (1 - DARKEST) * np.clip(normals[number] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
+        counts = bodies.facets.counts[number]
         moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]
-        moving.set_facecolor(colours)
+        moving.set_facecolor(cast(Any, tints[number] * bright[:, None]))
         if space.M is not None:
             moving.do_3d_projection()
 
@@ -166,9 +167,3 @@ def _normals(corners: Array) -> Array:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.asarray(normals / np.where(length > 0, length, 1.0))
-
-
-def _lit(colours: Array, normals: Array) -> Array:
-    """Colours of faces in the light, shape (faces, 3)."""
-    bright = DARKEST + (1 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
-    return np.asarray(colours * bright[:, None])

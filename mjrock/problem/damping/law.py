@@ -146,12 +146,8 @@ class DampingLaw:
 
         It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
         least MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE times as
-        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base.
-
-        Args:
-            wall, e: the wall, and the restitution asked for.
-            k_n, k_side: interface stiffness of base and side [N/m3].
-            amplitude: rotation over alpha that the wall comes from [-].
+        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base. The
+        arguments are those of a call.
         """
         require_kind("e", e, Restitution)
         k_side = None if k_side is None else require_stiffness("k_side", k_side)
@@ -182,8 +178,7 @@ class DampingLaw:
         said = []
         for name, (value, factor, (low, high)) in covered.items():
             if not low * (1 - 1e-9) <= value * factor <= high * (1 + 1e-9):
-                same = abs(factor - 1) < 1e-9
-                at = "" if same else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
+                at = "" if abs(factor - 1) < 1e-9 else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
                 said.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
         return said
 

@@ -51,9 +51,7 @@ DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 def checked(accel: ArrayLike, dt: float) -> Record:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
-    Raises:
-        TypeError: for what are no real numbers.
-        ValueError: unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
+    A TypeError or ValueError says unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
     """
     values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
@@ -66,13 +64,7 @@ def checked(accel: ArrayLike, dt: float) -> Record:
 
 
 def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Record:
-    """The record that a parser finds in a file.
-
-    Raises:
-        OSError: if the file cannot be read.
-        TypeError: if the path is none.
-        ValueError: with the name of the file, if it is not one of the format.
-    """
+    """The record that a parser finds in a file; a ValueError with its name says if it is not one of the format."""
     path = require_path("path", path)
     try:
         return checked(*parse(text_lines(path)))

@@ -208,7 +208,7 @@ class Forms(FromBlocks):
             for i in range(count)
         ]
         for name, at, side in (("left_abutment", directions[0], -1.0), ("right_abutment", directions[-1], 1.0)):
-            down = thickness * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
+            down = float(thickness) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
             corners = [inner * at, outer * at, outer * at + down, inner * at + down]
             polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
         return cls((polygons[-2], *polygons[:-2], polygons[-1]), **options)

@@ -47,13 +47,9 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
         if isinstance(effect, AddedMass) and effect.mass > 0:
             i = effect.block
             apart, total = np.array(placed(masonry, effect)) - centroids[i], mass[i] + effect.mass
-            inertia[i] += mass[i] * effect.mass / total * _second(apart)
+            square = float(apart @ apart)
+            second = square * np.eye(3) - np.outer(apart, apart) if masonry.in_space else square
+            inertia[i] += mass[i] * effect.mass / total * second
             centroids[i] += effect.mass / total * apart
             mass[i] = total
     return mass, centroids, inertia
-
-
-def _second(apart: Array) -> float | Array:
-    """Moment or tensor of inertia of a unit mass at a distance [m2]."""
-    square = float(apart @ apart)
-    return square if len(apart) == 2 else square * np.eye(3) - np.outer(apart, apart)

@@ -156,8 +156,7 @@ class Exchange(FromBlocks):
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]
         if loose:
-            low = np.array([block.corners.min(axis=0) for block in self.blocks])
-            high = np.array([block.corners.max(axis=0) for block in self.blocks])
+            low, high = (np.array([end(block.corners, axis=0) for block in self.blocks]) for end in (np.min, np.max))
             i = loose[0]
             gaps = np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1)
             gaps[i] = np.inf

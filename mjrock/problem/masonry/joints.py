@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -77,14 +76,6 @@ class Joint:
         return bool(abs(self.normal[0]) < LEVEL)
 
 
-class Outline(NamedTuple):
-    """The edges of a convex block, counterclockwise: where they start and end, and their unit normals out of it."""
-
-    corners: Array
-    ends: Array
-    normals: Array
-
-
 def names_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[str, ...]:
     """Names of the blocks: their own, or `block_` and their number."""
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
@@ -97,10 +88,9 @@ def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint,
     is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names, found = names_of(blocks), []
-    outlines = [Outline(block.corners, np.roll(block.corners, -1, axis=0), _normals(block.corners)) for block in blocks]
     for i, j in neighbours(blocks, tolerance):
-        require_apart(names[i], names[j], _overlap(outlines[i], outlines[j]), tolerance)
-        found += list(_between(blocks, (i, j), (outlines[i], outlines[j]), names, tolerance))
+        require_apart(names[i], names[j], _overlap(blocks[i], blocks[j]), tolerance)
+        found += list(_between(blocks, (i, j), names, tolerance))
     return tuple(found)
 
 
@@ -123,17 +113,11 @@ def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list
     return pairs
 
 
-def _normals(corners: Array) -> Array:
-    """Unit normals out of the edges of a counterclockwise outline, shape (n, 2)."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    return np.asarray(np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None])
-
-
-def _overlap(one: Outline, other: Outline) -> float:
-    """Depth by which two convex outlines overlap [m], negative where they are apart: least over the normals."""
+def _overlap(block: Polygon, other: Polygon) -> float:
+    """Depth by which two blocks overlap [m], negative where they are apart: least over the normals."""
     depths = [
         (a.corners @ a.normals.T).max(axis=0) - (b.corners @ a.normals.T).min(axis=0)
-        for a, b in ((one, other), (other, one))
+        for a, b in ((block, other), (other, block))
     ]
     return float(np.concatenate(depths).min())
 
@@ -141,17 +125,16 @@ def _overlap(one: Outline, other: Outline) -> float:
 def _between(
     blocks: Sequence[Polygon],
     pair: tuple[int, int],
-    outlines: tuple[Outline, Outline],
     names: Sequence[str],
     tolerance: float,
 ) -> Iterator[Joint]:
     """The joints between two blocks."""
-    (i, j), (one, other) = pair, outlines
-    sine = np.abs(np.outer(one.normals[:, 0], other.normals[:, 1]) - np.outer(one.normals[:, 1], other.normals[:, 0]))
-    meeting = np.argwhere((one.normals @ other.normals.T <= 0) & (sine <= PARALLEL))
-    for edge, edge_of_other in meeting.tolist():
-        a, b, n = one.corners[edge], one.ends[edge], one.normals[edge]
-        c, d = other.corners[edge_of_other], other.ends[edge_of_other]
+    i, j = pair
+    (p, normals), (q, others) = ((blocks[number].corners, blocks[number].normals) for number in pair)
+    sine = np.abs(np.outer(normals[:, 0], others[:, 1]) - np.outer(normals[:, 1], others[:, 0]))
+    for edge, other in np.argwhere((normals @ others.T <= 0) & (sine <= PARALLEL)).tolist():
+        a, b, n = p[edge], p[(edge + 1) % len(p)], normals[edge]
+        c, d = q[other], q[(other + 1) % len(q)]
         way = (b - a) / np.hypot(*(b - a))
         first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
         low, high = max(0.0, first), min(float((b - a) @ way), last)

@@ -68,6 +68,12 @@ class Polygon:
         return frozen(self.vertices)
 
     @cached_property
+    def normals(self) -> Array:
+        """Unit normals out of the edges, each of which begins at the corner of the same number, shape (n, 2)."""
+        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        return frozen(np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None])
+
+    @cached_property
     def _moments(self) -> tuple[float, float, float, float]:
         """Area [m2], centroid x, z [m] and polar second moment of area about it [m4].
 

@@ -89,7 +89,8 @@ def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int,
             base, k_side = under[joint.above], float(k_n[i])
             while not blocks[joints[base].below].fixed:
                 base = under[joints[base].below]
-            top = _top(blocks, joints, joint.below) - float(joints[base].middle[1])
+            stop = [max(j.start[1], j.end[1]) for j in joints if j.below == joint.below and is_side(blocks, j)]
+            top = max(stop) - float(joints[base].middle[1])
         wall = walls[base]
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
@@ -99,8 +100,3 @@ def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int,
             warnings.warn(f"the joint {joint.name}: {warning.message}", warning.category, stacklevel=4)
         retardation[i] = contacts.base.retardation if contacts.side is None else contacts.side.retardation
     return retardation
-
-
-def _top(blocks: Blocks, joints: Sequence[Joint], side: int) -> float:
-    """The highest point at which a fixed block touches blocks beside it, z [m]."""
-    return max(max(j.start[1], j.end[1]) for j in joints if j.below == side and is_side(blocks, j))

@@ -63,9 +63,8 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
         return None
     while high - low > 0.5 * ROUNDED:
         middle = 0.5 * (low + high)
-        low, high = (
-            (low, middle) if _stands(_balanced(masonry, applied, np.maximum(friction, middle))) else (middle, high)
-        )
+        stands = _stands(_balanced(masonry, applied, np.maximum(friction, middle)))
+        low, high = (low, middle) if stands else (middle, high)
     enough = math.ceil(high / ROUNDED) * ROUNDED
     answer = _balanced(masonry, applied, friction, np.maximum(friction, enough))
     m, edges = len(masonry.lines.k), EDGES if masonry.in_space else 2

@@ -191,10 +191,7 @@ class Case(Carrying):
     def peak_energies(self, peaks: Array) -> tuple[Array, Array]:
         """Energy at the rotation peaks of a base at rest [J], shape (n,): on leaving each, and on the way to it.
 
-        The second is larger by what ties have taken on the way there.
-
-        Args:
-            peaks: rotation maxima with their sign [rad], shape (n,).
+        The second is larger by what ties have taken on the way there. Peaks have their sign [rad], shape (n,).
         """
         energy = np.asarray(self.restoring.energy(peaks), dtype=float)
         if not self.pulls:
