@@ -19,9 +19,8 @@ from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
 from .bodies import Bodies
-from .film import GifWriter, PageWriter, Stage
+from .film import GifWriter, PageWriter, Stage, standalone
 from .histories import acceleration, rotation, ties
-from .page import standalone
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
 from .style import Drawing

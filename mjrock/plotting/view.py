@@ -16,7 +16,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-un
 
 from ..geometry import convex
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects_in_space import anchored_at, held_at
+from ..problem.masonry.effects import anchored_at, held_at
 from ..problem.wall.effects import Tie
 from ..quantities import Array
 from .section import Update, pulling

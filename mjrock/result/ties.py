@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.frames import SPACE
-from ..problem.masonry.effects import laden, placed
-from ..problem.masonry.effects_in_space import anchored_at, held_at
+from ..problem.masonry.effects import anchored_at, held_at, laden, placed
 from ..problem.wall.case import Case
 from ..problem.wall.effects import Tie
 from ..quantities import Array

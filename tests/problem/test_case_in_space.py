@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.masonry.effects import anchored_at, force_of, held_at
 from mjrock.problem.masonry.effects import applied as applied_to
-from mjrock.problem.masonry.effects_in_space import anchored_at, force_of, held_at
 from mjrock.study.fingerprint import fingerprint
 
 box = mr.Polyhedron.box

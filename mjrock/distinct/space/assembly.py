@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...problem.masonry.effects_in_space import anchored_at
+from ...problem.masonry.effects import anchored_at
 from ...problem.masonry.faces_of_joints import faces_of_joints
 from ...problem.masonry.joints_in_space import Face
 from ...problem.masonry.lines import free_numbers

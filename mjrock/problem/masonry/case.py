@@ -12,7 +12,7 @@ from ...quantities import Array, keep, require_array, require_kind, require_whol
 from ..ground.motion import GroundMotion
 from ..wall.effects import KINDS, Carrying, Effect, Load
 from ..wall.in_space import LATER, require_in_plane
-from .effects_in_space import require_in_space
+from .effects import require_in_space
 from .masonry import Masonry
 from .support import supports_of
 
