@@ -57,6 +57,28 @@ def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     return csr_array((values[there], (row[there], columns[there])), shape=(rows, unknowns))
 
 
+def rates_of(pair: Integers, arms: tuple[Array, Array], way: Array, bodies: int) -> csr_array:
+    """Rates at which places of pairs of bodies move apart in directions, for unit velocities.
+
+    They are the generalised forces of unit forces that press the two apart.
+
+    Args:
+        pair: numbers of the two bodies, negative for one that is fixed, shape (rows, 2).
+        arms: from the centroid of each to the place [m], shape (rows, 2) each, in space (rows, 3).
+        way: directions, of the same shape.
+        bodies: how many there are.
+
+    Returns:
+        Rates for x, z and rotation of each body, shape (rows, 3 bodies). In space for x, y, z and the angular velocity
+        in the axes of the world, shape (rows, 6 bodies).
+    """
+    sides, plane = [], way.shape[1] == 2
+    for sign, arm in zip((1.0, -1.0), arms, strict=True):
+        turning = (arm[:, 1] * way[:, 0] - arm[:, 0] * way[:, 1])[:, None] if plane else np.cross(arm, way)
+        sides.append(sign * np.hstack([way, turning]))
+    return entries(np.stack(sides, axis=1), np.asarray(pair, dtype=np.int64), (3 if plane else 6) * bodies)
+
+
 def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
     """Means of the rows of each group, shape (count, unknowns); a row with a negative number is in none."""
     grouped = np.flatnonzero(group >= 0)

@@ -266,6 +266,13 @@ NAMED = 5
 """Most things that a message names."""
 
 
+def frozen(values: ArrayLike) -> Array:
+    """Numbers as an array of their own that cannot be written to."""
+    array = np.array(values)
+    array.setflags(write=False)
+    return array
+
+
 def named(names: Sequence[str]) -> str:
     """Names in a message, not too many."""
     rest = len(names) - NAMED

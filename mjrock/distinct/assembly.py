@@ -15,8 +15,8 @@ from ..result.joints import joint_numbers
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .contact import OVERHANG
-from .limit import line_rates
-from .system import BODY, FAR, LINE, LINK, Rows, Supports, System, rows
+from .limit import line_rates, ways_of
+from .system import BODY, FAR, LINE, LINK, Rows, Supports, System, named, rows, stacked
 
 ENOUGH = 1e-9
 """Tolerance of the search for the friction at rest, relative [-]."""
@@ -30,9 +30,9 @@ def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supp
         len(scene.mass),
         mass=scene.mass,
         ease=1 / scene.inertia,
-        **columns(("x0", "z0"), scene.rest),
-        **columns(("x", "z", "theta"), pose),
-        **columns(("vx", "vz", "w"), velocity),
+        **named(("x0", "z0"), scene.rest),
+        **named(("x", "z", "theta"), pose),
+        **named(("vx", "vz", "w"), velocity),
     )
     half = np.sin(0.5 * pose[:, 2])
     bodies["sine"], bodies["versine"] = 2 * half * np.cos(0.5 * pose[:, 2]), 2 * half**2
@@ -54,14 +54,8 @@ def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supp
     return system
 
 
-def columns(names: Sequence[str], values: Array) -> dict[str, Array]:
-    """The columns of an array by name."""
-    return dict(zip(names, np.asarray(values).T, strict=True))
-
-
 def lines_of(scene: Scene) -> Rows:
     """The contact lines of a scene, whose faces have no end and which stick rigidly."""
-    groups = {name: number for number, name in enumerate(dict.fromkeys(scene.group))}
     places = scene.places
     return rows(
         LINE,
@@ -69,11 +63,11 @@ def lines_of(scene: Scene) -> Rows:
         body=places.body,
         face=places.face_body,
         support=-1,
-        group=np.array([groups[name] for name in scene.group]),
-        **columns(("at_x", "at_z"), places.at),
-        **columns(("origin_x", "origin_z"), places.face_at),
-        **columns(("normal_x", "normal_z"), places.normal),
-        **columns(("between_x", "between_z"), places.between),
+        group=accounts_of(scene),
+        **named(("at_x", "at_z"), places.at),
+        **named(("origin_x", "origin_z"), places.face_at),
+        **named(("normal_x", "normal_z"), places.normal),
+        **named(("between_x", "between_z"), places.between),
         k=scene.k,
         c=scene.c,
         k_s=np.inf,
@@ -85,11 +79,17 @@ def lines_of(scene: Scene) -> Rows:
     )
 
 
+def accounts_of(scene: Scene) -> Integers:
+    """The number of the account of each contact line, those of one group the same."""
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(scene.group))}
+    return np.array([numbers[name] for name in scene.group])
+
+
 def links_of(body: Integers, at: Array, between: Array, **given: Array) -> Rows:
     """Ties, dampers or forces as rows."""
     if not len(body):
         return rows(LINK, 0)
-    held = {**columns(("at_x", "at_z"), at), **columns(("between_x", "between_z"), between)}
+    held = {**named(("at_x", "at_z"), at), **named(("between_x", "between_z"), between)}
     return rows(LINK, len(body), body=body, **held, **given)
 
 
@@ -134,9 +134,8 @@ def take_up_friction(system: System) -> None:
     A structure such as an arch needs friction to stand. Its shear springs would else first have to give way.
     """
     bodies, lines = system.bodies, system.lines
-    normal = line_rates(system, lines["normal_x"], lines["normal_z"])
-    along = line_rates(system, lines["normal_z"], -lines["normal_x"])
-    pose = np.column_stack([bodies["x"], bodies["z"], bodies["theta"]]).ravel()
+    normal, along = (line_rates(system, way) for way in ways_of(lines))
+    pose = stacked(bodies, ("x", "z", "theta")).ravel()
     push = np.maximum(-lines["k"] * (normal @ pose), 0.0)
     force = normal.T @ push
     force[1::3] -= GRAVITY * bodies["mass"]

@@ -45,10 +45,8 @@ def solve_explicit(
     normal, and along each face a spring of stiffness k_s with a Coulomb slider, or rigid friction where k_s is None
     (Cundall and Strack, Geotechnique 29, 1979, 47-65). It shares no kinematics and no time integration with MuJoCo.
 
-    Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, and a spring or
-    friction with two components along each face. A point that has moved past the outline of its face hands its force
-    over to the nearest place of the outline, as long as this is under the block above. Corners of blocks that have left
-    their joints meet the faces of others there; edges that cross do not meet, which the message of the response says.
+    Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, see docs/space.md.
+    Edges of blocks that cross do not meet there, which the message of the response says.
 
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.

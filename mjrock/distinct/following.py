@@ -27,12 +27,9 @@ class Setup:
     """A system at its start, and how it is followed.
 
     Args:
-        scene: what stands.
-        course: what happens to it.
-        system: its rows.
+        scene, course, system: what stands, what happens to it, and its rows.
         advance: the compiled steps.
-        limit: the longest stable step [s].
-        share: step that is taken over the longest stable one [-].
+        limit, share: the longest stable step [s], and the step that is taken over it [-].
         spacing: largest spacing of the samples [s].
         ends: rotation at which the run ends [rad].
         freedom: of the bodies.
@@ -52,11 +49,7 @@ class Setup:
 
 
 def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
-    """Length of a step [s], and how many lie between two samples.
-
-    Raises:
-        ValueError: for a step that is not stable.
-    """
+    """Length of a step [s], and how many lie between two samples; a ValueError says if it is not stable."""
     if timestep is None:
         every = max(1, math.ceil(spacing / taken))
         return spacing / every, every

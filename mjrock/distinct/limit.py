@@ -6,57 +6,45 @@ one mode.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
-from ..quantities import Array, Integers
+from ..linear import rates_of
+from ..quantities import Array
 from ..scene.explicit_step import stable_step
-from .system import Rows, System
-
-SMALL = 20
-"""Number of springs up to which the eigenvalues are those of a full matrix."""
-ALLOWANCE = 1.01
-"""Allowance for the tolerance of the search for an eigenvalue [-]."""
+from .system import Rows, System, stacked
 
 
 def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
-    lines, ties, dampers = system.lines, system.ties, system.dampers
-    along = line_rates(system, lines["normal_z"], -lines["normal_x"])
-    rates = csr_array(
-        vstack(
-            [
-                line_rates(system, lines["normal_x"], lines["normal_z"]),
-                along,
-                link_rates(system, ties),
-                link_rates(system, dampers),
-            ]
-        )
-    )
-    sprung = np.isfinite(lines["k_s"])
-    shear = [np.where(sprung, lines[name], 0.0) for name in ("k_s", "c_s")]
     bodies = system.bodies
+    rates = [line_rates(system, way) for way in ways_of(system.lines)]
+    rates += [link_rates(links, len(bodies)) for links in (system.ties, system.dampers)]
     ease = np.column_stack([1 / bodies["mass"], 1 / bodies["mass"], bodies["ease"]]).ravel()
-    return step_on_springs(
-        rates,
-        np.concatenate([lines["k"], shear[0], ties["k"], dampers["k"]]),
-        np.concatenate([lines["c"], shear[1], ties["c"], dampers["c"]]),
-        diags_array(np.sqrt(ease)),
-    )
+    return step_on_springs(system, rates, diags_array(np.sqrt(ease)))
 
 
-def step_on_springs(rates: csr_array, k: Array, c: Array, root: Any) -> float:
-    """The longest stable step [s] on springs k and dashpots c, whose lengths have these rates.
+def step_on_springs(system: Any, rates: Sequence[csr_array], root: Any) -> float:
+    """The longest stable step of a system in the plane or in space [s].
 
     Args:
-        rates: of the lengths of the springs, for unit velocities, shape (springs, unknowns).
-        k, c: of each spring [N/m, N s/m].
+        system: the springs and dashpots.
+        rates: of lengths, for unit velocities: of the lines along their normals and then along the ways on their faces,
+            of the ties and of the dampers, shape (springs, unknowns) each.
         root: R with R R^T = M^-1, of masses on a diagonal 1 / sqrt(m).
     """
-    return stable_step(highest(rates, k, root), highest(rates, c, root))
+    lines, lengths = system.lines, csr_array(vstack(rates))
+
+    def weights(along: str, across: str) -> Array:
+        shear = np.where(np.isfinite(lines["k_s"]), lines[across], 0.0)
+        ways = [shear] * (len(rates) - 3)
+        return np.concatenate([lines[along], *ways, system.ties[along], system.dampers[along]])
+
+    return stable_step(highest(lengths, weights("k", "k_s"), root), highest(lengths, weights("c", "c_s"), root))
 
 
 def highest(rates: csr_array, weights: Array, root: Any) -> float:
@@ -66,44 +54,29 @@ def highest(rates: csr_array, weights: Array, root: Any) -> float:
         return 0.0
     scaled = diags_array(np.sqrt(weights[acting])) @ rates[acting] @ root
     matrix = scaled @ scaled.T
-    if len(acting) <= SMALL:
+    if len(acting) <= 20:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(acting))
-    return ALLOWANCE * float(eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0])
+    largest = eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0]
+    return 1.01 * float(largest)  # an allowance for the tolerance
 
 
-def line_rates(system: System, x: Array, z: Array) -> csr_array:
-    """Rates at which the points of the lines move over their faces in the directions x, z, for unit velocities."""
-    lines, bodies = system.lines, system.bodies
-    own, on_body = lines["body"], np.flatnonzero(lines["face"] >= 0).astype(np.int64)
-    face = lines["face"][on_body]
-    arms = [lines[f"at_{axis}"] + bodies[f"{axis}0"][own] for axis in "xz"]
-    rates = entries(
-        system,
-        np.arange(len(own), dtype=np.int64),
-        own,
-        [arms[0] - bodies["x0"][own], arms[1] - bodies["z0"][own]],
-        x,
-        z,
-    )
-    others = [arms[0][on_body] - bodies["x0"][face], arms[1][on_body] - bodies["z0"][face]]
-    return rates - entries(system, on_body, face, others, x[on_body], z[on_body], len(own))
+def ways_of(lines: Rows) -> tuple[Array, Array]:
+    """Unit vectors along the normals of lines, and along their faces, shape (m, 2) each."""
+    x, z = lines["normal_x"], lines["normal_z"]
+    return np.column_stack([x, z]), np.column_stack([z, -x])
 
 
-def link_rates(system: System, links: Rows) -> csr_array:
+def line_rates(system: System, way: Array) -> csr_array:
+    """Rates at which the points of the lines move over their faces in directions, for unit velocities."""
+    lines, rest = system.lines, stacked(system.bodies, ("x0", "z0"))
+    place = stacked(lines, ("at_x", "at_z")) + rest[lines["body"]]
+    arms = place - rest[lines["body"]], place - rest[lines["face"]]
+    return rates_of(stacked(lines, ("body", "face")), arms, way, len(rest))
+
+
+def link_rates(links: Rows, bodies: int) -> csr_array:
     """Rates at which ties or dampers lengthen, for unit velocities."""
-    x, z = links["between_x"], links["between_z"]
-    size = np.hypot(x, z)
-    return entries(
-        system, np.arange(len(links), dtype=np.int64), links["body"], [links["at_x"], links["at_z"]], x / size, z / size
-    )
-
-
-def entries(
-    system: System, row: Integers, body: Integers, arms: list[Array], x: Array, z: Array, count: int | None = None
-) -> csr_array:
-    """A matrix whose rows hold the rates, in the directions x, z, of points at arms from the centroids of bodies."""
-    values = np.column_stack([x, z, arms[1] * x - arms[0] * z])
-    places = np.repeat(row, 3), (3 * body[:, None] + np.arange(3)).ravel()
-    shape = (len(row) if count is None else count, 3 * len(system.bodies))
-    return csr_array((values.ravel(), places), shape=shape)
+    at, between = stacked(links, ("at_x", "at_z")), stacked(links, ("between_x", "between_z"))
+    ways = between / np.hypot(*between.T)[:, None]
+    return rates_of(np.column_stack([links["body"], np.full(len(links), -1)]), (at, at), ways, bodies)

@@ -30,9 +30,6 @@ from ..scene.course import Course
 from ..scene.scene import Scene
 from .system import Books, Samples
 
-UNMET = "of edges that cross, and of corners of fixed blocks,"
-"""Contacts of blocks that fall in space that are left out."""
-
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -55,31 +52,19 @@ class Run:
     @cached_property
     def t(self) -> Array:
         """Times of the samples [s]."""
-        times: Array = self.spacing * np.arange(len(self.samples.pose), dtype=float)
-        return times
+        return np.asarray(self.spacing * np.arange(len(self.samples.pose), dtype=float))
 
     @cached_property
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
-        at_rest = float(self.scene.rest_energies.sum()) + self._preloaded
+        at_rest = self.scene.rest_energies.sum()
+        preloaded = float(self.samples.energy[0].sum() - at_rest - self.course.energy(self.scene))
         kinetic, potential, elastic = self.samples.energy.T
-        total: Array = kinetic + potential + elastic - at_rest
-        return total
-
-    @property
-    def _preloaded(self) -> float:
-        """Energy in the shear springs that carry masonry at rest [J]."""
-        return float(self.samples.energy[0].sum() - self.scene.rest_energies.sum() - self.course.energy(self.scene))
+        return np.asarray(kinetic + potential + elastic - (float(at_rest) + preloaded))
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
-    """The response of a run.
-
-    Args:
-        run: the run.
-        ledger: whether it has the accounts of a ledger.
-        stride: every how many samples are returned.
-        stats: what the run took.
+    """The response of a run: every `stride` of its samples, its accounts where it has a `ledger`, and what it took.
 
     Raises:
         RuntimeError: if energy has appeared from nowhere.
@@ -137,7 +122,8 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
-    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), UNMET if run.in_space else "")
+    unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
+    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()
     of = joint_numbers(masonry, scene.group)
     np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])
@@ -151,15 +137,12 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
 
 
 def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
-    """Make sure that no energy appears from nowhere up to a sample.
+    """Raise a RuntimeError if energy appears from nowhere up to a sample, or if the motion is not finite.
 
     Args:
         run: the run.
         count: number of the sample.
         stats: with the step that was taken, and the longest stable one.
-
-    Raises:
-        RuntimeError: if it does, or if the motion is not finite.
     """
     if not np.isfinite(run.samples.energy[-1]).all():
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")

@@ -6,6 +6,7 @@ Positions are those at rest, and the motion is counted from there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -78,6 +79,16 @@ def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | floa
     for name, values in columns.items():
         table[name] = values
     return table.view(np.recarray)
+
+
+def named(names: Sequence[str], values: Array) -> dict[str, Array]:
+    """The columns of an array by name."""
+    return dict(zip(names, np.reshape(values, (-1, len(names))).T, strict=True))
+
+
+def stacked(table: Rows, names: Sequence[str]) -> NDArray[Any]:
+    """Columns of rows side by side, shape (rows, columns)."""
+    return np.column_stack([table[name] for name in names])
 
 
 class Supports(NamedTuple):

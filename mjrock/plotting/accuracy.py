@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,8 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from numpy.typing import ArrayLike
 
+from .style import below_figure
+
 PEER_COLORS = ("0.1", "#1f77b4", "#2ca02c", "#d62728", "#9467bd")
 """A colour for each code of `peers`."""
+GRID: dict[str, Any] = {"visible": True, "which": "major", "linewidth": 0.4, "color": "0.9"}
 
 
 def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], order: int) -> Axes:
@@ -26,7 +30,7 @@ def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], ord
     ax.xaxis.set_major_formatter("{x:g}")
     ax.xaxis.set_minor_locator(NullLocator())
     ax.set_xlabel("step $h$ [ms]")
-    ax.grid(True, which="major", linewidth=0.4, color="0.9")
+    ax.grid(**GRID)
     ax.legend(frameon=False, fontsize=8)
     return ax
 
@@ -52,8 +56,7 @@ def work_precision(
         column[0].set_title(case, fontsize=10)
     for ax in axes[:, 0]:
         ax.set_ylabel(error)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    below_figure(figure, axes[0, 0], ncols=4, fontsize=8)
     return figure
 
 
@@ -70,27 +73,23 @@ def peers(points: Sequence[tuple[str, str, float, float, float]]) -> Figure:
     for setup in setups:
         code = setup.split(",")[0]
         rank = [other for other in setups if other.split(",")[0] == code].index(setup)
-        look = {
-            "color": PEER_COLORS[codes.index(code)],
-            "marker": "osD^"[rank],
-            "linestyle": ("-", "--", ":", "-.")[rank],
-        }
+        style = f"{'osD^'[rank]}{('-', '--', ':', '-.')[rank]}"
+        color = PEER_COLORS[codes.index(code)]
         for column, case in zip(axes.T, cases, strict=True):
             rows = [point[2:] for point in points if point[:2] == (case, setup)]
             for ax, which in zip(column, (1, 2), strict=True):
                 line = [(row[0], row[which]) for row in rows if np.isfinite(row[which])]
-                ax.loglog(*np.reshape(line, (-1, 2)).T, linewidth=1.3, markersize=5, label=setup, **look)
+                ax.loglog(*np.reshape(line, (-1, 2)).T, style, color=color, linewidth=1.3, markersize=5, label=setup)
     for column, case in zip(axes.T, cases, strict=True):
         column[0].set_title(case, fontsize=10)
         column[1].set_xlabel("wall time / simulated time [-]")
         for ax in column:
             ax.axhline(1, color="0.7", linewidth=0.8, zorder=0)
             ax.annotate("a rebound is missing", (0.02, 1), xycoords=ax.get_yaxis_transform(), va="bottom", fontsize=7)
-            ax.grid(True, which="major", linewidth=0.4, color="0.9")
+            ax.grid(**GRID)
     for ax, target in zip(axes[:, 0], ("the contact law", "rocking theory"), strict=True):
         ax.set_ylabel(f"largest error of $|e|$ against {target} [-]", fontsize=9)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    below_figure(figure, axes[0, 0], fontsize=8)
     return figure
 
 
@@ -106,4 +105,4 @@ def _errors(ax: Axes, points: Sequence[tuple[float, float, str]], methods: Seque
         if name != "rocking theory" and (not front or error < front[-1][1]):
             front.append((cost, error))
     ax.loglog(*np.transpose(front), color="0.85", linewidth=7, zorder=0, label="Pareto front of the contact law")
-    ax.grid(True, which="major", linewidth=0.4, color="0.9")
+    ax.grid(**GRID)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,17 +19,14 @@ from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
 from .bodies import Bodies
-from .film import GifWriter, PageWriter, Stage
+from .film import GifWriter, PageWriter, Stage, standalone
 from .histories import acceleration, rotation, ties
-from .page import standalone
-from .section import Update, blocks, frame_view, surroundings, ties_of_masonry
+from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
+from .style import Drawing
 from .view import fill, solids, ties_in_view
 
-ENDINGS = (".gif", ".mp4", ".html")
-"""Endings of the files that are written."""
 MOST_FRAMES = 20_000
-"""Most frames of one picture."""
 HUNDREDTHS = 100
 """A GIF counts the time of a frame in hundredths of a second, and browsers slow down below two of them [1/s]."""
 
@@ -74,21 +71,21 @@ def animate(
         RuntimeError: for an .mp4 where there is no ffmpeg.
     """
     require_kind("response", response, Response)
+    bodies: Bodies | Solids
     if response.in_space:
-        solid = Solids.of(response, require_within("magnify", magnify, 0.01, 1e4), camera)
-        return _film(solid, path, [], response.case, speed=speed, fps=fps, title=title, dpi=dpi)
-    if camera is not None:
+        bodies = Solids.of(response, require_within("magnify", magnify, 0.01, 1e4), camera)
+    elif camera is not None:
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
-    bodies = Bodies.of(response, magnify)
-    drawn: list[Callable[[Axes], object]] = []
+    else:
+        bodies = Bodies.of(response, magnify)
+    histories: list[Drawing] = []
     if isinstance(case := response.case, Case):
         if case.shaken:
-            drawn.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
-        drawn.append(lambda ax: rotation(ax, [response]))
+            histories.append(lambda ax: acceleration(ax, case, float(response.t[-1])))
+        histories.append(lambda ax: rotation(ax, [response]))
         if response.ties:
-            drawn.append(lambda ax: ties(ax, [response]))
-        return _film(bodies, path, drawn, case, speed=speed, fps=fps, title=title, dpi=dpi)
-    return _film(bodies, path, drawn, response.case, speed=speed, fps=fps, title=title, dpi=dpi)
+            histories.append(lambda ax: ties(ax, [response]))
+    return _film(bodies, path, histories, case, speed=speed, fps=fps, title=title, dpi=dpi)
 
 
 def animate_bodies(
@@ -107,11 +104,8 @@ def animate_bodies(
 ) -> Path:
     """Write the motion of any rigid bodies in their plane as a moving picture.
 
-    Args:
-        t, outlines, rests, poses, fixed: the bodies and their motion, as in `mjrock.plotting.bodies.Bodies`.
-        path, speed, fps, magnify, title, dpi: as in `animate`.
-
-    Returns, Raises: as `animate`.
+    The bodies and their motion `t`, `outlines`, `rests`, `poses` and `fixed` are those of
+    `mjrock.plotting.bodies.Bodies`. All else, the path that is returned and the errors are those of `animate`.
     """
     bodies = Bodies(t, outlines, rests, poses, magnify, fixed)  # type: ignore[arg-type]
     return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
@@ -120,7 +114,7 @@ def animate_bodies(
 def _film(
     bodies: Bodies | Solids,
     path: str | Path,
-    histories: Sequence[Callable[[Axes], object]],
+    histories: Sequence[Drawing],
     case: Case | MasonryCase | None,
     *,
     speed: float,
@@ -158,24 +152,18 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
             return GifWriter(fps=JUST / interval), interval  # type: ignore[arg-type]
         case ".mp4":
             if not FFMpegWriter.isAvailable():
-                raise RuntimeError(
-                    f"{path.name}: an .mp4 needs the program ffmpeg, which is not on the PATH; install it, or write a "
-                    ".gif or an .html"
-                )
+                needs = "an .mp4 needs the program ffmpeg, which is not on the PATH"
+                raise RuntimeError(f"{path.name}: {needs}; install it, or write a .gif or an .html")
             return FFMpegWriter(fps=fps, codec="h264"), 1 / fps  # type: ignore[arg-type]
         case ".html":
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
             return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
-    raise ValueError(f"path = {path.name!r} ends in none of {', '.join(ENDINGS)}")
+    raise ValueError(f"path = {path.name!r} ends in none of .gif, .mp4, .html")
 
 
 def frame_times(t: Array, step: float) -> Array:
-    """Times of the frames [s], `step` apart from the first sample to the last.
-
-    Raises:
-        ValueError: for more than 20,000 frames.
-    """
+    """Times of the frames [s], `step` apart from the first sample to the last; a ValueError says if they are many."""
     count = int((t[-1] - t[0]) / step * (1 + 1e-12)) + 1
     if count > MOST_FRAMES:
         raise ValueError(f"the picture would have {count} frames; the valid range is 1 to {MOST_FRAMES}; raise speed")
@@ -184,7 +172,7 @@ def frame_times(t: Array, step: float) -> Array:
 
 def scene(
     bodies: Bodies | Solids,
-    histories: Sequence[Callable[[Axes], object]],
+    histories: Sequence[Drawing],
     case: Case | MasonryCase | None,
     *,
     speed: float = 1.0,
@@ -215,6 +203,7 @@ def scene(
             updates.append(_marker(panel, bodies.t))
             panel.label_outer()
     figure.suptitle(title, fontsize=10)
+    moved = together(updates)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
@@ -222,8 +211,7 @@ def scene(
 
     def update(frame: int) -> None:
         clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")
-        for move in updates:
-            move(frame)
+        moved(frame)
 
     update(0)
     return figure, update

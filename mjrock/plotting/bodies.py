@@ -17,11 +17,7 @@ from ..result.response import Response
 
 
 def require_masonry(what: str, response: Response) -> Masonry:
-    """The masonry of a response.
-
-    Raises:
-        ValueError: for a response of a wall, with what takes masonry alone.
-    """
+    """The masonry of a response; for one of a wall a ValueError says what takes masonry alone."""
     masonry = getattr(response.case, "masonry", None)
     if not isinstance(masonry, Masonry):
         raise ValueError(f"{what} takes masonry or a response of it, and this response is one of a wall")
@@ -91,9 +87,8 @@ class Bodies:
         require_kind("response", response, Response)
         case: Any = response.case
         if isinstance(case, Case):
-            wall = case.wall
-            rests = np.array([[wall.centroid_offset, wall.centroid_height]])
-            return cls(response.t, (wall.outline,), rests, response.pose, magnify)
+            rests = np.array([[case.wall.centroid_offset, case.wall.centroid_height]])
+            return cls(response.t, (case.wall.outline,), rests, response.pose, magnify)
         if response.in_space:
             case.masonry.require_plane("Bodies")
         blocks, free = case.masonry.blocks, list(case.masonry.free)
@@ -114,10 +109,8 @@ class Bodies:
     def placed(self, frame: int, body: int, points: Array) -> Array:
         """Where points of a body are drawn at a frame [m], shape (n, 2).
 
-        The displacement of each point from rest is drawn times `magnify`. A point that does not move, such as the toe
-        that a wall turns about, then stays where it is; what is magnified is slightly distorted.
-
-        The points are given about the centroid of the body at rest [m], shape (n, 2).
+        The points are given about the centroid of the body at rest [m], shape (n, 2). Their displacement is drawn times
+        `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
         return self._drawn(self.poses[frame, body], self.rests[body], points)
 
@@ -151,5 +144,4 @@ class Bodies:
         dx, dz, theta = np.moveaxis(pose[..., None], -2, 0)
         sine, cosine = np.sin(theta), np.cos(theta)
         turned = np.stack([x * cosine + z * sine + dx, z * cosine - x * sine + dz], axis=-1)
-        shown: Array = rest[..., None, :] + points + self.magnify * (turned - points)
-        return shown
+        return np.asarray(rest[..., None, :] + points + self.magnify * (turned - points))

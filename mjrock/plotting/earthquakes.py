@@ -17,13 +17,14 @@ from .style import STYLES
 MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
 """How a wall takes a pulse, and colours that a black-and-white print still tells apart."""
 
+PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
+
 
 def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: ArrayLike) -> Axes:
     """Overturning spectrum of a pulse: `mode` (an index into MODES) over frequency and amplitude, shape (n_a, n_f)."""
     colours = ListedColormap(list(MODES.values()))
     ax.pcolormesh(frequency, amplitude, mode, cmap=colours, vmin=-0.5, vmax=len(MODES) - 0.5, rasterized=True)
-    ax.set_xlabel(r"frequency $\omega_p/p$ [-]")
-    ax.set_ylabel(r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
+    ax.set(xlabel=r"frequency $\omega_p/p$ [-]", ylabel=r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
     return ax
 
 
@@ -47,15 +48,13 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
     for line, style, label in zip(fractiles, (":", "-", "--"), ("16 %", "median", "84 %"), strict=True):
         ax.plot(levels, line, color="#12406b", linewidth=1.8, linestyle=style, label=label)
-    ax.set_ylim(0, 1.03 * top)
     ax.axhline(1, color="0.3", linewidth=0.6)
     ax.axhline(top, color="0.3", linewidth=0.6, linestyle=":")
     ax.text(0.01 * levels.max(), top, "overturned", fontsize=7, va="top", color="0.3")
-    ax.set_xlim(0, levels.max())
+    ax.set(xlim=(0, levels.max()), ylim=(0, 1.03 * top))
     ax.legend(frameon=False, fontsize=7, loc="center left")
     ax.set_title(STYLES.get(solver, {}).get("label", solver), fontsize=10)
-    ax.set_xlabel("peak ground acceleration [g]")
-    ax.set_ylabel(r"peak rotation $\theta_{max}/\alpha$ [-]")
+    ax.set(xlabel="peak ground acceleration [g]", ylabel=PEAK)
     return ax
 
 
@@ -83,9 +82,7 @@ def fragility(
     label = f"{style.get('label', solver)}: {fit.median:.2f} {unit}, {fit.dispersion:.2f}"
     ax.plot(points, shares, marker=marker, linestyle="", color=colour, markersize=5, label=label)
     ax.set_xlim(0, max(1.02 * points.max(), ax.get_xlim()[1] if len(ax.lines) > 2 else 0.0))
-    ax.set_ylim(-0.02, 1.02)
-    ax.set_xlabel(f"peak ground acceleration [{unit}]")
-    ax.set_ylabel("share of walls overturned [-]")
+    ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
     return ax
 
 
@@ -95,11 +92,7 @@ def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-
         style = {k: v for k, v in STYLES.get(solver, {"label": solver}).items() if k != "linestyle"}
         ordered = np.sort(np.clip(np.asarray(values, dtype=float), least, 10 * most))
         ax.step(ordered, np.arange(1, len(ordered) + 1) / len(ordered), where="post", **style)
-    ax.set_xscale("log")
-    ax.set_xlim(least, most)
-    ax.set_ylim(0, 1)
-    ax.set_xlabel(r"peak rotation $\theta_{max}/\alpha$ [-]")
-    ax.set_ylabel("share of runs below it [-]")
+    ax.set(xscale="log", xlim=(least, most), ylim=(0, 1), xlabel=PEAK, ylabel="share of runs below it [-]")
     return ax
 
 
@@ -112,9 +105,7 @@ def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[flo
     a, b = np.clip(np.asarray(values, dtype=float), low, high).T
     ax.plot([low, high], [low, high], color="0.6", linewidth=0.8)
     ax.loglog(a, b, linestyle="", marker="o", markersize=3.5, markeredgewidth=0, alpha=0.55, color="#12406b")
-    ax.set_xlim(0.8 * low, 1.25 * high)
-    ax.set_ylim(0.8 * low, 1.25 * high)
-    ax.set_aspect("equal")
-    ax.set_xlabel(rf"$\theta_{{max}}/\alpha$, {names[0]} [-]")
-    ax.set_ylabel(rf"$\theta_{{max}}/\alpha$, {names[1]} [-]")
+    limits = 0.8 * low, 1.25 * high
+    x, y = (rf"$\theta_{{max}}/\alpha$, {name} [-]" for name in names)
+    ax.set(xlim=limits, ylim=limits, aspect="equal", xlabel=x, ylabel=y)
     return ax

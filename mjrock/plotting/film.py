@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import base64
+import html
+import re
 from io import BytesIO
 from typing import Any
 
@@ -10,9 +12,6 @@ from matplotlib.animation import HTMLWriter, PillowWriter
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
-
-COLOURS = 128
-"""Colours of a frame: flat drawings with smooth edges need no more, and the file is some three times smaller."""
 
 
 class Stage:
@@ -36,7 +35,7 @@ class Stage:
         size = self.canvas.get_width_height()
         drawn = Image.frombuffer("RGBA", size, self.canvas.buffer_rgba(), "raw", "RGBA", 0, 1).convert("RGB")
         if self.palette is None:
-            self.palette = drawn.quantize(COLOURS)
+            self.palette = drawn.quantize(128)  # flat drawings need no more colours, and files are three times smaller
         return drawn.quantize(palette=self.palette, dither=Image.Dither.NONE)
 
 
@@ -60,3 +59,24 @@ class PageWriter(HTMLWriter):
         file = BytesIO()
         self.stage.picture().save(file, "PNG")
         self._saved_frames.append(base64.encodebytes(file.getvalue()).decode("ascii"))  # type: ignore[attr-defined]
+
+
+ICONS = {
+    "fa-minus": "&#8722;",
+    "fa-fast-backward": "|&#9664;&#9664;",
+    "fa-step-backward": "|&#9664;",
+    "fa-play fa-flip-horizontal": "&#9664;",
+    "fa-pause": "&#10074;&#10074;",
+    "fa-play": "&#9654;",
+    "fa-step-forward": "&#9654;|",
+    "fa-fast-forward": "&#9654;&#9654;|",
+    "fa-plus": "&#43;",
+}
+"""What stands on the buttons of matplotlib's player in place of an icon font from the web."""
+
+
+def standalone(text: str, title: str) -> str:
+    """The page of matplotlib's player with characters for its icons, which it would load from the web."""
+    text = re.sub(r"<link\b[^>]*>", "", text)
+    text = re.sub(r'<i class="fa ([^"]*)"></i>', lambda icon: ICONS.get(icon[1], "&#8226;"), text)
+    return f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>\n{text}'

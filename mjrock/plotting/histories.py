@@ -12,15 +12,9 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
-from .style import style_of, styles_of
+from .style import below_figure, several, styles_of
 
-BEYOND = 1.2
-"""Rotation up to which a wall that overturns is shown, in multiples of alpha [-]."""
-
-DIFFERS = 0.01
-"""Difference of the rotation that overturns a wall from alpha that is drawn [-]."""
-FAR = 4.0
-"""That rotation over the largest of the motion, from which it is left out, as it would flatten the motion [-]."""
+TIME = "time $t$ [s]"
 
 
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
@@ -39,15 +33,14 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
-        if abs(limit - 1) > DIFFERS and limit < FAR * max(reached):
+        if abs(limit - 1) > 0.01 and limit < 4 * max(reached):  # one that is far would flatten the motion
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
-    ax.set_xlabel("time $t$ [s]")
-    ax.set_ylabel(r"rotation $\theta/\alpha$ [-]")
+    ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
     if said:
-        top = max(BEYOND, 1.05 * max(reached))
+        top = max(1.2, 1.05 * max(reached))
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
         ax.set_ylim(max(-top, min(-0.08 * top, 1.08 * inwards)), top)
         text = "\n".join(said) if len(responses) > 1 else said[0].rsplit(": ", 1)[1]
@@ -73,8 +66,7 @@ def acceleration(ax: Axes, case: Case, until: float) -> Axes:
     if case.vertical is not None:
         ax.legend(frameon=False, fontsize=7, loc="upper right", ncols=2)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
-    ax.set_xlabel("time $t$ [s]")
-    ax.set_ylabel("ground [m/s²]")
+    ax.set(xlabel=TIME, ylabel="ground [m/s²]")
     return ax
 
 
@@ -83,14 +75,13 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
 
     Ties of one response that did the same are drawn once.
     """
-    several, known = len(responses) > 1, styles_of(responses, labels)
-    for response, style in zip(responses, known, strict=True):
+    for response, style in zip(responses, styles_of(responses, labels), strict=True):
         drawn: dict[bytes, list[str]] = {}
         for name, tie in response.ties.items():
             drawn.setdefault(tie.force.tobytes(), []).append(name)
         for i, names in enumerate(drawn.values()):
             tie = response.ties[names[0]]
-            said = f"{style['label']}, " if several else ""
+            said = f"{style['label']}, " if len(responses) > 1 else ""
             said += f"{', '.join(names)}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
             look = style | {"label": said, "zorder": 2} | ({"linestyle": "--"} if i else {})
             (line,) = ax.plot(response.t, tie.force / 1e3, **look)
@@ -102,8 +93,7 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
     ax.set_ylim(bottom=0.0)
     ax.set_ylim(top=1.0 + 1.35 * ax.get_ylim()[1] if ax.get_ylim()[1] == 0 else 1.35 * ax.get_ylim()[1])
     ax.legend(frameon=False, fontsize=7, loc="upper right")
-    ax.set_xlabel("time $t$ [s]")
-    ax.set_ylabel("ties [kN]")
+    ax.set(xlabel=TIME, ylabel="ties [kN]")
     return ax
 
 
@@ -124,35 +114,34 @@ def history(
     """
     if not isinstance(responses, Sequence):
         require_kind("responses", responses, Response)
-    several = [responses] if isinstance(responses, Response) else list(responses)
-    for i, response in enumerate(several):
+    given = [responses] if isinstance(responses, Response) else list(responses)
+    for i, response in enumerate(given):
         require_kind(f"responses[{i}]", response, Response)
-    if not several:
+    if not given:
         raise ValueError("responses is empty; at least one response is needed")
-    for i, response in enumerate(several):
+    for i, response in enumerate(given):
         response.of_wall  # noqa: B018, raises for masonry
-        if not same_ground(several[0], response):
+        if not same_ground(given[0], response):
             raise ValueError(
                 f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion"
             )
-    names = required_labels(several, labels)
-    case, until = several[0].case, max(float(response.t[-1]) for response in several)
-    tied = any(response.ties for response in several)
+    names = required_labels(given, labels)
+    case, until = given[0].case, max(float(response.t[-1]) for response in given)
+    tied = any(response.ties for response in given)
     heights = [1.0] * case.shaken + [2.0] + [1.2] * tied
     figure = Figure(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
     if case.shaken:
         acceleration(axes[0], case, until)
-    rotation(axes[int(case.shaken)], several, names)
+    rotation(axes[int(case.shaken)], given, names)
     if tied:
-        ties(axes[-1], several, names)
+        ties(axes[-1], given, names)
     for ax in axes[:-1]:
         ax.set_xlabel("")
     axes[0].set_xlim(0, until)
     axes[0].set_title(title, fontsize=10)
-    if len(several) > 1:
-        lines = axes[int(case.shaken)].get_legend_handles_labels()
-        figure.legend(*lines, loc="outside lower center", ncols=3, frameon=False)
+    if len(given) > 1:
+        below_figure(figure, axes[int(case.shaken)])
     return figure
 
 
@@ -165,8 +154,7 @@ def required_labels(responses: Sequence[Response], labels: object) -> list[str] 
     """The labels of responses: those given, or solvers and numbers where cases differ, or None where solvers say it.
 
     Raises:
-        TypeError: if they are no texts.
-        ValueError: for another number of them.
+        TypeError, ValueError: if they are no texts, or another number of them.
     """
     if labels is None:
         if len({response.solver for response in responses}) == len(responses):
@@ -181,11 +169,10 @@ def required_labels(responses: Sequence[Response], labels: object) -> list[str] 
 
 def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
     """Energy above the wall at rest against time."""
-    for response in responses:
-        ax.plot(response.t, response.energy / 1e3, **style_of(response))
+    for response, style in zip(responses, styles_of(responses), strict=True):
+        ax.plot(response.t, response.energy / 1e3, **style)
     ax.set_ylim(bottom=0)
-    ax.set_xlabel("time $t$ [s]")
-    ax.set_ylabel("total energy $E$ [kJ]")
+    ax.set(xlabel=TIME, ylabel="total energy $E$ [kJ]")
     return ax
 
 
@@ -196,7 +183,7 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     rotation(above, responses).set_xlabel("")
     energy(below, responses)
     below.set_xlim(0, max(r.t[-1] for r in responses))
-    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    below_figure(figure, above)
     above.set_title(title, fontsize=10)
     return figure
 
@@ -206,19 +193,14 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top
 
     `top` cuts the panels off at a rotation in multiples of alpha, to show small rebounds large.
     """
-    rows = -(-len(panels) // columns)
-    figure = Figure(figsize=(3.4 * columns, 2.2 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False)
+    figure, axes = several(len(panels), columns, (3.4, 2.2))
     for ax, (title, responses) in zip(axes.flat, panels, strict=False):
         rotation(ax, responses).set_title(title, fontsize=9)
         if top is not None:
             ax.set_ylim(-0.1 * top, top)
-    for ax in axes.flat[len(panels) :]:
-        ax.set_visible(False)
     for ax in axes[:-1].flat:
         ax.set_xlabel("")
     for ax in axes[:, 1:].flat:
         ax.set_ylabel("")
-    handles = axes[0, 0].get_legend_handles_labels()
-    figure.legend(*handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+    below_figure(figure, axes[0, 0], fontsize=8)
     return figure

@@ -13,13 +13,14 @@ from numpy.typing import ArrayLike
 
 from ..quantities import Array, require_reals
 
+ASKED = "restitution asked for $|e|$ [-]"
+
 
 def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
     """Rows of real numbers that are drawn against each other, as arrays.
 
     Raises:
-        TypeError: with the name of the row that holds something else.
-        ValueError: unless they are rows of one length, of at least one number.
+        TypeError, ValueError: with their names, unless they are rows of one length, of at least one number.
     """
     checked = {name: require_reals(name, row, "a row of real numbers") for name, row in rows.items()}
     shapes = {name: row.shape for name, row in checked.items()}
@@ -39,16 +40,8 @@ def damping_curves(
     for i, ((label, matches, curve), marker) in enumerate(zip(families, "os^vD<>p", strict=False)):
         color = colormaps["viridis"](0.9 * i / max(1, len(families) - 1))
         ax.semilogy(*equal_rows(e=curve[0], xi=curve[1]), color=color, linewidth=1.2)
-        ax.semilogy(
-            *equal_rows(e=matches[0], xi=matches[1]),
-            linestyle="",
-            marker=marker,
-            markersize=4,
-            color=color,
-            label=label,
-        )
-    ax.set_xlabel("restitution asked for $|e|$ [-]")
-    ax.set_ylabel(r"damping ratio $\xi$ [-]")
+        ax.semilogy(*equal_rows(e=matches[0], xi=matches[1]), marker, markersize=4, color=color, label=label)
+    ax.set(xlabel=ASKED, ylabel=r"damping ratio $\xi$ [-]")
     ax.locator_params(axis="x", nbins=6)
     ax.set_ylim(bottom=0.1 * ax.get_ylim()[0])  # room for the legend
     ax.legend(frameon=False, fontsize=7, loc="lower left", ncols=2)
@@ -61,10 +54,7 @@ def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike)
     limits = 0.8 * min(x.min(), y.min()), 1.25 * max(x.max(), y.max())
     ax.loglog(limits, limits, color="0.5", linewidth=0.8)
     ax.scatter(x, y, c=np.log10(softness), s=6, cmap="viridis", linewidth=0)
-    ax.set_xlim(limits)
-    ax.set_ylim(limits)
-    ax.set_xlabel(r"matched $\xi$ [-]")
-    ax.set_ylabel(r"predicted $\xi$ [-]")
+    ax.set(xlim=limits, ylim=limits, xlabel=r"matched $\xi$ [-]", ylabel=r"predicted $\xi$ [-]")
     return ax
 
 
@@ -76,10 +66,8 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
         x, y = equal_rows(**{name: values, "residual": residual})
         ax.plot(x, y, linestyle="", marker="o", markersize=2, markeredgewidth=0, alpha=0.6, color="#12406b")
         ax.axhline(1, color="0.5", linewidth=0.8)
-        ax.set_xscale(scale)
+        ax.set(xscale=scale, yscale="log", xlabel=name)
         ax.xaxis.set_minor_formatter(NullFormatter())
-        ax.set_yscale("log")
-        ax.set_xlabel(name)
     axes[0].set_ylabel(r"predicted $\xi$ / matched $\xi$ [-]")
     figure.suptitle(title, fontsize=10)
     return figure
@@ -90,8 +78,7 @@ def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> 
     for (name, (shares, ratios)), marker in zip(curves.items(), "os^vD<>p", strict=False):
         ax.semilogy(*equal_rows(shares=shares, ratios=ratios), marker=marker, markersize=4, linewidth=1.2, label=name)
     ax.axhline(1, color="0.6", linewidth=0.6)
-    ax.set_xlabel("place in the range of Table 1 [-]")
-    ax.set_ylabel(r"$\xi$ over its mean [-]")
+    ax.set(xlabel="place in the range of Table 1 [-]", ylabel=r"$\xi$ over its mean [-]")
     ax.legend(frameon=False, fontsize=7)
     return ax
 
@@ -105,7 +92,6 @@ def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Ax
     looks = zip("x.s", ("#f0a35e", "#12406b", "0.4"), strict=True)
     for name, row, (marker, color) in zip(samples, rows, looks, strict=False):
         ax.plot(*row, linestyle="", marker=marker, markersize=5, color=color, label=name)
-    ax.set_xlabel("restitution asked for $|e|$ [-]")
-    ax.set_ylabel("restitution obtained $|e|$ [-]")
+    ax.set(xlabel=ASKED, ylabel="restitution obtained $|e|$ [-]")
     ax.legend(frameon=False, fontsize=8)
     return ax

@@ -23,8 +23,7 @@ BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
 def moved(corners: Array, centroid: Array, pose: Array) -> Array:
     """Corners of a block that has moved by a pose x, z, theta [m, m, rad], shape (n, 2)."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
-    placed: Array = (corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2]
-    return placed
+    return np.asarray((corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2])
 
 
 def blocks(
@@ -59,11 +58,13 @@ def blocks(
         masonry = require_masonry("blocks", masonry)
     require_kind("masonry", masonry, Masonry)
     magnified = require_within("magnified", magnified, 0.0, 1e6)
+    rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0] if masonry.in_space else [0.0, 0.0, 0.0]
+    bodies = len(masonry.free), len(rest)
+    at = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
     if masonry.in_space:
-        return _blocks_in_space(ax, masonry, pose, magnified, camera)
-    bodies = (len(masonry.free), 3)
-    at = np.zeros(bodies) if pose is None else magnified * require_array("pose", pose, bodies)
-    where = dict(zip(masonry.free, at, strict=True))
+        solids(ax, Solids(masonry, np.zeros(1), at[None], magnified, camera), animated=False)(0)
+        return ax
+    where = dict(zip(masonry.free, magnified * at, strict=True))
     for i, block in enumerate(masonry.blocks):
         corners = block.corners if block.fixed else moved(block.corners, block.centroid, where[i])
         colour = STONE if block.fixed else BRICK
@@ -71,18 +72,5 @@ def blocks(
     for joint in masonry.joints if joints and pose is None else ():
         ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=1.4, solid_capstyle="butt")
     ax.autoscale_view()
-    ax.set_aspect("equal")
-    ax.set_xlabel("$x$ [m]")
-    ax.set_ylabel("$z$ [m]")
-    return ax
-
-
-def _blocks_in_space(
-    ax: Axes, masonry: Masonry, pose: ArrayLike | None, magnified: float, camera: Sequence[float] | None
-) -> Axes:
-    """Blocks in space at rest or at a pose."""
-    shape = (len(masonry.free), 7)
-    rest = np.tile([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (shape[0], 1))
-    at = rest if pose is None else require_array("pose", pose, shape)
-    solids(ax, Solids(masonry, np.zeros(1), at[None], magnified, camera), animated=False)(0)
+    ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
     return ax

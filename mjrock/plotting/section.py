@@ -12,33 +12,37 @@ from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..problem.wall.effects import AddedMass, Load, Thrust, Tie
-from ..quantities import Array
-from ..result.ties import elongation_at, elongation_of, held_by
+from ..quantities import Array, Flags
+from ..result.ties import elongation_of, held_by
 from .bodies import Bodies
 
 STONE, GROUND, STEEL, FORCE = "#e9dcc3", "0.75", "#12406b", "#b5462f"
 """Colours of masonry, of what does not move, of ties, and of forces."""
 ARROW = 0.16
 """Length of the arrow of a force, over the height of the wall [-]."""
-MANY = 100
-"""Number of bodies beyond which their edges are drawn thin."""
-FARTHEST = 0.5
-"""Distance behind the wall up to which an anchor is shown, over the height of the wall [-]."""
 
 Update = Callable[[int], None]
 """Moves what is drawn to a frame."""
+
+
+def together(updates: Sequence[Update]) -> Update:
+    """One update that makes several."""
+
+    def update(frame: int) -> None:
+        for move in updates:
+            move(frame)
+
+    return update
 
 
 def blocks(ax: Axes, bodies: Bodies) -> Update:
     """Draw the outlines of bodies true to scale."""
     for outline in bodies.fixed:
         ax.add_patch(Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8))
-    width = 1.2 if len(bodies.outlines) <= MANY else 0.4
+    width = 1.2 if len(bodies.outlines) <= 100 else 0.4
     moving = PolyCollection([], facecolor=STONE, edgecolor="0.15", linewidth=width, zorder=2, animated=True)
     ax.add_collection(moving, autolim=False)
-    ax.set_aspect("equal")
-    ax.set_xlabel("$x$ [m]")
-    ax.set_ylabel("$z$ [m]")
+    ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
 
     def update(frame: int) -> None:
         moving.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
@@ -50,8 +54,7 @@ def frame_view(ax: Axes, bodies: Bodies, room: float = 0.06) -> None:
     """Set limits that every frame fits into, with `room` around them as a share of the larger side."""
     low, high = bodies.extent()
     margin = room * float((high - low).max())
-    ax.set_xlim(low[0] - margin, high[0] + margin)
-    ax.set_ylim(low[1] - margin, high[1] + margin)
+    ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
 
 
 def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
@@ -59,7 +62,7 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     wall, height = case.block, 2 * case.block.h
     ties, forces = case.each(Tie), case.each(Load) + case.each(Thrust)
     low, high = bodies.extent()
-    behind = max([0.2 * height, *(min(1.03 * tie.length, FARTHEST * height) for tie in ties)])
+    behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
     reach = (1.5 * ARROW if case.each(Thrust) else 0.08) * height
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)
@@ -74,54 +77,58 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     toe_x = [side * wall.half_base for side in toes]
     ax.plot(toe_x, [0.0] * len(toes), "o", markersize=5, color=FORCE, zorder=5)
     updates = [_openings(ax, case, bodies)]
-    updates += [_tie(ax, case, i, bodies, text) for i, text in enumerate(tie_texts(ties, left, height))]
+    for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
+        updates.append(_tie(ax, case, tie, bodies, markersize=6))
+        at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
+        note = ax.annotate(text, at, (0, 3), textcoords="offset points", fontsize=6, color=STEEL, va="bottom", zorder=6)
+        note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
     updates += [_force(ax, case, effect, bodies) for effect in forces]
     updates += [_mass(ax, case, added, bodies) for added in case.wall.masses]
-
-    def update(frame: int) -> None:
-        for move in updates:
-            move(frame)
-
-    return update
+    return together(updates)
 
 
 def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
     """Ties of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
     low, high = bodies.extent()
-    ties, updates = [effect for effect in case.effects if isinstance(effect, Tie)], []
+    ties, updates = case.each(Tie), []
     edge = float(low[0]) - 0.25 * float(high[1] - low[1])
     for i, tie in enumerate(ties):
-        body, held, centroid = held_by(case, tie)
-        updates.append(_tie_of_block(ax, bodies, tie, (body, held - centroid), edge))
-        ax.annotate(f"tie_{i}", (edge, held[1] + tie.rise), (4, 4), textcoords="offset points", fontsize=7, color=STEEL)
+        updates.append(_tie(ax, case, tie, bodies, markersize=5, edge=edge))
+        place = edge, held_by(case, tie)[1][1] + tie.rise
+        ax.annotate(f"tie_{i}", place, (4, 4), textcoords="offset points", fontsize=7, color=STEEL)
     if ties:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
-
-    def update(frame: int) -> None:
-        for move in updates:
-            move(frame)
-
-    return update
+    return together(updates)
 
 
-def _tie_of_block(ax: Axes, bodies: Bodies, tie: Tie, at: tuple[int, Array], edge: float) -> Update:
-    """A tie that holds a point of a body: solid where it pulls, dotted where it is slack, gone once it broke."""
-    held = bodies.rests[at[0]] + at[1]
+def _tie(
+    ax: Axes, case: Case | MasonryCase, tie: Tie, bodies: Bodies, *, markersize: float, edge: float = -np.inf
+) -> Update:
+    """A tie from the point that it holds to its anchor: solid where it pulls, dotted where it is slack, gone once it
+    broke. An anchor beyond an x [m] is drawn there."""
+    body, held, centroid = held_by(case, tie)
     anchor = held + np.array([-tie.length, tie.rise])
     if anchor[0] < edge:
         anchor = held + (anchor - held) * (held[0] - edge) / tie.length
-    elongation = elongation_at(bodies.poses[:, at[0]], tie, at[1])
-    yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+    pulls, broken = pulling(case, tie, bodies.poses)
     (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
-    ax.plot(*anchor, marker="s", markersize=5, color=STEEL, zorder=4)
+    ax.plot(*anchor, marker="s", markersize=markersize, color=STEEL, zorder=4)
 
     def update(frame: int) -> None:
-        point = bodies.placed(frame, at[0], at[1][None])[0]
+        point = bodies.placed(frame, body, (held - centroid)[None])[0]
         line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
-        line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
-        line.set_visible(bool(yielded[frame] <= tie.breaks_at))
+        line.set_linestyle("-" if pulls[frame] else ":")
+        line.set_visible(not broken[frame])
 
     return update
+
+
+def pulling(case: Case | MasonryCase, tie: Tie, poses: Array) -> tuple[Flags, Flags]:
+    """Whether a tie pulls at each frame, longer than when it was slack or last yielded, and whether it has broken."""
+    elongation = elongation_of(case, tie, poses)
+    yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+    broken: Flags = yielded > tie.breaks_at
+    return (elongation > yielded) & ~broken, broken
 
 
 def _local(case: Case, x: float, z: float) -> Array:
@@ -156,35 +163,6 @@ def tie_texts(ties: Sequence[Tie], left: float, height: float) -> list[str]:
         where = f"anchor {tie.length:g} m behind" if tie.length > -left else number and "tie"
         texts.append("" if place in placed[:i] else f"{number}{where}")
     return texts
-
-
-def _tie(ax: Axes, case: Case, i: int, bodies: Bodies, text: str) -> Update:
-    """Tie i from the inner face to its anchor: solid where it pulls, dotted where it is slack, gone once it broke."""
-    tie = case.each(Tie)[i]
-    held, anchor = _local(case, -case.block.b, tie.height), (-case.block.b - tie.length, tie.height + tie.rise)
-    pulls = pulling(case, tie, bodies)
-    broken = np.logical_or.accumulate(elongation_of(case, tie, bodies.poses) - tie.stretch > tie.breaks_at)
-    (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
-    ax.plot(*anchor, marker="s", markersize=6, color=STEEL, zorder=4)
-    left, right = ax.get_xlim()
-    at = left + 0.02 * (right - left), max(anchor[1], tie.height)
-    note = ax.annotate(text, at, (0, 3), textcoords="offset points", fontsize=6, color=STEEL, va="bottom", zorder=6)
-    note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
-
-    def update(frame: int) -> None:
-        point = bodies.placed(frame, 0, held)[0]
-        line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
-        line.set_linestyle("-" if pulls[frame] else ":")
-        line.set_visible(not broken[frame])
-
-    return update
-
-
-def pulling(case: Case, tie: Tie, bodies: Bodies) -> Array:
-    """Whether a tie pulls at each frame, shape (n,): it is longer than when it was slack or last yielded."""
-    elongation = elongation_of(case, tie, bodies.poses)
-    yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
-    return np.asarray((elongation > yielded) & (np.maximum.accumulate(elongation) - tie.stretch <= tie.breaks_at))
 
 
 def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Update:

@@ -19,23 +19,13 @@ from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
 from .bodies import interpolated
 
-CAMERA = (18.0, 35.0)
-"""Elevation and azimuth that blocks are seen from unless others are given [deg]: the facade from outside."""
 TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
 """Colours of blocks, which take turns so that neighbours are told apart."""
-FIXED = "#bdbdbd"
-"""Colour of fixed blocks that are no ground."""
 
 
 class Facets(NamedTuple):
-    """The faces of bodies.
-
-    Args:
-        corners: of each face about the centroid of its body, at rest [m], shape (faces, most, 3). A face with fewer
-            corners than another repeats its last one.
-        body: number of the body of each face, shape (faces,).
-        counts: number of corners of each face, shape (faces,).
-    """
+    """The faces of bodies: corners about the centroid of the body, at rest [m], shape (faces, most, 3), of which a face
+    with few repeats the last one, the number of the body, and that of the corners, shape (faces,) each."""
 
     corners: Array
     body: Integers
@@ -67,7 +57,7 @@ class Solids:
     effects: tuple[Effect, ...] = ()
 
     def __post_init__(self) -> None:
-        elevation, azimuth = require_array("camera", CAMERA if self.camera is None else self.camera, (2,))
+        elevation, azimuth = require_array("camera", (18.0, 35.0) if self.camera is None else self.camera, (2,))
         elevation = require_within("elevation of the camera", elevation, -90.0, 90.0, "degrees")
         keep(
             self,
@@ -98,32 +88,29 @@ class Solids:
     @cached_property
     def shown(self) -> tuple[int, ...]:
         """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
-        return tuple(i for i, block in enumerate(self.masonry.blocks) if not self._is_ground(block))
+        return tuple(i for i, is_ground in enumerate(self._are_ground) if not is_ground)
 
     @property
     def ground(self) -> list[Polyhedron]:
         """The fixed blocks below all that move."""
-        return [block for block in self.masonry.blocks if self._is_ground(block)]
-
-    def _is_ground(self, block: Polyhedron) -> bool:
-        return block.fixed and bool(block.corners[:, 2].max() <= self._lowest + 1e-3)
+        return [block for block, is_ground in zip(self.masonry.blocks, self._are_ground, strict=True) if is_ground]
 
     @cached_property
-    def _lowest(self) -> float:
-        """The lowest z of the blocks that move, at rest [m]."""
-        return min(float(self.masonry.blocks[i].corners[:, 2].min()) for i in self.masonry.free)
+    def _are_ground(self) -> list[bool]:
+        blocks = self.masonry.blocks
+        lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
+        return [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
 
     @property
     def colours(self) -> list[str]:
-        """Colour of each facet."""
-        tints = [FIXED if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
+        """Colour of each facet, grey of fixed blocks."""
+        tints = ["#bdbdbd" if self.masonry.blocks[i].fixed else TINTS[i % len(TINTS)] for i in self.shown]
         return [tints[body] for body in self.facets.body]
 
     @cached_property
     def rests(self) -> Array:
         """Centroid of each block that is shown, with its added masses, at rest [m], shape (shown, 3)."""
-        rests: Array = laden(self.masonry, self.effects)[1][list(self.shown)]
-        return rests
+        return laden(self.masonry, self.effects)[1][list(self.shown)]
 
     @cached_property
     def facets(self) -> Facets:
@@ -135,8 +122,7 @@ class Solids:
         bodies = zip(blocks, self.rests, strict=True)
         about = [(block.corners - rest)[list(face)] for block, rest in bodies for face in block.faces]
         for row, face in zip(corners, about, strict=True):
-            row[:] = face[-1]
-            row[: len(face)] = face
+            row[: len(face)], row[len(face) :] = face, face[-1]
         return Facets(corners, body, counts)
 
     def displaced(self, frame: int, block: int | None, point: Array) -> Array:
@@ -144,8 +130,7 @@ class Solids:
         if block not in self.shown:
             return point
         body = self.shown.index(block)
-        drawn: Array = self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0]
-        return drawn
+        return np.asarray(self._drawn(frame, np.array([body]), (point - self.rests[body])[None, None])[0, 0])
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all facets are drawn at a frame [m], shape (faces, most, 3)."""
@@ -210,5 +195,4 @@ class Solids:
         """Points about the centroids of bodies [m], shape (m, n, 3), drawn at a frame."""
         frames = self._frames(frame)[body]
         moved = frames[:, None, :3] + points @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
-        drawn: Array = self.rests[body, None] + points + self.magnify * moved
-        return drawn
+        return self.rests[body, None] + points + self.magnify * moved

@@ -23,11 +23,6 @@ Drawing = Callable[[Axes], Axes]
 """What a panel needs."""
 
 
-def style_of(response: Response) -> dict[str, Any]:
-    """The line style of the solver of a response."""
-    return STYLES.get(response.solver, {"label": response.solver})
-
-
 OWN: tuple[dict[str, Any], ...] = (
     {"color": "#12406b", "linestyle": "-", "linewidth": 1.5, "zorder": 2.4},
     {"color": "#e07b2a", "linestyle": "-", "linewidth": 2.4, "zorder": 2.2},
@@ -38,22 +33,32 @@ OWN: tuple[dict[str, Any], ...] = (
 """Lines of responses that have labels of their own."""
 
 
-def styles_of(responses: Sequence[Response], labels: Sequence[str] | None) -> list[dict[str, Any]]:
+def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None) -> list[dict[str, Any]]:
     """The line style of each response: that of its solver, or with labels one of its own."""
     if labels is None:
-        return [style_of(response) for response in responses]
+        return [STYLES.get(response.solver, {"label": response.solver}) for response in responses]
     return [OWN[i % len(OWN)] | {"label": label} for i, label in enumerate(labels)]
+
+
+def below_figure(figure: Figure, ax: Axes, ncols: int = 3, **options: Any) -> None:
+    """The legend of an Axes below its figure."""
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=ncols, frameon=False, **options)
+
+
+def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
+    """A figure with so many panels in rows of some columns, each of a size [inch], and its Axes, (rows, columns)."""
+    rows = -(-count // columns)
+    figure = Figure(figsize=(size[0] * columns, size[1] * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for ax in axes.flat[count:]:
+        ax.set_visible(False)
+    return figure, axes
 
 
 def save(figure: Figure, path: str | Path) -> Path:
     """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes).
 
-    Args:
-        figure: the figure.
-        path: where to, a path or a plain name. Without a suffix it is a PNG.
-
-    Returns:
-        The path that was written.
+    A path without a suffix is that of a PNG. Returns the path that was written.
     """
     path = require_path("path", path)
     path = path if path.suffix else path.with_suffix(".png")
@@ -61,7 +66,7 @@ def save(figure: Figure, path: str | Path) -> Path:
     return path
 
 
-def single(draw: Callable[[Axes], Axes], size: tuple[float, float] = (5.2, 3.6)) -> Figure:
+def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
     """A figure with one Axes, drawn by `draw`."""
     figure = Figure(figsize=size, layout="constrained")
     draw(figure.subplots())
@@ -70,11 +75,7 @@ def single(draw: Callable[[Axes], Axes], size: tuple[float, float] = (5.2, 3.6))
 
 def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
     """Several drawings, each on an Axes of its own under its title."""
-    rows = -(-len(drawings) // columns)
-    figure = Figure(figsize=(4.4 * columns, 3.4 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False)
+    figure, axes = several(len(drawings), columns, (4.4, 3.4))
     for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
         draw(ax).set_title(title, fontsize=10)
-    for ax in axes.flat[len(drawings) :]:
-        ax.set_visible(False)
     return figure

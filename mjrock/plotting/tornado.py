@@ -9,9 +9,6 @@ from matplotlib.axes import Axes
 
 from ..study.sensitivity import Sensitivity
 
-BEYOND = 0.12
-"""How far right of the largest finite value an overturned wall is drawn, as a share of the range [-]."""
-
 
 def tornado(ax: Axes, found: Sensitivity) -> Axes:
     """A bar for each setting, from the lowest to the highest value where it alone changes, the widest on top.
@@ -25,7 +22,7 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
     finite = found.values[np.isfinite(found.values)]
     least, most = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     width = most - least or 0.1 * (abs(most) or 1.0)
-    edge = most + BEYOND * width
+    edge = most + 0.12 * width  # where an overturned wall is drawn
     for i, (name, ends) in enumerate(bars.items()):
         low, high = (edge if end == math.inf else end for end in ends)
         colour = "0.75" if name == "together" else "#f0a35e" if name == found.governs else "#12406b"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -16,10 +16,10 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-un
 
 from ..geometry import convex
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects_in_space import anchored_at, held_at
+from ..problem.masonry.effects import anchored_at, held_at
 from ..problem.wall.effects import Tie
 from ..quantities import Array
-from ..result.ties_in_space import elongation_in_space
+from .section import Update, pulling
 from .solids import Solids
 
 GROUND, STEEL = "#e6e6e2", "#12406b"
@@ -27,14 +27,8 @@ LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
 DARKEST = 0.62
 """Brightness of a face that is turned away from the light [-]."""
-MARGIN = 0.15
-"""Width of the ground around the blocks, over their largest extent [-]."""
 ZOOM = 1.15
 """Size of the picture, over that which leaves room for labels on every side [-]."""
-FILLED = (0.84, 0.74)
-"""Share of the width and of the height of a figure that moving blocks and their ground fill [-]."""
-
-Update = Callable[[int], None]
 
 
 class Faces(PolyCollection):
@@ -54,11 +48,7 @@ class Faces(PolyCollection):
 
 
 def in_three(ax: Axes) -> Any:
-    """Axes of three dimensions.
-
-    Raises:
-        ValueError: for axes of two.
-    """
+    """Axes of three dimensions; a ValueError says if they have two."""
     if not isinstance(ax, Axes3D):
         raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
     return ax
@@ -73,8 +63,7 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """
     space = in_three(ax)
     low, high = bodies.extent()
-    margin = MARGIN * float((high - low).max())
-    around = margin * np.array([1.0, 1.0, 0.0])
+    around = 0.15 * float((high - low).max()) * np.array([1.0, 1.0, 0.0])  # ground
     low, high = low - around, high + around
     level = _ground(space, bodies, (low, high))
     if level is not None:
@@ -92,9 +81,10 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
             seen &= corners[..., 2].mean(axis=1) > level
         place = np.argsort(bodies.order(frame))  # of each body in the order
         number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.body[seen]], kind="stable")]
-        counts, colours = bodies.facets.counts[number], cast(Any, _lit(tints[number], normals[number]))
+        bright = DARKEST + (1 - DARKEST) * np.clip(normals[number] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
+        counts = bodies.facets.counts[number]
         moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]
-        moving.set_facecolor(colours)
+        moving.set_facecolor(cast(Any, tints[number] * bright[:, None]))
         if space.M is not None:
             moving.do_3d_projection()
 
@@ -102,14 +92,14 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
 
 
 def fill(ax: Axes) -> None:
-    """Enlarge a view until it fills its figure, which has been laid out."""
+    """Enlarge a view until it fills 0.84 of the width or 0.74 of the height of its figure, which has been laid out."""
     space = in_three(ax)
     figure: Any = ax.get_figure(root=True)
     limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
     corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
     x, y, _ = proj_transform(*corners, space.get_proj())
     spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0) / figure.bbox.size
-    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array(FILLED) / spans).min()))
+    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array([0.84, 0.74]) / spans).min()))
     figure.draw_without_rendering()
 
 
@@ -117,19 +107,17 @@ def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
     """Ties of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
     gone once it broke."""
     space, moves = in_three(ax), []
-    for tie in (effect for effect in case.effects if isinstance(effect, Tie)):
-        elongation = elongation_in_space(case, tie, bodies.poses)
-        yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
+    for tie in case.each(Tie):
         ends = [(held_at(tie), tie.block), (anchored_at(tie), tie.anchor_block)]
         (line,) = space.plot([], [], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
-        moves.append((line, tie, ends, elongation, yielded))
+        moves.append((line, ends, *pulling(case, tie, bodies.poses)))
 
     def update(frame: int) -> None:
-        for line, tie, ends, elongation, yielded in moves:
+        for line, ends, pulls, broken in moves:
             points = [bodies.displaced(frame, block, point) for point, block in ends]
             line.set_data_3d(*np.transpose(points))
-            line.set_linestyle("-" if elongation[frame] > yielded[frame] else ":")
-            line.set_visible(bool(yielded[frame] <= tie.breaks_at))
+            line.set_linestyle("-" if pulls[frame] else ":")
+            line.set_visible(not broken[frame])
 
     return update
 
@@ -169,8 +157,8 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
-                ground = Poly3DCollection(patch, facecolors=GROUND, edgecolors="0.6", zorder=0.5, clip_on=False)
-                ax.add_collection3d(ground)
+                look = {"facecolors": GROUND, "edgecolors": "0.6", "zorder": 0.5, "clip_on": False}
+                ax.add_collection3d(Poly3DCollection(patch, **look))
     return level
 
 
@@ -178,12 +166,4 @@ def _normals(corners: Array) -> Array:
     """Unit normals out of faces, shape (faces, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    unit: Array = normals / np.where(length > 0, length, 1.0)
-    return unit
-
-
-def _lit(colours: Array, normals: Array) -> Array:
-    """Colours of faces in the light, shape (faces, 3)."""
-    bright = DARKEST + (1 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
-    shown: Array = colours * bright[:, None]
-    return shown
+    return np.asarray(normals / np.where(length > 0, length, 1.0))

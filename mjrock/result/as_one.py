@@ -18,8 +18,7 @@ def restitutions(answer: Response, pile: Pile) -> Array:
     It is the whole energy above the stack at rest, as in `Response.settled_restitution`.
     """
     energy = answer.energy[peaks(answer, pile)]
-    ratios: Array = np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1])
-    return ratios
+    return np.asarray(np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1]))
 
 
 def peaks(answer: Response, pile: Pile) -> list[int]:

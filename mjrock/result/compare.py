@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,9 +12,15 @@ import numpy as np
 
 from ..quantities import Array, Integers, require_kind
 from .ending import Outcome
-from .pairing import FAINT, TOGETHER, paired, taken_by
 from .response import Response
+from .rocking import Impact
 from .table import csv_text
+
+FAINT = 0.01
+"""Energy before an impact under ground motion that is too small to be paired, over that which overturns the wall
+[-]."""
+TOGETHER = 0.25
+"""How far apart in time two impacts may be that belong to each other, times p of the wall [-]."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +29,7 @@ class Comparison:
 
     On a base at rest the first impact of one belongs to the first of the other. Under ground motion impacts are paired
     by their times, and those before which the wall has less than a hundredth of the energy that overturns it are left
-    out, see `mjrock.result.pairing`.
+    out, see `paired`.
 
     Args:
         reference, candidate: the responses.
@@ -44,6 +51,11 @@ class Comparison:
     @property
     def _both(self) -> tuple[Response, Response]:
         return self.reference, self.candidate
+
+    @property
+    def _labels(self) -> tuple[str, str]:
+        reference, candidate = (response.solver for response in self._both)
+        return (reference, candidate) if reference != candidate else (f"{reference} 1", f"{candidate} 2")
 
     @cached_property
     def pairs(self) -> Integers | None:
@@ -89,12 +101,13 @@ class Comparison:
         if self.pairs is not None:
             return self._values(*(_largest_after(r) / alpha for r in self._both))
         skip = 0 if self.reference.case.released_outwards else 1
-        return _columns(*(r.peaks[skip:] / alpha for r in (self.reference, self.candidate)))
+        return _columns(*(r.peaks[skip:] / alpha for r in self._both))
 
     @property
     def first_rebound_peak(self) -> tuple[float, float]:
         """The first rotation maximum after an impact as a share of alpha, reference and candidate [-]."""
-        return _first(self.rebound_peaks)
+        first, second = self.rebound_peaks[0].tolist() if len(self.rebound_peaks) else (math.nan, math.nan)
+        return first, second
 
     @property
     def outcomes(self) -> tuple[Outcome, Outcome]:
@@ -110,7 +123,7 @@ class Comparison:
             "energy loss": ("J", self.energy_loss),
             "energy loss share": ("of release", self.energy_share),
         }
-        solvers = _labels(self.reference, self.candidate)
+        solvers = self._labels
         count = max(len(values) for _, values in columns.values())
         return [
             {"impact": i + 1}
@@ -131,7 +144,7 @@ class Comparison:
 
     def table(self, most: int = 6) -> str:
         """The first `most` impacts and the totals as text, for a terminal."""
-        labels = _labels(self.reference, self.candidate)
+        labels = self._labels
         columns = (
             ("time [s]", self.impact_times, "10.4f"),
             ("restitution [-]", self.restitution, "10.4f"),
@@ -155,7 +168,7 @@ class Comparison:
         if self.reference.case.shaken:
             lines.append("Under ground motion the restitution is that of single impacts, and none of free rocking.")
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
-        for label, response in zip(labels, (self.reference, self.candidate), strict=True):
+        for label, response in zip(labels, self._both, strict=True):
             lines.append(f"{label}: {response.message}")
         return "\n".join(lines)
 
@@ -191,11 +204,28 @@ def _columns(left: Array | list[float], right: Array | list[float]) -> Array:
     return table
 
 
-def _first(table: Array) -> tuple[float, float]:
-    return (float(table[0, 0]), float(table[0, 1])) if len(table) else (math.nan, math.nan)
+def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least: float) -> Integers:
+    """Numbers of the impacts of two motions that belong to each other, -1 where one has none, shape (n, 2).
+
+    Two impacts are a pair where each is the nearest to the other in time, `within` [s] of it. Those are left out before
+    which the wall has less energy than `least` [J]. All are in the order of their times.
+    """
+    kept = [[i for i, impact in enumerate(side) if impact.energy_before >= least] for side in (left, right)]
+    a, b = (np.array([side[i].t for i in own]) for side, own in zip((left, right), kept, strict=True))
+    pairs, alone = [], set(range(len(b)))
+    for i, t in enumerate(a):
+        j = int(np.abs(b - t).argmin()) if len(b) else -1
+        if j >= 0 and abs(b[j] - t) <= within and int(np.abs(a - b[j]).argmin()) == i:
+            pairs.append((t, kept[0][i], kept[1][j]))
+            alone.discard(j)
+        else:
+            pairs.append((t, kept[0][i], -1))
+    pairs += [(b[j], -1, kept[1][j]) for j in alone]
+    return np.array([numbers for _, *numbers in sorted(pairs)], dtype=np.int64).reshape(-1, 2)
 
 
-def _labels(reference: Response, candidate: Response) -> tuple[str, str]:
-    if reference.solver == candidate.solver:
-        return f"{reference.solver} 1", f"{candidate.solver} 2"
-    return reference.solver, candidate.solver
+def taken_by(numbers: Integers, left: Sequence[float] | Array, right: Sequence[float] | Array) -> Array:
+    """Values of the impacts of each pair, NaN where there is none, shape (n, 2)."""
+    sides = zip(numbers.T, (left, right), strict=True)
+    columns = [[values[i] if 0 <= i < len(values) else np.nan for i in own] for own, values in sides]
+    return np.array(columns, dtype=float).T.reshape(-1, 2)

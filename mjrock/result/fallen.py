@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..problem.masonry.joints import Joint
 from ..problem.masonry.masonry import Masonry
@@ -39,15 +41,8 @@ def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[
 
 def _cut_off(masonry: Masonry, held: Sequence[Joint]) -> list[int]:
     """Blocks that no joint in `held` connects with a fixed block."""
-    beside: dict[int, list[int]] = {}
-    for joint in held:
-        beside.setdefault(joint.below, []).append(joint.above)
-        if not masonry.blocks[joint.below].fixed:
-            beside.setdefault(joint.above, []).append(joint.below)
-    reached = {i for i, block in enumerate(masonry.blocks) if block.fixed}
-    waiting = list(reached)
-    while waiting:
-        new = [block for block in beside.get(waiting.pop(), []) if block not in reached]
-        reached.update(new)
-        waiting += new
-    return [block for block in masonry.free if block not in reached]
+    pairs, count = [(joint.below, joint.above) for joint in held], len(masonry.blocks)
+    graph = coo_array((np.ones(len(pairs)), np.reshape(pairs, (-1, 2)).T.astype(int)), shape=(count, count))
+    labels = connected_components(graph, directed=False)[1]
+    standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
+    return [block for block in masonry.free if labels[block] not in standing]

@@ -44,11 +44,9 @@ def rocking_history(
     times, sizes = times[rocking], sizes[rocking]
     if prepended:
         times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
-    if not case.shaken:
-        impacts = _between_peaks(case, t, theta, omega, times, sizes, residual, uplift[0])
-    else:
-        impacts = _between_passes(case, t, theta, omega, energy, uplift)
-    return times, sizes, impacts
+    if case.shaken:
+        return times, sizes, _between_passes(case, t, theta, omega, energy, uplift)
+    return times, sizes, _between_peaks(case, t, theta, omega, times, sizes, residual, uplift[0])
 
 
 def _maxima(t: Array, theta: Array, omega: Array, *, one_sided: bool) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -71,26 +72,17 @@ class Ledger:
         taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values())
         gone = sum(taken, self.friction) - self.ground
         total: Array = self.held + gone
-        residual: Array = total - total[0]
-        return residual
+        return np.asarray(total - total[0])
 
     def at(self, t: Array) -> Ledger:
         """The ledger at other times, interpolated."""
 
-        def then(account: Array) -> Array:
-            return np.interp(t, self.t, account)
+        def then(part: Any) -> Any:
+            if isinstance(part, Mapping):
+                return {name: then(account) for name, account in part.items()}
+            return np.interp(t, self.t, part)
 
-        return Ledger(
-            t,
-            then(self.kinetic),
-            then(self.potential),
-            then(self.elastic),
-            {group: then(account) for group, account in self.dashpots.items()},
-            then(self.friction),
-            then(self.ground),
-            {tie: then(account) for tie, account in self.ties.items()},
-            {tie: then(account) for tie, account in self.broken.items()},
-        )
+        return Ledger(**{name: then(part) for name, part in vars(self).items()} | {"t": t})
 
     def __repr__(self) -> str:
         taken = ", ".join(

@@ -27,11 +27,6 @@ State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
 space as the `pose` and `velocity` of a `Response`, shapes (bodies, 7) and (bodies, 6)."""
 
-COORDINATES = (("x", "m"), ("z", "m"), ("rotation", "rad"))
-"""Coordinates of a body of the plane, and their units."""
-COORDINATES_IN_SPACE = (*((axis, "m") for axis in "xyz"), *((f"quaternion {part}", "-") for part in "wxyz"))
-"""The same of a body in space."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response:
@@ -251,14 +246,15 @@ class Response:
         if self.rocking is not None:
             columns |= {"theta [rad]": self.theta, "omega [rad/s]": self.omega}
         columns["energy [J]"] = self.energy
+        coordinates = [("x", "m"), ("z", "m"), ("rotation", "rad")]
+        if self.in_space:
+            coordinates = [*((axis, "m") for axis in "xyz"), *((f"quaternion {part}", "-") for part in "wxyz")]
         for i, body in enumerate(self.bodies):
             of = f" of {body}" if self.rocking is None else ""
-            for j, (name, unit) in enumerate(COORDINATES_IN_SPACE if self.in_space else COORDINATES):
+            for j, (name, unit) in enumerate(coordinates):
                 columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
-        for name in ("motion", "vertical", "transverse"):
-            motion = getattr(self.case, name, None)
-            name = {"motion": "horizontal"}.get(name, name)
-            if motion is not None:
+        for field_name, name in (("motion", "horizontal"), ("vertical", "vertical"), ("transverse", "transverse")):
+            if (motion := getattr(self.case, field_name, None)) is not None:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
         if path is not None:

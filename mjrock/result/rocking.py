@@ -90,14 +90,10 @@ def restitution_of(leaving: Array, reaching: Array) -> Array:
 
 
 def farthest(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
-    """Largest rotation of a wall outwards, and inwards [rad].
+    """Largest rotation of a wall outwards, and inwards [rad], from its peaks and the rotations at the samples, (n,).
 
     The largest rotation may be that of the last sample, where a run ends on its way out. Against a side stop peaks are
     outward, and the inward rotation is that of the wall as it presses the stop or leans over it.
-
-    Args:
-        case, rocking: of the wall.
-        theta: rotations at the samples [rad], shape (n,).
     """
     peak, outwards, inwards = float(rocking.peaks.max(initial=0.0)), float(theta.max()), -float(theta.min())
     if case.one_sided:
@@ -107,17 +103,11 @@ def farthest(case: Case, rocking: Rocking, theta: Array) -> tuple[float, float]:
 
 
 def displacement_at(case: Case, pose: Array, z: float) -> Array:
-    """Horizontal displacement of the middle of a wall at the height z [m], shape (n,).
+    """Horizontal displacement of the middle of a wall at the height z above its base [m], shape (n,).
 
-    Args:
-        case: the case of the wall.
-        pose: displacement x, z of the centroid [m] and rotation [rad], shape (n, 3).
-        z: height above the base at rest [m].
-
-    Raises:
-        ValueError: for a height that is not on the wall.
+    Poses are displacements x, z of the centroid [m] and rotations [rad], shape (n, 3). A ValueError says if the height
+    is not on the wall.
     """
     wall = case.wall
     above = require_within("height z", z, 0.0, 2 * wall.h * (1 + 1e-12), "m") - wall.centroid_height
-    moved: Array = pose[:, 0] + above * np.sin(pose[:, 2]) + wall.centroid_offset * (1 - np.cos(pose[:, 2]))
-    return moved
+    return np.asarray(pose[:, 0] + above * np.sin(pose[:, 2]) + wall.centroid_offset * (1 - np.cos(pose[:, 2])))

@@ -14,11 +14,8 @@ from ..quantities import ON_ITS_FACE, require_array, require_within, shown
 from .response import State
 
 PARTS = ("pose", "velocity")
-"""What a state is made of."""
 UNIT = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
-LARGEST = 1e3
-"""Largest displacement or rate of a start [m, m/s, rad/s]."""
 
 
 def required_start(start: object, case: Case | MasonryCase) -> State:
@@ -28,7 +25,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
         TypeError: if it is no pose and velocity.
         ValueError: for another shape, a value out of range, or ties that yield among the effects.
     """
-    if any(isinstance(effect, Tie) and effect.strength < math.inf for effect in case.effects):
+    if any(tie.strength < math.inf for tie in case.each(Tie)):
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
@@ -41,7 +38,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
     if isinstance(case, Case):
         require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
     for name, values in zip(PARTS, (pose, velocity), strict=True):
-        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, LARGEST)
+        require_within(f"start, largest of {name}", float(np.abs(values).max()), 0.0, 1e3)
     if freedom is SPACE:
         size = np.linalg.norm(pose[:, 3:], axis=1)
         for length in size[np.abs(size - 1) > UNIT].tolist():
@@ -51,8 +48,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
 
 def require_unbreakable(case: Case | MasonryCase) -> None:
     """Raise ValueError for a tie that breaks, of which the text of a model, which a fixed step is, knows nothing."""
-    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
-    for i, tie in enumerate(ties):
+    for i, tie in enumerate(case.each(Tie)):
         if tie.ultimate is not None:
             raise ValueError(
                 f"a fixed step is the text of a model, in which no tie breaks, and tie_{i} has ultimate = "

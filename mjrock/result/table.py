@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterable, Sequence
-
-FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""What a cell begins with that a spreadsheet computes."""
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Rows as CSV text that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read.
+    """Rows as CSV text that `np.genfromtxt(path, delimiter=",", names=True)` and pandas read, see `written`.
 
     NumPy knows no quotation marks and takes # for the start of a comment. Commas, quotation marks and # are therefore
-    left out of the header, and in the cells a comma becomes a semicolon. Numbers keep all their digits. Text that a
-    spreadsheet would take for a formula has an apostrophe before it.
+    left out of the header, and in the cells a comma becomes a semicolon. Numbers keep all their digits.
 
     Raises:
         ValueError: if two columns have the same name.
     """
-    names = [_without(name) for name in header]
+    names = [" ".join(re.sub('[,"#]', "", name).split()) for name in header]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise ValueError(f"two columns have the name {twice[0]!r}")
@@ -34,13 +31,6 @@ def written(rows: Iterable[Sequence[object]]) -> str:
     return text.getvalue()
 
 
-def _without(name: str) -> str:
-    """A name without commas, quotation marks and #."""
-    for mark in ',"#':
-        name = name.replace(mark, "")
-    return " ".join(name.split())
-
-
 def _cell(value: object) -> object:
     if not isinstance(value, str):
         return value
@@ -49,7 +39,7 @@ def _cell(value: object) -> object:
 
 def _guarded(value: object) -> object:
     """A cell that no spreadsheet computes: text that begins like a formula, and is no number, gets an apostrophe."""
-    if not isinstance(value, str) or not value.startswith(FORMULA):
+    if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
         return value
     try:
         float(value)

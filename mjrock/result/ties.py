@@ -11,11 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.frames import SPACE
-from ..problem.masonry.effects import laden, placed
+from ..problem.masonry.effects import anchored_at, held_at, laden, placed
 from ..problem.wall.case import Case
 from ..problem.wall.effects import Tie
 from ..quantities import Array
-from .ties_in_space import elongation_in_space
 
 PLAUSIBLE = 0.05
 """Share of its length up to which a tie may yield before that is warned of [-]: the characteristic strain at the
@@ -65,8 +64,8 @@ class TieMotion:
 
 def motion_of_ties(case: Any, t: Array, pose: Array, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
     """The ties of a case, of a wall or of masonry, at poses as of a `Response` and times t [s]."""
-    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
-    return {f"tie_{i}": _motion(case, tie, t, pose, plastic.get(f"tie_{i}")) for i, tie in enumerate(ties)}
+    ties = enumerate(case.each(Tie))
+    return {f"tie_{i}": _motion(case, tie, t, pose, plastic.get(f"tie_{i}")) for i, tie in ties}
 
 
 def _motion(case: Any, tie: Tie, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
@@ -85,19 +84,29 @@ def _motion(case: Any, tie: Tie, t: Array, pose: Array, ended: Plastic | None) -
 def elongation_of(case: Any, tie: Tie, pose: Array) -> Array:
     """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack."""
     if pose.shape[2] == SPACE.nq:
-        return elongation_in_space(case, tie, pose)
+        held, anchor = held_at(tie), anchored_at(tie)
+        between = held - anchor + _displaced(case, tie.block, held, pose)
+        if tie.anchor_block is not None:
+            between = between - _displaced(case, tie.anchor_block, anchor, pose)
+        return np.asarray(np.linalg.norm(between, axis=1) - tie.reach)
     body, held, centroid = held_by(case, tie)
-    return elongation_at(pose[:, body], tie, held - centroid)
-
-
-def elongation_at(pose: Array, tie: Tie, arm: Array) -> Array:
-    """The same at poses of the body that it holds, shape (n, 3), at a point from its centroid at rest [m]."""
-    x, z, theta = pose.T
+    arm, (x, z, theta) = held - centroid, pose[:, body].T
     sine, cosine = np.sin(theta), np.cos(theta)
     across = tie.length + x + arm[0] * (cosine - 1) + arm[1] * sine
     up = z - arm[0] * sine + arm[1] * (cosine - 1) - tie.rise
-    elongation: Array = np.hypot(across, up) - tie.reach
-    return elongation
+    return np.asarray(np.hypot(across, up) - tie.reach)
+
+
+def _displaced(case: Any, block: int, point: Array, pose: Array) -> Array:
+    """Displacement of a point of a block in space from rest [m], zero of a fixed one, shape (n, 3)."""
+    free = case.masonry.free
+    if block not in free:
+        return np.zeros((len(pose), 3))
+    moved = pose[:, free.index(block)]
+    w, v, arm = moved[:, 3:4], moved[:, 4:], point - laden(case.masonry, case.effects)[1][block]
+    # (R - 1) r = 2 w v x r + 2 v x (v x r)
+    turned = np.cross(v, np.broadcast_to(arm, v.shape))
+    return np.asarray(moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned))
 
 
 def held_by(case: Any, tie: Tie) -> tuple[int, Array, Array]:
@@ -119,8 +128,7 @@ def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
 
 def warn_of_ties(case: Any, plastic: Mapping[str, Plastic]) -> None:
     """Warn of ties without an `ultimate` that were drawn out beyond PLAUSIBLE of their length."""
-    ties = [effect for effect in case.effects if isinstance(effect, Tie)]
-    for tie, (name, drawn) in zip(ties, plastic.items(), strict=False):
+    for tie, (name, drawn) in zip(case.each(Tie), plastic.items(), strict=False):
         length = float(np.hypot(tie.length, tie.rise))
         if tie.ultimate is None and drawn.elongation > PLAUSIBLE * length:
             warnings.warn(

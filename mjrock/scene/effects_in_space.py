@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..problem.masonry.effects_in_space import anchored_at, force_of, held_at
+from ..problem.masonry.effects import anchored_at, force_of, held_at
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Effect, Load, Thrust, Tie
 from ..quantities import Array, Integers

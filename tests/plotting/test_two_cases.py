@@ -10,7 +10,7 @@ from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
 from mjrock.plotting.section import tie_texts
-from mjrock.result.pairing import paired, taken_by
+from mjrock.result.compare import paired, taken_by
 from mjrock.result.rocking import Impact
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)

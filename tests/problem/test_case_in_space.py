@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.effects_in_space import anchored_at, applied_in_space, force_of, held_at
+from mjrock.problem.masonry.effects import anchored_at, force_of, held_at
+from mjrock.problem.masonry.effects import applied as applied_to
 from mjrock.study.fingerprint import fingerprint
 
 box = mr.Polyhedron.box
@@ -64,7 +65,7 @@ def test_effects_act_at_points():
     assert force_of(mr.Thrust(force=5.0, at=TOP)).tolist() == [5, 0, 0]
     load, mass = mr.Load(force=10.0, at=TOP, block=2), mr.AddedMass(mass=2.0, at=(0, 0, 9.0), block=1)
     kept = case(tie, behind, bound, thrust, load, mass).effects
-    applied = applied_in_space(MASONRY, kept)
+    applied = applied_to(MASONRY, kept)
     assert applied[0] == pytest.approx([0, 0, -2 * mr.GRAVITY, 0, 0, 0])
     assert applied[1, :3] == pytest.approx([0, 3, 4 - 10])
     assert applied[1, 3:] == pytest.approx(np.cross([0.2, 0.1, 0.5], [0, 3, -6]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.effects_in_space import applied_in_space
+from mjrock.problem.masonry.effects import applied
 from mjrock.problem.masonry.statics import falling, friction_lacking, slippery
 
 box = mr.Polyhedron.box
@@ -73,7 +73,7 @@ def test_a_block_that_overhangs_falls_and_a_load_holds_it():
     # the weight acts 0.1 m beyond the edge, and the load 0.4 m within it
     for share, falls in ((0.249, ("top",)), (0.251, ())):
         load = mr.Load(share * 2000 * mr.GRAVITY, at=(0.1, 0.0, 2.0), block=2)
-        assert falling(masonry, applied_in_space(masonry, (load,))) == falls
+        assert falling(masonry, applied(masonry, (load,))) == falls
     with pytest.raises(ValueError, match="cannot stand: top would fall"):
         mr.collapse_multiplier(masonry)
 

@@ -9,15 +9,17 @@ import numpy as np
 from ...geometry.vectors import tangents
 from ...problem.masonry.faces_of_joints import faces_of_joints
 from ...problem.masonry.joints_in_space import Face
+from ...problem.masonry.lines import free_numbers
 from ...problem.masonry.masonry import Masonry
 from ...problem.masonry.support import Support
 from ...quantities import Array, Integers
+from ...result.joints import joint_numbers
 from ...scene.ground import Ground
 from ...scene.scene import Scene
-from ..assembly import moving
+from ..assembly import accounts_of, moving
 from ..contact import OVERHANG
-from ..system import Rows, rows
-from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named, named_vectors, turns, vectors
+from ..system import Rows, named, rows
+from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named_vectors, turns, vectors
 from .system import BODY, EDGE, LINK, POINT, WAY, System
 
 
@@ -60,11 +62,9 @@ def masonry_system(scene: Scene, masonry: Masonry) -> System:
 
 def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
     """The contact points of masonry, and the edges of the faces of its joints."""
-    number, places = {joint.name: i for i, joint in enumerate(masonry.joints)}, scene.places
-    of = np.array([number[name] for name in scene.group])
-    groups = {name: i for i, name in enumerate(dict.fromkeys(scene.group))}
+    places, of = scene.places, joint_numbers(masonry, scene.group)
     edges, ends = edges_of(scene, masonry)
-    above = numbers_of(masonry)[[joint.above for joint in masonry.joints]][of] == places.body
+    above = free_numbers(masonry.blocks)[[joint.above for joint in masonry.joints]][of] == places.body
     of_face, of_body = np.where(above, 0, 1), np.where(above, 1, 0)
     k_s = masonry.joint_shear[of] * scene.k / masonry.joint_stiffness[of]
     sprung = np.isfinite(k_s)
@@ -74,7 +74,7 @@ def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
         body=places.body,
         face=places.face_body,
         support=-1,
-        group=np.array([groups[name] for name in scene.group]),
+        group=accounts_of(scene),
         **named_vectors(at=places.at, origin=places.face_at + places.between, normal=places.normal),
         k=scene.k,
         c=scene.c,
@@ -90,23 +90,14 @@ def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
     return points, edges
 
 
-def numbers_of(masonry: Masonry) -> Integers:
-    """Number of the body of each block, -1 for a fixed one, shape (blocks,)."""
-    number = np.full(len(masonry.blocks), -1)
-    number[list(masonry.free)] = np.arange(len(masonry.free))
-    return number
-
-
 def edges_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Integers]:
     """The edges of the two faces of each joint, from the centroids of their bodies, and which are those of each face.
-
-    A face is taken to be longer by `OVERHANG` at either end, as in the plane.
 
     Returns:
         The edges, and the numbers of the first and of the one after the last, of the faces of the block below and of
         the one above of each joint, shape (joints, 2, 2).
     """
-    number = numbers_of(masonry)
+    number = free_numbers(masonry.blocks)
     origins = np.where(number[:, None] < 0, 0.0, scene.rest[number])
     tables = [
         edges_of_face(face, origins[block])
@@ -118,7 +109,7 @@ def edges_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Integers]:
 
 
 def edges_of_face(face: Face, origin: Array) -> Rows:
-    """The edges of a face, from a point of its block [m]."""
+    """The edges of a face, which is taken to be longer by `OVERHANG` at either end, from a point of its block [m]."""
     ways = np.cross(np.roll(face.corners, -1, axis=0) - face.corners, face.normal)
     ways /= np.linalg.norm(ways, axis=1)[:, None]
     places = (face.corners - origin) @ ways.T  # (corners, edges)
@@ -133,8 +124,7 @@ def margins(points: Rows, edges: Rows) -> Array:
     margin = np.empty(len(points))
     for i, (place, first, last) in enumerate(zip(places, points["first"], points["last"], strict=True)):
         margin[i] = max(float((edges["reach"][first:last] - ways[first:last] @ place).min()), 0.0)
-    square: Array = margin**2
-    return square
+    return np.asarray(margin**2)
 
 
 def started(system: System, pose: Array, velocity: Array) -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy.sparse import block_diag, csr_array
 
 from ...quantities import Array
-from ..system import Rows
+from ..system import Rows, named, stacked
 from .system import AXES
 
 EASE = ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 1, "xy"), (0, 2, "xz"), (1, 2, "yz"))
@@ -20,16 +18,6 @@ QUATERNION = ("qw", "qx", "qy", "qz")
 def vectors(table: Rows, name: str) -> Array:
     """The vectors of rows by the name that they have with _x, _y and _z, shape (rows, 3)."""
     return stacked(table, [f"{name}_{axis}" for axis in AXES])
-
-
-def stacked(table: Rows, names: Sequence[str]) -> Array:
-    """Columns of rows side by side, shape (rows, columns)."""
-    return np.column_stack([table[name] for name in names])
-
-
-def named(names: Sequence[str], values: Array) -> dict[str, Array]:
-    """The columns of an array by name."""
-    return dict(zip(names, np.reshape(values, (-1, len(names))).T, strict=True))
 
 
 def named_vectors(**given: Array) -> dict[str, Array]:

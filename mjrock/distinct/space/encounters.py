@@ -14,9 +14,9 @@ from ...problem.masonry.joints_in_space import faces_of
 from ...problem.masonry.masonry import Masonry
 from ...quantities import Array, Flags, Integers
 from ..encounters import CORNERS, Looking, pair_number
-from ..system import Rows, rows
+from ..system import Rows, rows, stacked
 from .assembly import edges_of_face
-from .columns import PLACE, QUATERNION, REST, named_vectors, stacked, turns
+from .columns import PLACE, QUATERNION, REST, named_vectors, turns
 from .contact import NEAR, THROUGH
 from .system import POINT, WAY, System
 

@@ -107,9 +107,8 @@ class Contacts:
         require_text("law", self.law)
 
     def __repr__(self) -> str:
-        faces = [("base", self.base)] + ([("side", self.side)] if self.side else [])
         parts = []
-        for name, interface in faces:
+        for name, interface in zip(("base", "side"), self.faces(side_stop=True), strict=False):
             held = "" if interface.friction is None else f", friction {interface.friction:.3g}"
             parts.append(f"{name} k_n = {interface.k_n:.4g} N/m3, xi = {interface.xi:.4g}{held}")
         return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"

@@ -75,11 +75,7 @@ def falling_rebound(xi: float, pull: float, share: float = 1.0) -> Rebound:
 
 
 def falling_damping(restitution: float, pull: float) -> float:
-    """Damping ratio with which a mass rebounds with e under gravity [-]; inverts `falling_rebound`.
-
-    Args:
-        restitution: e above 0 to 1 [-].
-        pull: g / (omega v) [-], 0 to 1000.
+    """Damping ratio with which a mass rebounds with e, above 0 to 1, under gravity [-]; inverts `falling_rebound`.
 
     Raises:
         TypeError, ValueError: for a value outside its range.

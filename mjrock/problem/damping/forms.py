@@ -89,13 +89,7 @@ class PowerLaw:
     r_squared: float
 
     def __post_init__(self) -> None:
-        keep(
-            self,
-            **{
-                coefficient.name: require_real(coefficient.name, getattr(self, coefficient.name))
-                for coefficient in fields(self)
-            },
-        )
+        keep(self, **{part.name: require_real(part.name, getattr(self, part.name)) for part in fields(self)})
 
     def __call__(self, slenderness: float, k_n: float, e: float) -> float:
         """The damping ratio [-]; `e` is the restitution of this law's own impact."""

@@ -17,8 +17,6 @@ SOURCE = "Circolare 21 gennaio 2019 n. 7, Table C8.5.I"
 REFERENCE_FRICTION = 0.577
 """Coefficient of friction of joints of masonry [-], reference value of the Circolare 2019 n. 7, C8.7.1.2.1.1 and
 equation C8.7.1.17."""
-READING = 0.1
-"""How well a measured frequency is taken to be known where no range is given [-]."""
 
 
 @dataclass(frozen=True)
@@ -134,11 +132,10 @@ def stiffness_range(
 ) -> StiffnessRange:
     """The k_n of the base that an engineer's data leave open: low, best and high [N/m3].
 
-    Every estimate is turned into the k_n of the contact lines that has its rotational stiffness K. A wall of modulus E
-    that bends as a cantilever of height H has K = 3 E I / H, the low end. One that is pressed on its edge yields to a
-    depth of about its thickness t only (Saint-Venant), k_n = E / t of a bed, the high end. A mortar joint lies in
-    series with both. The best value is the geometric mean of both ends. A measured frequency, which contains all that
-    yields, takes the place of these estimates; without a range of its own it counts as known to 10 %.
+    Every estimate is turned into the k_n of the contact lines that has its rotational stiffness. The low end is a wall
+    of modulus E that bends as a cantilever, 3 E I / H, and the high end one that yields on its edge to a depth of its
+    thickness (Saint-Venant), E / t of a bed, both with a mortar joint in series. The best value is their geometric
+    mean. A measured frequency takes the place of these estimates; without a range of its own it is known to 10 %.
 
     Args:
         wall: the wall.
@@ -164,7 +161,7 @@ def stiffness_range(
     if frequency is None:
         assert estimate is not None
         return estimate
-    ends = _pair("frequency", frequency, 1e-3, 1e4, "Hz", READING)
+    ends = _pair("frequency", frequency, 1e-3, 1e4, "Hz", 0.1)
     low, high = (measured_stiffness(wall, end, points) for end in ends)
     best = measured_stiffness(wall, math.sqrt(ends[0] * ends[1]), points)
     found = StiffnessRange(low, best, high, f"a frequency of {ends[0]:.3g} to {ends[1]:.3g} Hz")

@@ -146,12 +146,8 @@ class DampingLaw:
 
         It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
         least MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE times as
-        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base.
-
-        Args:
-            wall, e: the wall, and the restitution asked for.
-            k_n, k_side: interface stiffness of base and side [N/m3].
-            amplitude: rotation over alpha that the wall comes from [-].
+        far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the base. The
+        arguments are those of a call.
         """
         require_kind("e", e, Restitution)
         k_side = None if k_side is None else require_stiffness("k_side", k_side)
@@ -182,8 +178,7 @@ class DampingLaw:
         said = []
         for name, (value, factor, (low, high)) in covered.items():
             if not low * (1 - 1e-9) <= value * factor <= high * (1 + 1e-9):
-                same = abs(factor - 1) < 1e-9
-                at = "" if same else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
+                at = "" if abs(factor - 1) < 1e-9 else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
                 said.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
         return said
 
@@ -193,11 +188,8 @@ class DampingLaw:
         Raises:
             OSError: if the file cannot be written.
         """
-        head = {
-            entry.name: getattr(self, entry.name)
-            for entry in fields(self)
-            if entry.name not in ("base", "side", "errors")
-        }
+        names = [entry.name for entry in fields(self) if entry.name not in ("base", "side", "errors")]
+        head = {name: getattr(self, name) for name in names}
         lines = [f"{key} = {_toml(value)}" for key, value in head.items() if value is not None]
         for part, form in (("base", self.base), ("side", self.side)):
             lines += ["", f"[{part}]", f'form = "{type(form).__name__}"']
@@ -272,11 +264,7 @@ NAMED = {law.name: law for law in (PUBLISHED, CALIBRATED, CALIBRATED_BED)}
 
 
 def law_named(name: str) -> DampingLaw:
-    """The law of that name, in any case of letters, with a hyphen or a blank for the underscore too.
-
-    Raises:
-        ValueError: if there is none.
-    """
+    """The law of that name in any case of letters, with a hyphen or blank for the underscore too, or a ValueError."""
     spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
     if spelt not in NAMED:
         raise ValueError(f"law = {name!r} is none of {', '.join(NAMED)}")

@@ -47,12 +47,8 @@ class Restitution:
         return self.base**2 * self.side
 
     def doubt(self, wall: Block, stop_top: float | None) -> str | None:
-        """How a wall and its side stop differ from those that the values were made for, in words; None if they do not.
-
-        Args:
-            wall: the wall.
-            stop_top: height that its side stop reaches [m], or None without one.
-        """
+        """How a wall and its side stop up to `stop_top` [m] differ from those that the values were made for, in words;
+        None if they do not."""
         if self.made_for is None:
             return None
         alpha, share = self.made_for

@@ -1,10 +1,8 @@
 """Interface stiffness k_n [N/m3]: the usual ways to it.
 
-The stiffness of an interface is a pressure over a closing of it [Pa/m = N/m3]. What closes is a mortar joint, the
-masonry near it, or both, and the value spreads over two orders of magnitude between methods: take more than one where
-the result matters. Rocking between impacts does not depend on it. The uplift rotation, the duration of impacts, the
-smallest rebounds and the response to weak earthquakes do. `reference_frequency` gives the frequency that a stiffness
-belongs to. Springs in series add their closings: 1 / k_n = 1 / k_joint + 1 / k_wall.
+The stiffness of an interface is a pressure over a closing of it [Pa/m = N/m3]. The value spreads over two orders of
+magnitude between methods: take more than one where the result matters, see docs/stiffness.md. `reference_frequency`
+gives the frequency that a stiffness belongs to.
 """
 
 from __future__ import annotations
@@ -22,8 +20,7 @@ UNIT = 1e8
 def joint_stiffness(E: float, thickness: float) -> float:
     """k_n = E / t of a mortar joint or of any thin layer, uniaxially compressed [N/m3].
 
-    Use it where the modulus of the mortar is known and the units are much stiffer than it. A mortar of 1 GPa in a
-    joint of 10 mm gives 1e11 N/m3. Real joints, with voids and partial contact, are softer than this.
+    It is an upper bound for units much stiffer than the mortar: real joints have voids and touch in spots.
 
     Args:
         E: Young's modulus of the layer [Pa], 1e5 to 1e12. It is not a pressure: mortar has 1e8 to 1e10.
@@ -41,10 +38,9 @@ def joint_stiffness(E: float, thickness: float) -> float:
 def wall_stiffness(E: float, wall: Block, points: int = 2) -> float:
     """k_n = E / H of a base that stands for the elasticity of the wall above it [N/m3].
 
-    Use it where the wall is taken as rigid and its own elasticity is to be lumped into the base. Two corner lines of
-    E / H have the rotational stiffness 3 E I / H of a cantilever with a force at its top. On more lines k_n is larger,
-    up to 3 E / H of a bed, so that this rotational stiffness stays. Masonry of 2 GPa and 4 m gives 5e8 N/m3 on two
-    lines. It is a lower bound for a wall that presses on one edge: the pressure spreads over less than its height.
+    Two corner lines of E / H have the rotational stiffness 3 E I / H of a cantilever with a force at its top. On more
+    lines k_n is larger, up to 3 E / H of a bed, so that this rotational stiffness stays. It is a lower bound for a wall
+    that presses on one edge: the pressure spreads over less than its height.
 
     Args:
         E: Young's modulus of the masonry [Pa], 1e5 to 1e12.
@@ -79,10 +75,9 @@ def layered_stiffness(*stiffnesses: float) -> float:
 def measured_stiffness(wall: Block, frequency: float, points: int = 2) -> float:
     """k_n for which the wall, rocking in full contact on its base, has a measured natural frequency [N/m3].
 
-    Use it where the lowest out-of-plane frequency of the detached wall was measured at small amplitude, by ambient
-    vibration or a tap, and its top is free. It is the inverse of omega^2 = (K_rot - m g z) / I_base with K_rot the sum
-    of k_i x_i^2 over the contact lines, z the height of the centroid and I_base the moment of inertia about the middle
-    of the base: the weight works against the springs. It is the most direct way, since it contains all that yields.
+    The frequency is the lowest out of plane of the detached wall with its top free, at small amplitude, by ambient
+    vibration or a tap. It is the inverse of omega^2 = (K_rot - m g z) / I_base with K_rot the sum of k_i x_i^2 over the
+    contact lines, z the height of the centroid and I_base the moment of inertia about the middle of the base.
 
     Args:
         wall: the wall.

@@ -12,19 +12,33 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, keep, require_kind, require_reals, require_within, spelt
-from . import pulses
-from .records import COARSEST, FINEST, Record, checked, doubts, parse_at2, parse_columns, parse_sac, read
-from .resampling import resample
+from ...quantities import (
+    GRAVITY,
+    MOST_SAMPLES,
+    Array,
+    keep,
+    require_kind,
+    require_reals,
+    require_size,
+    require_within,
+    spelt,
+)
+from .pulses import Pulses
+from .records import COARSEST, FINEST, Record, checked, parse_at2, parse_columns, parse_sac, read
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
+FAINT = 1e-3 * GRAVITY
+"""A file whose peak acceleration is below this is probably in another unit [m/s2]."""
+DRIFT = 0.2
+"""A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
 @dataclass(frozen=True, eq=False)
-class GroundMotion:
+class GroundMotion(Pulses):
     """Horizontal acceleration of the base with the sign of Eq. 1: a negative one opens the wall.
 
     Between samples it is linear, before the first and after the last the ground is quiet. A one-sided wall takes the
@@ -159,16 +173,27 @@ class GroundMotion:
         return GroundMotion(-self.accel, self.dt, f"{self.name}, reversed")
 
     def resampled(self, dt: float) -> GroundMotion:
-        """The motion at another time step `dt` [s], as long as before within half of it.
+        """The motion at another time step `dt` [s], as long as before within half of it, linear between its samples.
 
-        A finer step interpolates. A coarser step samples what a low-pass filter leaves, see
-        `mjrock.problem.ground.resampling`.
+        Before a coarser step it goes through an eighth-order Butterworth filter, forwards and backwards: 0.7 of the new
+        Nyquist frequency keeps half its amplitude, the Nyquist frequency 0.3 %. A finer step that divides the old one
+        to rounding is made to divide it exactly.
 
         Raises:
             ValueError: for a step below 1e-5 s, beyond 1 s or the duration, or that makes more than MOST_SAMPLES.
         """
-        dt = require_within("time step dt", dt, FINEST, min(COARSEST, self.duration), "s")
-        return GroundMotion(*resample(self.accel, self.dt, dt), f"{self.name} at {dt:g} s")
+        new = require_within("time step dt", dt, FINEST, min(COARSEST, self.duration), "s")
+        accel, last, parts, name = self.accel, len(self.accel) - 1, round(self.dt / new), f"{self.name} at {new:g} s"
+        if parts and math.isclose(parts * new, self.dt):
+            new, steps = self.dt / parts, parts * last
+        else:
+            steps = round(last * self.dt / new)
+        remedy = f"make dt longer than {last * self.dt / MOST_SAMPLES:.3g} s"
+        require_size(f"the number of samples of {last * self.dt:g} s at dt = {new:g} s", steps + 1, remedy)
+        if new > self.dt:
+            low_pass = scipy.signal.butter(8, 0.7 * self.dt / new, output="sos")
+            accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=min(last, math.ceil(10 * new / self.dt)))
+        return GroundMotion(np.interp(new * np.arange(steps + 1), self._times, accel), new, name)
 
     @classmethod
     def from_at2(cls, path: str | PathLike[str]) -> GroundMotion:
@@ -212,84 +237,18 @@ class GroundMotion:
     @classmethod
     def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> GroundMotion:
         motion = cls(*read(path, parse), name := Path(path).stem)
-        for doubt in doubts(name, motion.peak, motion.residual_velocity, motion.peak_velocity):
-            warnings.warn(doubt, stacklevel=3)
+        peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
+        if peak < FAINT:
+            warnings.warn(
+                f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?", stacklevel=3
+            )
+        if abs(final) > DRIFT * fastest:
+            warnings.warn(
+                f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
+                "it needs a baseline correction",
+                stacklevel=3,
+            )
         return motion
-
-    @classmethod
-    def sine(cls, amplitude: float, period: float, cycles: float = 1.0, samples: int = 400) -> GroundMotion:
-        """A sine pulse of `amplitude` [m/s2] and `period` [s], `samples` to a cycle. A positive one starts inwards.
-
-        Raises:
-            ValueError: for a period outside 0.01 to 100 s, cycles outside 0.5 to 1000, or steps outside 1e-5 to 1 s.
-        """
-        return cls(*pulses.sine(amplitude, period, cycles, samples))
-
-    @classmethod
-    def half_sine(cls, amplitude: float, duration: float, samples: int = 400) -> GroundMotion:
-        """Half a sine of `amplitude` [m/s2] over `duration` [s], in `samples` steps. A positive one pushes inwards.
-
-        Raises:
-            ValueError: for a duration outside 0.01 to 100 s, fewer than 2 samples, or steps outside 1e-5 to 1 s.
-        """
-        return cls(*pulses.half_sine(amplitude, duration, samples))
-
-    @classmethod
-    def rectangular(cls, amplitude: float, duration: float) -> GroundMotion:
-        """A constant `amplitude` [m/s2] from zero to `duration` [s], exactly. A positive one pushes inwards.
-
-        Raises:
-            ValueError: for a duration outside 0.01 to 100 s.
-        """
-        return cls(*pulses.rectangular(amplitude, duration))
-
-    @classmethod
-    def ricker(cls, amplitude: float, period: float, antisymmetric: bool = False, samples: int = 400) -> GroundMotion:
-        """A Ricker wavelet whose largest |acceleration| is `amplitude` [m/s2], with `samples` to a `period` [s].
-
-        The formulas stand in `mjrock.problem.ground.pulses.ricker`. The wavelet starts at time zero. A positive one has
-        its large lobe, or the first of its two, inwards. The small lobe before it, of 0.45 A or 0.27 A, goes outwards.
-
-        Raises:
-            ValueError: for a period outside 0.01 to 100 s, fewer than 10 samples, or steps outside 1e-5 to 1 s.
-        """
-        return cls(*pulses.ricker(amplitude, period, antisymmetric, samples))
-
-    @classmethod
-    def synthetic(
-        cls,
-        peak: float,
-        duration: float,
-        *,
-        seed: int,
-        dt: float = 0.01,
-        ground_frequency: float = 2.5,
-        ground_damping: float = 0.6,
-        filter_frequency: float = 0.25,
-        filter_damping: float = 0.6,
-        rise: float = 0.15,
-        fall: float = 0.35,
-    ) -> GroundMotion:
-        """An artificial record with random phases under a stated spectrum and envelope.
-
-        The same seed gives the same bytes. The formulas stand in `mjrock.problem.ground.pulses.synthetic`.
-
-        Args:
-            peak: largest |acceleration| [m/s2], 1e-3 to 100.
-            duration: of the record, to the nearest step [s], 1 to 1000.
-            seed: of the phases, a whole number from 0 to 2**53.
-            dt: time step [s], at most a quarter of the ground's period.
-            ground_frequency, ground_damping: of the soil layer [Hz, -], 0.1 to 50 and 0.05 to 2.
-            filter_frequency, filter_damping: of the high-pass [Hz, -], 0.01 to ground_frequency and 0.05 to 2.
-            rise, fall: shares of the duration over which the envelope rises and falls [-], above 0, together at most 1.
-
-        Raises:
-            ValueError: for a value outside its range.
-        """
-        record = pulses.synthetic(
-            peak, duration, seed, dt, ground_frequency, ground_damping, filter_frequency, filter_damping, rise, fall
-        )
-        return cls(*record)
 
 
 def _instants(t: ArrayLike) -> Array:

@@ -1,8 +1,8 @@
 """Text of recorded accelerations: PEER AT2, columns of time and acceleration, the plain text of a SAC set.
 
 Each parser takes the lines of a file and returns its accelerations [m/s2], shape (n,), and its time step [s]. A number
-has ASCII digits and may have a Fortran exponent, 1.5D-02. Every word on a line of
-numbers has to be a finite number; the error names the line and the word.
+has ASCII digits and may have a Fortran exponent, 1.5D-02. A ValueError with the line says where the header is another,
+where the samples are not as many as it states, and where a word on a line of numbers is no finite number.
 """
 
 from __future__ import annotations
@@ -46,18 +46,12 @@ BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
 DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 """A line of columns whose first letter or digit is a digit of any script, so that a damaged number is no header."""
-FAINT = 1e-3 * GRAVITY
-"""A file whose peak acceleration is below this is probably in another unit [m/s2]."""
-DRIFT = 0.2
-"""A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
 
 
 def checked(accel: ArrayLike, dt: float) -> Record:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
-    Raises:
-        TypeError: for what are no real numbers.
-        ValueError: unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
+    A TypeError or ValueError says unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
     """
     values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
@@ -70,13 +64,7 @@ def checked(accel: ArrayLike, dt: float) -> Record:
 
 
 def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Record:
-    """The record that a parser finds in a file.
-
-    Raises:
-        OSError: if the file cannot be read.
-        TypeError: if the path is none.
-        ValueError: with the name of the file, if it is not one of the format.
-    """
+    """The record that a parser finds in a file; a ValueError with its name says if it is not one of the format."""
     path = require_path("path", path)
     try:
         return checked(*parse(text_lines(path)))
@@ -85,12 +73,7 @@ def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Rec
 
 
 def text_lines(path: Path) -> list[str]:
-    """The lines of a text file in UTF-8 or Latin-1. Only CR, LF and CR LF end a line. A last ^Z of DOS is dropped.
-
-    Raises:
-        OSError: if the file cannot be read.
-        ValueError: if it is binary or empty.
-    """
+    """The lines of a text file in UTF-8 or Latin-1. Only CR, LF and CR LF end a line. A last ^Z of DOS is dropped."""
     data = path.read_bytes()
     if b"\0" in data:
         raise ValueError("a binary file or one in UTF-16; a text of accelerations in UTF-8 or Latin-1 is needed")
@@ -105,11 +88,7 @@ def text_lines(path: Path) -> list[str]:
 
 
 def parse_at2(lines: Sequence[str]) -> Record:
-    """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g.
-
-    Raises:
-        ValueError: for another header, another number of samples than it states, or something that is no number.
-    """
+    """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
         instead = f"line 3 is {_short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
         raise ValueError(f"{instead}: not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS OF G")
@@ -120,11 +99,7 @@ def parse_at2(lines: Sequence[str]) -> Record:
 
 
 def parse_sac(lines: Sequence[str]) -> Record:
-    """The record of a text with a title line, a line that begins with count and time step [s], then values in cm/s2.
-
-    Raises:
-        ValueError: for another header, another number of samples than it states, or something that is no number.
-    """
+    """The record of a text with a title line, a line that begins with count and time step [s], then values in cm/s2."""
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
         instead = f"line 2 is {_short(lines[1])}" if len(lines) > 1 else "1 line"
@@ -139,11 +114,8 @@ def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> Record:
     """The record of two columns, time and acceleration, set apart by commas, semicolons, or blanks and tabs.
 
     Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped. Between
-    semicolons a comma is a decimal point.
-
-    Raises:
-        ValueError: for an unknown unit, another number of columns, something that is no number, a control character,
-            or uneven times.
+    semicolons a comma is a decimal point. A ValueError says where a unit is unknown, a control character stands, or
+    times are uneven.
     """
     scale, time_scale = _factor("unit", unit, UNITS), _factor("time_unit", time_unit, TIME_UNITS)
     rows: list[list[float]] = []
@@ -234,19 +206,3 @@ def _value(text: str) -> float:
 def _short(text: str) -> str:
     """A text as it stands in a message: what cannot be seen or is not ASCII is escaped."""
     return ascii(text if len(text) <= 60 else f"{text[:57]}...")
-
-
-def doubts(name: str, peak: float, final: float, fastest: float) -> list[str]:
-    """What is odd about a record from a file, in words.
-
-    `peak` is its peak acceleration [m/s2], `final` and `fastest` its residual and its peak velocity [m/s].
-    """
-    sentences = []
-    if peak < FAINT:
-        sentences.append(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only; is its unit right?")
-    if abs(final) > DRIFT * fastest:
-        sentences.append(
-            f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; "
-            "it needs a baseline correction"
-        )
-    return sentences

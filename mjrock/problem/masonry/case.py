@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, keep, require_array, require_kind, require_whole, require_within, shown
+from ...quantities import Array, keep, require_array, require_kind, require_whole, require_within
 from ..ground.motion import GroundMotion
-from ..wall.effects import KINDS, Effect, Load
+from ..wall.effects import KINDS, Carrying, Effect, Load
 from ..wall.in_space import LATER, require_in_plane
-from .effects_in_space import require_in_space
+from .effects import require_in_space
 from .masonry import Masonry
-from .polygon import Polygon
 from .support import supports_of
 
 FASTEST = 1e3
@@ -25,7 +23,7 @@ COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects"
 
 
 @dataclass(frozen=True, eq=False)
-class MasonryCase:
+class MasonryCase(Carrying):
     """Masonry at rest under its weight, and what moves it.
 
     Args:
@@ -79,10 +77,7 @@ class MasonryCase:
 
     def _require_effects(self) -> None:
         """Check that each effect is on a block that is not fixed, and keep them as a tuple."""
-        given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
-        if not isinstance(given, Sequence) or isinstance(given, str):
-            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
-        keep(self, effects=tuple(given))
+        self._keep_sequence()
         for i, effect in enumerate(self.effects):
             require_kind(f"effects[{i}]", effect, *KINDS)
             require_whole(f"effects[{i}], block", effect.block, 0, len(self.masonry.blocks) - 1)
@@ -92,17 +87,13 @@ class MasonryCase:
                 raise ValueError(f"{name}: this block is fixed; the valid ones are {list(self.masonry.free)}")
             if self.masonry.in_space:
                 require_in_space(name, effect, self.masonry)
-            else:
-                self._require_in_plane(name, effect, block)
-
-    def _require_in_plane(self, name: str, effect: Effect, block: Polygon) -> None:
-        """Check that an effect is on its block of the plane."""
-        require_in_plane(name, effect)
-        low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
-        require_within(f"{name}, height", effect.height, float(low[1]), float(high[1]), "m")
-        if isinstance(effect, Load):
-            middle = float(block.centroid[0])
-            require_within(f"{name}, offset", effect.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
+                continue
+            require_in_plane(name, effect)
+            low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
+            require_within(f"{name}, height", effect.height, float(low[1]), float(high[1]), "m")
+            if isinstance(effect, Load):
+                middle = float(block.centroid[0])
+                require_within(f"{name}, offset", effect.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
 
     def __eq__(self, other: object) -> bool:
         return (

@@ -15,8 +15,6 @@ from .joints_in_space import axes_along
 from .masonry import Masonry
 from .statics import cones, falling, method, moving, sizes_of, weight_of
 
-UNBOUNDED = 3
-"""What linprog answers where nothing limits the multiplier."""
 LARGEST = 1e6
 """Multiplier from which it counts as infinite [-]."""
 
@@ -74,8 +72,8 @@ def collapse_multiplier(masonry: Masonry, direction: float | ArrayLike = 1, *, a
     prices = np.zeros(pressed.shape[1] + 1)
     prices[-1] = -1.0
     answer = linprog(prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry))
-    if answer.status == UNBOUNDED or (answer.status == 0 and answer.x[-1] > LARGEST):
-        return Collapse(math.inf, push, (), np.zeros_like(sideways))
+    if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
+        return Collapse(math.inf, push, (), np.zeros_like(sideways))  # unbounded
     if answer.status != 0:
         raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")
     velocities = -np.asarray(answer.eqlin.marginals)

@@ -1,14 +1,17 @@
-"""Effects on masonry: where they act, the forces that they bring, and the masses that they add."""
+"""Effects on masonry: where they act and are anchored, the forces that they bring, and the masses that they add."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array
+from ...quantities import GRAVITY, Array, require_whole
 from ..wall.damper import Damper
 from ..wall.effects import AddedMass, Effect, Load, Thrust, Tie
-from .effects_in_space import applied_in_space, held_at
 from .masonry import Masonry
+from .polyhedron import Polyhedron
+
+BESIDE = 1e-3
+"""How far outside its block a point of an effect may lie [m]: coordinates are rounded."""
 
 
 def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
@@ -22,23 +25,20 @@ def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
 
 
 def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
-    """Forces and moments of loads, thrusts and added masses on the free blocks, as `falling` takes them."""
-    if masonry.in_space:
-        return applied_in_space(masonry, effects)
-    total = np.zeros((len(masonry.free), 3))
+    """Forces [N] and moments about the centroids [N m] of loads, thrusts and added masses on the free blocks.
+
+    The shape is (free, 3), in space (free, 6), as `falling` takes them.
+    """
+    total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        if not isinstance(effect, Tie):
-            row = masonry.free.index(effect.block)
-            x, z = np.array(placed(masonry, effect)) - masonry.blocks[effect.block].centroid
-            across = effect.force if isinstance(effect, Thrust) else 0.0
-            down = (
-                effect.force
-                if isinstance(effect, Load)
-                else GRAVITY * effect.mass
-                if isinstance(effect, AddedMass)
-                else 0.0
-            )
-            total[row] += across, -down, across * z + down * x
+        force = force_of(effect)
+        if isinstance(effect, AddedMass):
+            force = np.array([0.0, 0.0, -GRAVITY * effect.mass])
+        arm, row = np.array(placed(masonry, effect)) - masonry.centroids[effect.block], masonry.free.index(effect.block)
+        if masonry.in_space:
+            total[row] += [*force, *np.cross(arm, force)]
+        else:
+            total[row] += force[0], force[2], force[0] * arm[1] - force[2] * arm[0]
     return total
 
 
@@ -50,13 +50,64 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
         if isinstance(effect, AddedMass) and effect.mass > 0:
             i = effect.block
             apart, total = np.array(placed(masonry, effect)) - centroids[i], mass[i] + effect.mass
-            inertia[i] += mass[i] * effect.mass / total * _second(apart)
+            square = float(apart @ apart)
+            second = square * np.eye(3) - np.outer(apart, apart) if masonry.in_space else square
+            inertia[i] += mass[i] * effect.mass / total * second
             centroids[i] += effect.mass / total * apart
             mass[i] = total
     return mass, centroids, inertia
 
 
-def _second(apart: Array) -> float | Array:
-    """Moment or tensor of inertia of a unit mass at a distance [m2]."""
-    square = float(apart @ apart)
-    return square if len(apart) == 2 else square * np.eye(3) - np.outer(apart, apart)
+def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
+    """Raise a ValueError that names the field, unless an effect acts on its block and is anchored on another.
+
+    An added mass may lie outside its block.
+    """
+    if effect.at is None:
+        raise ValueError(
+            f"{name}, height = {effect.height:g} m is for masonry in the plane; in space give at=(x, y, z)"
+        )
+    if getattr(effect, "offset", 0.0):
+        raise ValueError(f"{name}, offset = {effect.offset:g} m is for masonry in the plane; at has it")  # type: ignore[union-attr]
+    block: Polyhedron = masonry.blocks[effect.block]
+    if not isinstance(effect, AddedMass):
+        _require_on(f"{name}, at", effect.at, block)
+    if isinstance(effect, Tie | Damper):
+        number = effect.anchor_block
+        if number is not None:
+            require_whole(f"{name}, anchor_block", number, 0, len(masonry.blocks) - 1)
+            if number == effect.block:
+                raise ValueError(f"{name}, anchor_block = {number} is the block itself; give another, or None")
+            if effect.anchor is None:
+                raise ValueError(f"{name}, anchor_block = {number} needs anchor=(x, y, z)")
+            _require_on(f"{name}, anchor", effect.anchor, masonry.blocks[number])
+        if np.linalg.norm(held_at(effect) - anchored_at(effect)) < 1e-2:
+            raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
+
+
+def _require_on(name: str, point: tuple[float, ...], block: Polyhedron) -> None:
+    outside = float(((point - block.corners[[face[0] for face in block.faces]]) * block.normals).sum(axis=1).max())
+    if outside > BESIDE:
+        raise ValueError(f"{name} = {point} m lies {outside:.3g} m outside the block; the valid range is on it")
+
+
+def held_at(effect: Effect) -> Array:
+    """The point where an effect acts, at rest [m], shape (3,)."""
+    return np.array(effect.at)
+
+
+def anchored_at(effect: Tie | Damper) -> Array:
+    """The anchor of a tie or damper at rest [m], shape (3,)."""
+    if effect.anchor is not None:
+        return np.array(effect.anchor)
+    rise = effect.rise if isinstance(effect, Tie) else 0.0
+    return np.asarray(held_at(effect) + np.array([-effect.length, 0.0, rise]))
+
+
+def force_of(effect: Effect) -> Array:
+    """The constant force of a load or a thrust [N], zero of any other effect, shape (3,)."""
+    if isinstance(effect, Load):
+        return np.array([0.0, 0.0, -effect.force])
+    if isinstance(effect, Thrust):
+        return np.array([effect.force * part for part in effect.direction or (1.0, 0.0, 0.0)])
+    return np.zeros(3)

@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 
 from ...files import write_text
 from ...quantities import named, require_flag, require_path, require_text, require_within, shown
-from .builders_in_space import ground_below
+from .builders import FromBlocks
+from .forms_in_space import ground_below
 from .mesh_files import compas_text, obj_text, read_compas, read_obj, read_stl
 from .meshes import Mesh, blocks_of
-from .polyhedron import Polyhedron
 
 AnyPath = str | PathLike[str]
 
 
-class Exchange:
+class Exchange(FromBlocks):
     """Masonry in space from files, and to files. Options are further arguments of `Masonry`.
 
     All readers take `density` [kg/m3], 100 to 30000, for blocks whose file says none, and `scale`, the length of a unit
@@ -28,11 +28,6 @@ class Exchange:
     Every body has to be closed and convex, and to touch another within the `tolerance`. Messages name the file and the
     body.
     """
-
-    if TYPE_CHECKING:
-
-        def __init__(self, blocks: tuple[Polyhedron, ...], **options: Any) -> None:
-            """As `Masonry`."""
 
     @classmethod
     def from_obj(
@@ -146,7 +141,7 @@ class Exchange:
             if ground:
                 corners = np.concatenate([block.corners for block in blocks])
                 blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0), float(corners[:, 2].min())))
-            masonry = cls(tuple(blocks), **options)
+            masonry = cls(blocks, **options)
             masonry._require_touching()
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
@@ -161,8 +156,7 @@ class Exchange:
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]
         if loose:
-            low = np.array([block.corners.min(axis=0) for block in self.blocks])
-            high = np.array([block.corners.max(axis=0) for block in self.blocks])
+            low, high = (np.array([end(block.corners, axis=0) for block in self.blocks]) for end in (np.min, np.max))
             i = loose[0]
             gaps = np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1)
             gaps[i] = np.inf

@@ -36,5 +36,4 @@ def travels(faces: tuple[Face, Face], ways: Array) -> Array:
     The two faces then touch along a line square to the way at most.
     """
     below, above = faces
-    travel: Array = (below.corners @ ways.T).max(axis=0) - (above.corners @ ways.T).min(axis=0)
-    return travel
+    return np.asarray((below.corners @ ways.T).max(axis=0) - (above.corners @ ways.T).min(axis=0))

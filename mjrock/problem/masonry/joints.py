@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -77,43 +76,29 @@ class Joint:
         return bool(abs(self.normal[0]) < LEVEL)
 
 
-class Outline(NamedTuple):
-    """The edges of a convex block, counterclockwise: where they start and end, and their unit normals out of it."""
-
-    corners: Array
-    ends: Array
-    normals: Array
-
-
 def names_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[str, ...]:
     """Names of the blocks: their own, or `block_` and their number."""
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
 
 
 def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...]:
-    """The joints between blocks, in the order of the blocks.
+    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
-    Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance. The joint
-    lies halfway between them. Two fixed blocks make none.
-
-    Args:
-        blocks: the blocks.
-        tolerance: largest distance between edges that touch, and largest overlap of blocks [m].
-
-    Raises:
-        ValueError: if two blocks overlap by more than the tolerance. The message names both.
+    Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance [m], which
+    is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names, found = names_of(blocks), []
-    outlines = [Outline(block.corners, np.roll(block.corners, -1, axis=0), _normals(block.corners)) for block in blocks]
     for i, j in neighbours(blocks, tolerance):
-        deep = _overlap(outlines[i], outlines[j])
-        if deep > tolerance:
-            raise ValueError(
-                f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the tolerance, "
-                f"{tolerance:g} m"
-            )
-        found += list(_between(blocks, (i, j), (outlines[i], outlines[j]), names, tolerance))
+        require_apart(names[i], names[j], _overlap(blocks[i], blocks[j]), tolerance)
+        found += list(_between(blocks, (i, j), names, tolerance))
     return tuple(found)
+
+
+def require_apart(name: str, other: str, deep: float, tolerance: float) -> None:
+    """Raise a ValueError that names two blocks, if they overlap by more than the tolerance [m]."""
+    if deep > tolerance:
+        overlap = f"blocks {name} and {other} overlap by {deep:.3g} m"
+        raise ValueError(f"{overlap}; the valid range is up to the tolerance, {tolerance:g} m")
 
 
 def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list[tuple[int, int]]:
@@ -128,18 +113,11 @@ def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list
     return pairs
 
 
-def _normals(corners: Array) -> Array:
-    """Unit normals out of the edges of a counterclockwise outline, shape (n, 2)."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    made: Array = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None]
-    return made
-
-
-def _overlap(one: Outline, other: Outline) -> float:
-    """Depth by which two convex outlines overlap [m], negative where they are apart: least over the normals."""
+def _overlap(block: Polygon, other: Polygon) -> float:
+    """Depth by which two blocks overlap [m], negative where they are apart: least over the normals."""
     depths = [
         (a.corners @ a.normals.T).max(axis=0) - (b.corners @ a.normals.T).min(axis=0)
-        for a, b in ((one, other), (other, one))
+        for a, b in ((block, other), (other, block))
     ]
     return float(np.concatenate(depths).min())
 
@@ -147,17 +125,16 @@ def _overlap(one: Outline, other: Outline) -> float:
 def _between(
     blocks: Sequence[Polygon],
     pair: tuple[int, int],
-    outlines: tuple[Outline, Outline],
     names: Sequence[str],
     tolerance: float,
 ) -> Iterator[Joint]:
     """The joints between two blocks."""
-    (i, j), (one, other) = pair, outlines
-    sine = np.abs(np.outer(one.normals[:, 0], other.normals[:, 1]) - np.outer(one.normals[:, 1], other.normals[:, 0]))
-    meeting = np.argwhere((one.normals @ other.normals.T <= 0) & (sine <= PARALLEL))
-    for edge, edge_of_other in meeting.tolist():
-        a, b, n = one.corners[edge], one.ends[edge], one.normals[edge]
-        c, d = other.corners[edge_of_other], other.ends[edge_of_other]
+    i, j = pair
+    (p, normals), (q, others) = ((blocks[number].corners, blocks[number].normals) for number in pair)
+    sine = np.abs(np.outer(normals[:, 0], others[:, 1]) - np.outer(normals[:, 1], others[:, 0]))
+    for edge, other in np.argwhere((normals @ others.T <= 0) & (sine <= PARALLEL)).tolist():
+        a, b, n = p[edge], p[(edge + 1) % len(p)], normals[edge]
+        c, d = q[other], q[(other + 1) % len(q)]
         way = (b - a) / np.hypot(*(b - a))
         first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
         low, high = max(0.0, first), min(float((b - a) @ way), last)
@@ -170,37 +147,22 @@ def _between(
         ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
         # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
         travel = (float((b - a) @ way - first), float(last))
-        yield _joint(blocks, i, j, ends, n, names, tolerance, travel)
-
-
-def _joint(
-    blocks: Sequence[Polygon],
-    i: int,
-    j: int,
-    ends: list[Array],
-    n: Array,
-    names: Sequence[str],
-    tolerance: float,
-    travel: tuple[float, float],
-) -> Joint:
-    """The joint between blocks i and j with these ends, n the normal out of block i, which j can travel along."""
-    upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
-    below, above = (i, j) if upwards > 0 else (j, i)
-    if blocks[above].fixed:
-        below, above = above, below
-    start, end = ends
-    normal = n if below == i else -n
-    if normal @ np.array([-(end - start)[1], (end - start)[0]]) < 0:
-        start, end = end, start
-    near = SHORTEST * tolerance
-    corners = tuple(bool(np.hypot(*(blocks[above].corners - place).T).min() < near) for place in (start, end))
-    return Joint(
-        below=below,
-        above=above,
-        start=(float(start[0]), float(start[1])),
-        end=(float(end[0]), float(end[1])),
-        travel=travel,
-        length=min(blocks[i].length, blocks[j].length),
-        corners=(corners[0], corners[1]),
-        name=f"{names[below]}|{names[above]}",
-    )
+        upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
+        below, above = (i, j) if upwards > 0 else (j, i)
+        if blocks[above].fixed:
+            below, above = above, below
+        start, end = ends
+        normal = n if below == i else -n
+        if normal @ np.array([-(end - start)[1], (end - start)[0]]) < 0:
+            start, end = end, start
+        near = [np.hypot(*(blocks[above].corners - place).T).min() < SHORTEST * tolerance for place in (start, end)]
+        yield Joint(
+            below=below,
+            above=above,
+            start=(float(start[0]), float(start[1])),
+            end=(float(end[0]), float(end[1])),
+            travel=travel,
+            length=min(blocks[i].length, blocks[j].length),
+            corners=(bool(near[0]), bool(near[1])),
+            name=f"{names[below]}|{names[above]}",
+        )

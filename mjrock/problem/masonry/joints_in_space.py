@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry import convex
-from ...quantities import Array
-from .joints import LEVEL, SHORTEST, names_of, neighbours
+from ...quantities import Array, frozen
+from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart
 from .polyhedron import Polyhedron, Vertices
 
 OPPOSITE = -1 + 1e-3
@@ -43,9 +43,7 @@ class SpaceJoint:
     @cached_property
     def outline(self) -> Array:
         """Corners of the joint, counterclockwise about the normal [m], shape (n, 3)."""
-        outline = np.array(self.vertices)
-        outline.setflags(write=False)
-        return outline
+        return frozen(self.vertices)
 
     @property
     def normal(self) -> Array:
@@ -55,14 +53,12 @@ class SpaceJoint:
     @cached_property
     def axes(self) -> Array:
         """Two unit vectors in the plane of the joint, right-handed with the normal, shape (2, 3)."""
-        axes: Array = axes_across(self.normal[None])[0]
-        return axes
+        return np.asarray(axes_across(self.normal[None])[0])
 
     @cached_property
     def flat(self) -> Array:
         """The outline along `axes`, from its first corner [m], shape (n, 2)."""
-        flat: Array = (self.outline - self.outline[0]) @ self.axes.T
-        return flat
+        return np.asarray((self.outline - self.outline[0]) @ self.axes.T)
 
     @cached_property
     def area(self) -> float:
@@ -82,8 +78,7 @@ class SpaceJoint:
     @cached_property
     def middle(self) -> Array:
         """Centroid of the area of the joint [m], shape (3,)."""
-        middle: Array = self.outline[0] + convex.centroid(self.flat) @ self.axes
-        return middle
+        return np.asarray(self.outline[0] + convex.centroid(self.flat) @ self.axes)
 
     @property
     def is_bed(self) -> bool:
@@ -104,16 +99,13 @@ def axes_across(normals: Array) -> Array:
     """Two unit vectors across each of some normals, shape (m, 3), right-handed with it, shape (m, 2, 3)."""
     first = np.cross(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
     first /= np.linalg.norm(first, axis=1)[:, None]
-    axes: Array = np.stack([first, np.cross(normals, first)], axis=1) + 0.0
-    return axes
+    return np.asarray(np.stack([first, np.cross(normals, first)], axis=1) + 0.0)
 
 
 def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
-    """Two unit vectors across each of some normals, the first along a force where it can be, shape (m, 3) each.
+    """Two unit vectors across each of some normals, the first along its force, or one for all, where it can be.
 
-    Args:
-        normals: shape (m, 3).
-        forces: of each, shape (m, 3), or one for all, shape (3,).
+    Shapes are (m, 3) each.
     """
     first = forces - (normals * forces).sum(axis=1)[:, None] * normals
     lengths = np.linalg.norm(first, axis=1)
@@ -123,17 +115,10 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
 
 
 def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[SpaceJoint, ...]:
-    """The joints between blocks, in the order of the blocks.
+    """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
-    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance. The
-    joint lies halfway between them. Two fixed blocks make none.
-
-    Args:
-        blocks: the blocks.
-        tolerance: largest distance between faces that touch, and largest overlap of blocks [m].
-
-    Raises:
-        ValueError: if two blocks overlap by more than the tolerance. The message names both.
+    Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
+    which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names = names_of(blocks)
     faces = [faces_of(block) for block in blocks]
@@ -149,11 +134,7 @@ def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[Spa
             continue
         if deep > tolerance:
             deep = min(deep, _depth_across_edges(blocks[i], blocks[j]))
-            if deep > tolerance:
-                raise ValueError(
-                    f"blocks {names[i]} and {names[j]} overlap by {deep:.3g} m; the valid range is up to the "
-                    f"tolerance, {tolerance:g} m"
-                )
+        require_apart(names[i], names[j], deep, tolerance)
         for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
             joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), names, tolerance)
     return tuple(joints)
@@ -191,11 +172,10 @@ def _between(
 ) -> Iterator[SpaceJoint]:
     """The joint between two faces that look at each other, if they touch."""
     face, other = faces
-    heights = other.corners @ face.normal - face.offset
+    normal, origin, axes = face.normal, face.corners[0], face.axes
+    heights = other.corners @ normal - face.offset
     if heights.min() > tolerance or heights.max() < -tolerance:
         return
-    normal, origin = face.normal, face.corners[0]
-    axes = face.axes
     outline = convex.clipped((face.corners - origin) @ axes.T, ((other.corners - origin) @ axes.T)[::-1])
     outline = convex.cleaned(outline, tolerance)
     if not len(outline) or convex.width(outline) <= SHORTEST * tolerance:
@@ -204,27 +184,15 @@ def _between(
     gaps = (other.offset - places @ other.normal) / float(normal @ other.normal)
     if np.abs(gaps).max() > tolerance:
         return
-    yield _joint(blocks, pair, places + 0.5 * gaps[:, None] * normal, normal, names, SHORTEST * tolerance)
-
-
-def _joint(
-    blocks: Sequence[Polyhedron],
-    pair: tuple[int, int],
-    places: Array,
-    normal: Array,
-    names: Sequence[str],
-    near: float,
-) -> SpaceJoint:
-    """The joint between two blocks with these corners, counterclockwise about the normal out of the first block."""
+    places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block
     (below, above), upwards = pair, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
-    turned = blocks[above].fixed or (upwards < 0 and not blocks[below].fixed)
-    if turned:
+    if blocks[above].fixed or (upwards < 0 and not blocks[below].fixed):
         below, above, normal, places = above, below, -normal, places[::-1]
 
     def is_corner(block: Polyhedron, place: Array) -> bool:
-        return bool(np.linalg.norm(block.corners - place, axis=1).min() < near)
+        return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST * tolerance)
 
-    return SpaceJoint(
+    yield SpaceJoint(
         below=below,
         above=above,
         vertices=tuple((float(x), float(y), float(z)) for x, y, z in places),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import block_diag, csr_array, vstack
 
 from ...geometry.convex import spread
-from ...linear import averaged, entries, lowest_square, sprung
+from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .joints import Joint
@@ -63,56 +63,39 @@ class Lines(NamedTuple):
 def lines_of(blocks: Sequence[Any], joints: Sequence[Any], k_n: Array, points: int) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
-    Args:
-        blocks: the blocks.
-        joints: their joints.
-        k_n: stiffness of each joint [N/m3], shape (joints,).
-        points: how many lines a joint has. In space, see `geometry.convex.spread`.
+    The point is on the block above. Where that one overhangs, the corner is that of the block below, and the point is
+    on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,). A joint
+    has so many lines as `points` says, in space see `geometry.convex.spread`.
     """
-    in_space = isinstance(joints[0], SpaceJoint)
-    return (_points_of if in_space else _lines_of)(blocks, joints, k_n, points)
-
-
-def _lines_of(blocks: Sequence[Polygon], joints: Sequence[Joint], k_n: Array, points: int) -> Lines:
-    """The lines of all joints, evenly spaced from end to end of each, the outer two with half the tributary width.
-
-    The point is on the block above. At an end where the block above overhangs, the corner is that of the block below,
-    and the point is on the block below, unless that one is fixed.
-    """
-    rows: list[tuple[int, int, int]] = []
-    at, normal, k = [], [], []
-    for number, joint in enumerate(joints):
-        places, widths = contact_lines(joint.width, points)
-        for i, (place, width) in enumerate(zip(places, widths, strict=True)):
-            overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
-            turned = overhangs and not blocks[joint.below].fixed
-            rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
-            at.append(joint.middle + place * joint.along)
-            normal.append(-joint.normal if turned else joint.normal)
-            k.append(k_n[number] * joint.length * width)
-    joint_of, body, face = np.array(rows, dtype=np.int64).reshape(-1, 3).T
-    return Lines(joint_of, body, face, np.reshape(at, (-1, 2)), np.reshape(normal, (-1, 2)), np.array(k))
-
-
-def _points_of(blocks: Sequence[Polyhedron], joints: Sequence[SpaceJoint], k_n: Array, points: int) -> Lines:
-    """The points of all joints in space.
-
-    The point is on the block above. A corner of the joint that is a corner of the block below alone is on that block,
-    unless it is fixed.
-    """
+    places = _on_face if isinstance(joints[0], SpaceJoint) else _on_edge
     rows, at, normal, k = [], [], [], []
     for number, joint in enumerate(joints):
-        flat, areas = spread(joint.flat, points)
-        places = joint.outline[0] + flat @ joint.axes
-        for place, area in zip(places, areas, strict=True):
-            apart = np.abs(joint.outline - place).max(axis=1)
-            turned = bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())] and not blocks[joint.below].fixed)
+        for place, stiffness, overhangs in places(joint, points, k_n[number]):
+            turned = overhangs and not blocks[joint.below].fixed
             rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
             at.append(place)
             normal.append(-joint.normal if turned else joint.normal)
-            k.append(k_n[number] * area)
+            k.append(stiffness)
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
+
+
+def _on_edge(joint: Joint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+    """Places of the lines of a joint, evenly from end to end, their stiffness, and whether the block above overhangs.
+
+    The outer two have half the tributary width.
+    """
+    for i, (place, width) in enumerate(zip(*contact_lines(joint.width, points), strict=True)):
+        overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
+        yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
+
+
+def _on_face(joint: SpaceJoint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+    """The same of the points of a joint in space; those at its corners may be of the block below alone."""
+    flat, areas = spread(joint.flat, points)
+    for place, area in zip(joint.outline[0] + flat @ joint.axes, areas, strict=True):
+        apart = np.abs(joint.outline - place).max(axis=1)
+        yield place, k_n * area, bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
 
 
 def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
@@ -128,32 +111,20 @@ def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
 
 
 def rates(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, directions: Array) -> csr_array:
-    """Rates at which the lines move apart in given directions, for unit velocities of the blocks at rest.
+    """Rates at which the lines move apart in given directions, see `mjrock.linear.rates_of`.
 
-    They are the generalised forces of unit forces that press the two blocks of a line apart.
-
-    Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps.
-
-    Returns:
-        Rates for x, z and rotation of each block that is not fixed, in order, shape (m, 3 bodies). In space for x, y,
-        z and the rotations about the three axes, shape (m, 6 bodies).
+    Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
+    bodies are the blocks that are not fixed, in order.
     """
-    carriers = np.column_stack([lines.body, lines.face])
-    arms = lines.at[:, None] - np.array([block.centroid for block in blocks])[carriers]
-    if directions.shape[1] == 2:
-        x, z = directions.T[:, :, None] * np.array([1.0, -1.0])
-        values = np.stack([x, z, arms[..., 1] * x - arms[..., 0] * z], axis=-1)
-    else:
-        forces = directions[:, None] * np.array([[1.0], [-1.0]])
-        values = np.concatenate([forces, np.cross(arms, forces)], axis=-1)
-    number, bodies = _free_numbers(blocks)
-    return entries(values, number[carriers], values.shape[2] * bodies)
+    centroids, number = np.array([block.centroid for block in blocks]), free_numbers(blocks)
+    arms = lines.at - centroids[lines.body], lines.at - centroids[lines.face]
+    return rates_of(number[np.column_stack([lines.body, lines.face])], arms, directions, int(number.max()) + 1)
 
 
-def _free_numbers(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Integers, int]:
-    """Number of each block among those that are not fixed, -1 for one that is, and how many are not."""
+def free_numbers(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> Integers:
+    """Number of each block among those that are not fixed, -1 for one that is, shape (blocks,)."""
     free = np.array([not block.fixed for block in blocks])
-    return np.where(free, np.cumsum(free) - 1, -1), int(free.sum())
+    return np.where(free, np.cumsum(free) - 1, -1)
 
 
 def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints: int) -> csr_array:
@@ -164,10 +135,10 @@ def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints
     """
     parts = [averaged(rates(blocks, lines, direction), lines.joint, joints) for direction in lines.across]
     if lines.normal.shape[1] == 3:
-        number, bodies = _free_numbers(blocks)
+        number = free_numbers(blocks)
         spins = lines.normal[:, None] * np.array([[1.0], [-1.0]])
         values = np.concatenate([np.zeros_like(spins), spins], axis=-1)
-        twists = entries(values, number[np.column_stack([lines.body, lines.face])], 6 * bodies)
+        twists = entries(values, number[np.column_stack([lines.body, lines.face])], parts[0].shape[1])
         parts.append(averaged(twists, lines.joint, joints))
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
@@ -198,8 +169,6 @@ def masses_of(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Array, 
     """
     solids = [block for block in blocks if isinstance(block, Polyhedron) and not block.fixed]
     if solids:
-        turns = [part for block in solids for part in (np.eye(3), block.principal[1])]
-        return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), csr_array(
-            block_diag(turns)
-        )
+        axes = csr_array(block_diag([part for block in solids for part in (np.eye(3), block.principal[1])]))
+        return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), axes
     return np.array([(block.mass, block.mass, block.inertia) for block in blocks if not block.fixed]).ravel(), None

@@ -2,56 +2,45 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
-from ...quantities import Array, keep, require_stiffness, require_whole, require_within, shown
-from ..damping.contacts import Law
-from ..damping.law import law_named
-from ..wall.block import Block
-from ..wall.effects import SideStop
-from .builders import MOST_BLOCKS, bonded, side_of, stacked, voussoirs_of
+from ...quantities import Array, frozen, keep, require_whole, require_within, shown
+from ..damping.contacts import Law, required_law
+from .builders import MOST_BLOCKS, Forms
 from .exchange import Exchange
 from .forms_in_space import FormsInSpace
 from .joints import joints_in_plane, names_of
 from .joints_in_space import joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
-from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
+from .of_joint import OF_JOINTS, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
 
-MOST_POINTS = 50
-"""Largest `points` of blocks in space."""
-
 
 @dataclass(frozen=True)
-class Masonry(FormsInSpace, Exchange):
+class Masonry(Forms, FormsInSpace, Exchange):
     """Rigid convex blocks on compliant joints.
 
-    The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. Blocks that
-    touch at a corner only have no joint. A joint is a few contact lines, like the base of a wall: each is a spring and
-    a dashpot that push only, with Coulomb friction. Lines lie at the ends of the joint and evenly between. A joint that
-    opens turns about its last line, whose stiffness is that of its tributary area. How stiff this hinge is depends on
-    `points` and `k_n`, and a structure near its limit can depend on that.
+    The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
+    few contact lines, at its ends and evenly between: each is a spring and a dashpot that push only, with Coulomb
+    friction. A joint that opens turns about its last line. How stiff this hinge is depends on `points` and `k_n`, and a
+    structure near its limit can depend on that.
 
     Blocks in space, of the kind `Polyhedron`, have their joints where two faces cover a common area, with contact
     points in place of the lines.
 
-    In MuJoCo blocks meet only at the joints that they have at rest, and the face of a joint has no end. What a block
-    does after it has left its joints is not followed there: the answer names such blocks, and with steps that fit the
-    motion the run ends when two blocks of a joint are farther apart than the whole masonry is large, or when a block
-    has turned by 90 degrees. In explicit steps, see `solve_explicit`, faces end and blocks that fall meet others.
-
-    Friction that holds is a strong dashpot in MuJoCo. A joint under a sustained force F along it creeps at about
-    F / (3e8 m) [m/s], with m the reduced mass of its two blocks [kg]: an arch at rest by some 0.05 mm in a minute. What
-    stands on one joint alone, as in a stack, is put back to where it stuck.
+    In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
+    of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
+    that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
+    m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
+    meet others.
 
     Args:
         blocks: the blocks, all `Polygon` or all `Polyhedron`, at least one fixed and one that is not, at most 5000.
@@ -110,123 +99,23 @@ class Masonry(FormsInSpace, Exchange):
                 raise ValueError(f"blocks: {number} of them have the name {name}")
         keep(
             self,
-            points=require_whole("points", self.points, 2, MOST_POINTS if self.in_space else 1000),
+            points=require_whole("points", self.points, 2, 50 if self.in_space else 1000),
             tolerance=require_within("tolerance", self.tolerance, 1e-9, 0.1, "m"),
         )
         if self.frequency is not None:
             keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
         keep(self, **{name: required(name, getattr(self, name)) for name in OF_JOINTS})
-        if isinstance(self.law, str):
-            keep(self, law=law_named(self.law))
-        elif self.law is not None and not callable(self.law):
-            raise TypeError(f"law = {shown(self.law)} is neither a law nor the name of one")
-        if self.law is not None and self.frequency is not None:
-            raise ValueError(f"frequency = {self.frequency:g} rad/s is given with a law, which has its own; leave it")
+        if self.law is not None:
+            keep(self, law=required_law(self.law, self.points))
+            if self.frequency is not None:
+                given = f"frequency = {self.frequency:g} rad/s"
+                raise ValueError(f"{given} is given with a law, which has its own; leave it")
         if not self.joints:
             raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
         for name in OF_JOINTS:
             values_of(name, getattr(self, name), self.joints)
         if self.law is not None:
             _ = self.retardation
-
-    @classmethod
-    def stack(
-        cls,
-        blocks: Sequence[Block],
-        k_n: OfJoint,
-        *,
-        ground: bool = True,
-        side_stop: bool | SideStop = False,
-        k_side: float | None = None,
-        side_friction: float = 0.0,
-        **options: Any,
-    ) -> Self:
-        """Rectangular blocks one on the other, centred, from the lowest upwards.
-
-        A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
-
-        Args:
-            blocks: the blocks, whose insets are zero.
-            k_n: stiffness of the joints [N/m3].
-            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
-            side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
-                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
-                with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
-            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
-            side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
-            options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
-                joints refers to the lowest natural frequency without it.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        made = stacked(blocks, ground)
-        side = side_of(made, side_stop)
-        side_friction = require_within("side_friction", side_friction, 0.0, 10.0)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
-        if side is None:
-            if k_side is not None or side_friction:
-                raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
-            return cls(tuple(made), k_n=k_n, **options)
-        if options.get("law") is None and options.get("frequency") is None:
-            bare = cls(tuple(made), k_n=k_n, **options)
-            options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-        k_n = required("k_n", k_n)
-        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
-        return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
-
-    @classmethod
-    def arch(
-        cls,
-        radius: float,
-        thickness: float,
-        span_angle: float = math.pi,
-        voussoirs: int = 17,
-        *,
-        density: float = 2000.0,
-        length: float = 1.0,
-        **options: Any,
-    ) -> Self:
-        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
-
-        Args:
-            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
-            thickness: [m], 0.001 to 1 times the radius.
-            span_angle: angle between the two springings [rad], 0.1 to pi.
-            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
-            density: mass density [kg/m3], 100 to 30000.
-            length: length out of the plane [m], 1e-3 to 1000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(tuple(voussoirs_of(radius, thickness, span_angle, voussoirs, density, length)), **options)
-
-    @classmethod
-    def running_bond(
-        cls,
-        length: float,
-        height: float,
-        unit: tuple[float, float],
-        thickness: float = 1.0,
-        density: float = 2000.0,
-        **options: Any,
-    ) -> Self:
-        """A wall of units in running bond on the ground, which moves in the plane of its face.
-
-        Args:
-            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
-                is a piece of a unit.
-            unit: length and height of a unit [m], 0.01 to 100.
-            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        return cls(tuple(bonded(length, height, unit, thickness, density)), **options)
 
     @property
     def in_space(self) -> bool:
@@ -251,9 +140,7 @@ class Masonry(FormsInSpace, Exchange):
     @cached_property
     def centroids(self) -> Array:
         """Centroid of each block at rest, fixed ones too [m], shape (blocks, 2), in space (blocks, 3)."""
-        made = np.array([block.centroid for block in self.blocks])
-        made.setflags(write=False)
-        return made
+        return frozen([block.centroid for block in self.blocks])
 
     @cached_property
     def joints(self) -> tuple[Any, ...]:
@@ -289,5 +176,4 @@ class Masonry(FormsInSpace, Exchange):
         if not xi.any():
             return np.zeros(len(xi))
         omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)
-        made: Array = 2 * xi / omega
-        return made
+        return np.asarray(2 * xi / omega)

@@ -1,4 +1,7 @@
-"""Files of meshes: Wavefront OBJ, STL, and the JSON of a COMPAS model."""
+"""Files of meshes: Wavefront OBJ, STL, and the JSON of a COMPAS model.
+
+What reads a file raises a ValueError with the path, the line where there is one, and what is wrong.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +23,7 @@ MOST_BYTES = 500_000_000
 
 
 def bytes_of(path: Path) -> bytes:
-    """What a file holds.
-
-    Raises:
-        ValueError: with the path, if it is no file, is empty, or is larger than 500 MB.
-    """
+    """What a file holds, which is not empty and at most 500 MB."""
     if not path.is_file():
         raise ValueError(f"path = {path} is no file")
     size = path.stat().st_size
@@ -34,7 +33,7 @@ def bytes_of(path: Path) -> bytes:
 
 
 def text_of(path: Path) -> str:
-    """What a text file holds, see `bytes_of`; a ValueError says if it is no text."""
+    """What a text file holds."""
     try:
         return bytes_of(path).decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -42,11 +41,7 @@ def text_of(path: Path) -> str:
 
 
 def read_obj(path: Path) -> list[Mesh]:
-    """The meshes of an OBJ file: one for each object, or group of it, in their order.
-
-    Raises:
-        ValueError: with the path and the line that is wrong.
-    """
+    """The meshes of an OBJ file: one for each object, or group of it, in their order."""
     vertices: list[tuple[float, ...]] = []
     faces: dict[tuple[str, str], list[tuple[int, ...]]] = {}
     thing, group = "", ""
@@ -80,11 +75,7 @@ def read_obj(path: Path) -> list[Mesh]:
 
 
 def read_stl(path: Path) -> list[Mesh]:
-    """The meshes of an STL file: one for each solid of a text, one of a binary file.
-
-    Raises:
-        ValueError: with the path and what is wrong.
-    """
+    """The meshes of an STL file: one for each solid of a text, one of a binary file."""
     content = bytes_of(path)
     facets = struct.unpack_from("<I", content, 80)[0] if len(content) >= 84 else -1
     if len(content) == 84 + 50 * facets:
@@ -133,11 +124,7 @@ def _plain(name: str, otherwise: str) -> str:
 
 
 def read_compas(path: Path) -> list[Mesh]:
-    """The elements of a COMPAS model, where each is a mesh, with their supports and the densities of their materials.
-
-    Raises:
-        ValueError: with the path and what is wrong.
-    """
+    """The elements of a COMPAS model, each of which is a mesh, with their supports and densities of their materials."""
     try:
         model = json.loads(text_of(path))
         content = model["data"]
@@ -193,6 +180,9 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
     def key(kind: str, name: object) -> str:
         return str(uuid.uuid5(uuid.NAMESPACE_URL, f"{kind} {name}"))
 
+    def held(kind: str, data: dict[str, Any], guid: str) -> dict[str, Any]:
+        return {"dtype": kind, "data": data, "guid": guid}
+
     elements: dict[str, Any] = {}
     for block, name in zip(blocks, names, strict=True):
         mesh = {
@@ -207,25 +197,14 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
             "max_vertex": len(block.vertices) - 1,
             "max_face": len(block.faces) - 1,
         }
-        inside: dict[str, Any] = {
-            "transformation": None,
-            "features": [],
-            "name": name,
-            "material": key("density", block.density),
-        }
+        stone = key("density", block.density)
+        inside: dict[str, Any] = {"transformation": None, "features": [], "name": name, "material": stone}
         inside |= {"geometry": {"dtype": "compas.datastructures/Mesh", "data": mesh}, "is_support": block.fixed}
-        elements[key("block", name)] = {
-            "dtype": "compas_dem.elements/Block",
-            "data": inside,
-            "guid": key("block", name),
-        }
+        guid = key("block", name)
+        elements[guid] = held("compas_dem.elements/Block", inside, guid)
     stones = {
-        key("density", density): {
-            "dtype": "compas_dem.material/Stone",
-            "data": {"name": "Stone", "density": density},
-            "guid": key("density", density),
-        }
-        for density in densities
+        guid: held("compas_dem.material/Stone", {"name": "Stone", "density": density}, guid)
+        for guid, density in ((key("density", density), density) for density in densities)
     }
     children = [{"name": "ElementNode", "element": element} for element in elements]
     graph = {

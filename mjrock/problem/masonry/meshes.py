@@ -39,14 +39,11 @@ class Mesh(NamedTuple):
 
 
 def bodies_of(mesh: Mesh) -> list[Mesh]:
-    """The closed bodies of a mesh; those of one mesh are numbered.
+    """The closed bodies of a mesh; those of one mesh are numbered. A ValueError says if one is open.
 
     Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
     touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
     is divided.
-
-    Raises:
-        ValueError: for a body that is open, with its name and the number of edges that belong to one face alone.
     """
     places, number = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
     faces = [tuple(number.ravel()[list(face)].tolist()) for face in mesh.faces]
@@ -84,11 +81,7 @@ def _apart(faces: Faces, count: int) -> Iterator[Faces]:
 
 
 def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
-    """The convex block that a closed body is.
-
-    Raises:
-        ValueError: with the name of the body, if it is not convex, or as `Polyhedron` does.
-    """
+    """The convex block that a closed body is; a ValueError with its name says if it is none."""
     try:
         block = Polyhedron(body.vertices, density if body.density is None else body.density, fixed, body.name)
     except (ValueError, TypeError) as error:
@@ -107,13 +100,8 @@ def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
 def blocks_of(meshes: Sequence[Mesh], density: float, fixed: Sequence[str]) -> list[Polyhedron]:
     """The blocks of meshes; names that several have are numbered.
 
-    Args:
-        meshes: the meshes.
-        density: of those whose file says none [kg/m3].
-        fixed: names of the blocks that are fixed, beside those that their file calls supports.
-
-    Raises:
-        ValueError: for a body that is open or not convex, or for a name in `fixed` that no body has.
+    The density is that of meshes whose file says none [kg/m3]. Fixed are the names given, and what a file calls a
+    support. A ValueError says which body is open or not convex, or which name no body has.
     """
     bodies = [body for mesh in meshes for body in bodies_of(mesh)]
     count = Counter(body.name for body in bodies)

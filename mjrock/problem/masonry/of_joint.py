@@ -42,48 +42,32 @@ def values_of(name: str, given: OfJoint | None, joints: Sequence[Any]) -> Array:
     return np.array([require_within(f"{name} of {joint.name}", value, *OF_JOINTS[name]) for joint, value in pairs])
 
 
-def value_of(given: OfJoint, joint: Any) -> float:
-    """The value that a joint has."""
-    return given(joint) if callable(given) else given
-
-
 @dataclass(frozen=True)
 class ByKind:
-    """A property that bed joints have, and another for the joints that are not horizontal.
-
-    Args:
-        beds, others: a number each, or a function of the joint.
-    """
+    """A property of bed joints, and another of those that are not horizontal, a number or a function of the joint."""
 
     beds: OfJoint
     others: OfJoint
 
     def __call__(self, joint: Any) -> float:
         """The value of a joint."""
-        return value_of(self.beds if joint.is_bed else self.others, joint)
+        given = self.beds if joint.is_bed else self.others
+        return given(joint) if callable(given) else given
 
 
 @dataclass(frozen=True)
 class ByName:
-    """A property of each joint by its name.
+    """A property of each joint by its name, as pairs of a name and a value.
 
     Unlike a function it has content, by which masonry can be compared and a campaign can tell its tasks apart.
-
-    Args:
-        values: pairs of a name and a value.
     """
 
     values: tuple[tuple[str, float], ...]
 
     def __call__(self, joint: Any) -> float:
-        """The value of a joint.
-
-        Raises:
-            ValueError: for a joint that has none.
-        """
+        """The value of a joint; a ValueError says if it has none."""
         for name, value in self.values:
             if name == joint.name:
                 return value
-        raise ValueError(
-            f"the joint {joint.name} has no value among those of {', '.join(name for name, _ in self.values)}"
-        )
+        names = ", ".join(name for name, _ in self.values)
+        raise ValueError(f"the joint {joint.name} has no value among those of {names}")

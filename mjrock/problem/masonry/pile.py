@@ -19,14 +19,8 @@ from .stack_law import is_side, parts_above, wall_of
 
 @dataclass(frozen=True)
 class Pile:
-    """A stack, with or without a side stop, that rocks as one.
-
-    Args:
-        masonry: the stack.
-        base: number of the joint that it stands on.
-        sides: numbers of the joints with the side stop, none without one.
-        wall: the rigid wall of its mass on the base, of plain rectangular shape.
-    """
+    """A stack, with or without a side stop, that rocks as one: the numbers of the joint that it stands on, `base`, and
+    of those with the side stop, and the rigid `wall` of its mass on the base, of plain rectangular shape."""
 
     masonry: Masonry
     base: int
@@ -35,11 +29,7 @@ class Pile:
 
     @classmethod
     def of(cls, masonry: Masonry) -> Self:
-        """The stack that a masonry is.
-
-        Raises:
-            ValueError: if it is not one stack, has side stops on both sides, or is too squat to rock.
-        """
+        """The stack that a masonry is; a ValueError says if it is none, is held on both sides, or too squat to rock."""
         blocks, joints = masonry.blocks, masonry.joints
         sides = tuple(i for i, joint in enumerate(joints) if is_side(blocks, joint))
         beds = [i for i in range(len(joints)) if i not in sides]
@@ -84,14 +74,12 @@ class Pile:
     @cached_property
     def _arms(self) -> Array:
         """Centroid of each block that is not fixed from the middle of the base [m], shape (bodies, 2)."""
-        arms: Array = self.masonry.centroids[list(self.masonry.free)] - self.masonry.joints[self.base].middle
-        return arms
+        return np.asarray(self.masonry.centroids[list(self.masonry.free)] - self.masonry.joints[self.base].middle)
 
     @cached_property
     def centroid(self) -> Array:
         """Centroid of the whole from the middle of the base [m], shape (2,)."""
-        centroid: Array = self.masses @ self._arms / self.masses.sum()
-        return centroid
+        return np.asarray(self.masses @ self._arms / self.masses.sum())
 
     @cached_property
     def inertia(self) -> float:
@@ -110,19 +98,14 @@ class Pile:
     def turning(self, side: float, rate: float) -> Array:
         """Velocities of the blocks that turn as one about the edge at a side at a rate, positive to the right.
 
-        Returns:
-            x, z and rotation of each block that is not fixed [m/s, m/s, rad/s], shape (bodies, 3).
+        x, z and rotation of each block that is not fixed [m/s, m/s, rad/s], shape (bodies, 3).
         """
         arms = self._arms - np.array([0.5 * side * self.masonry.joints[self.base].width, 0.0])
         return np.column_stack([*spun((rate,), tuple(arms.T)), np.full(len(arms), rate)])
 
     def rising(self, amplitude: float) -> tuple[Array, float]:
-        """What makes a rigid stack at rest rise outwards to a rotation, a share of alpha.
-
-        Returns:
-            The velocities of the blocks, as `turning`, and the time to that rotation and back by Housner's formula for
-            slender walls [s].
-        """
+        """What makes a rigid stack at rest rise outwards to a rotation, a share of alpha: the velocities of its blocks,
+        as `turning`, and the time to that rotation and back by Housner's formula for slender walls [s]."""
         side = self.outwards
         alpha, mass = self.alpha(side), float(self.masses.sum())
         arm = math.hypot(self.lever(side), float(self.centroid[1]))

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, keep, require_flag, require_reals, require_text, require_within, shown
+from ...quantities import Array, frozen, keep, require_flag, require_reals, require_text, require_within, shown
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -65,9 +65,13 @@ class Polygon:
     @cached_property
     def corners(self) -> Array:
         """The vertices counterclockwise [m], shape (n, 2)."""
-        corners = np.array(self.vertices)
-        corners.setflags(write=False)
-        return corners
+        return frozen(self.vertices)
+
+    @cached_property
+    def normals(self) -> Array:
+        """Unit normals out of the edges, each of which begins at the corner of the same number, shape (n, 2)."""
+        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        return frozen(np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None])
 
     @cached_property
     def _moments(self) -> tuple[float, float, float, float]:
@@ -75,10 +79,7 @@ class Polygon:
 
         Sums over the triangles between an edge and the first vertex, which is the origin here.
         """
-        origin = self.corners[0]
-        p = self.corners - origin
-        q = np.roll(p, -1, axis=0)
-        twice = p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
+        origin, (p, q, twice) = self.corners[0], _triangles(self.corners)
         area = 0.5 * float(twice.sum())
         x, z = (twice[:, None] * (p + q)).sum(axis=0) / (6 * area)
         about_origin = float((twice * (p * p + p * q + q * q).sum(axis=1)).sum()) / 12
@@ -127,13 +128,20 @@ def checked_name(name: str | None) -> str | None:
     return name
 
 
+def required_vertices(vertices: ArrayLike | Sequence[Sequence[float]], least: int, axes: int) -> Array:
+    """Vertices as an array, at least so many; a TypeError or ValueError says what is wrong with them."""
+    shape = f"({least} to {MOST_VERTICES}, {axes})"
+    points = require_reals("vertices", vertices, f"an array of real numbers of the shape {shape}")
+    if points.ndim != 2 or points.shape[1] != axes or not least <= len(points) <= MOST_VERTICES:
+        raise ValueError(f"vertices has the shape {points.shape}; {shape} is needed")
+    if not (np.abs(points) <= FARTHEST).all():  # a NaN is not
+        raise ValueError(f"vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m")
+    return points
+
+
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     """Vertices as pairs of numbers, counterclockwise; a TypeError or ValueError names what is wrong with them."""
-    corners = require_reals("vertices", vertices, f"an array of real numbers of the shape (3 to {MOST_VERTICES}, 2)")
-    if corners.ndim != 2 or corners.shape[1] != 2 or not 3 <= len(corners) <= MOST_VERTICES:
-        raise ValueError(f"vertices has the shape {corners.shape}; (3 to {MOST_VERTICES}, 2) is needed")
-    if not (np.abs(corners) <= FARTHEST).all():  # a NaN is not
-        raise ValueError(f"vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m")
+    corners = required_vertices(vertices, 3, 2)
     edges = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*edges.T)
     extent = float(np.ptp(corners, axis=0).max())
@@ -144,7 +152,7 @@ def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     unit = edges / lengths[:, None]
     before = np.roll(unit, 1, axis=0)
     turns = before[:, 0] * unit[:, 1] - before[:, 1] * unit[:, 0]
-    area = _area(corners)
+    area = 0.5 * float(_triangles(corners)[2].sum())
     if not abs(area) > max(1e-6 * extent**2, 1e-8):
         raise ValueError(f"vertices enclose an area of {abs(area):.3g} m2: they lie on a line")
     inwards = np.flatnonzero(np.sign(area) * turns < -BEND)
@@ -159,10 +167,11 @@ def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     return tuple((float(x), float(z)) for x, z in ordered)
 
 
-def _area(p: Array) -> float:
-    q = np.roll(p, -1, axis=0) - p[0]
-    p = p - p[0]
-    return 0.5 * float((p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]).sum())
+def _triangles(corners: Array) -> tuple[Array, Array, Array]:
+    """Corners and those that follow them, from the first one [m], and twice the areas of the triangles with it."""
+    p = corners - corners[0]
+    q = np.roll(p, -1, axis=0)
+    return p, q, p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
 
 
 def _require_no_crossing(p: Array) -> None:

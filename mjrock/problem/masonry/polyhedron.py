@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from ...geometry.hull import Bulk, Hull, bulk_of, hull_of
-from ...quantities import Array, keep, require_array, require_flag, require_kind, require_reals, require_within
-from .polygon import FARTHEST, MOST_VERTICES, Polygon, checked_name
+from ...quantities import Array, frozen, keep, require_array, require_flag, require_kind, require_within
+from .polygon import FARTHEST, Polygon, checked_name, required_vertices
 
 Vertices = tuple[tuple[float, float, float], ...]
 DENTED = 1e-4
@@ -107,9 +107,7 @@ class Polyhedron:
     @cached_property
     def corners(self) -> Array:
         """The vertices [m], shape (n, 3)."""
-        corners = np.array(self.vertices)
-        corners.setflags(write=False)
-        return corners
+        return frozen(self.vertices)
 
     @property
     def faces(self) -> tuple[tuple[int, ...], ...]:
@@ -128,8 +126,7 @@ class Polyhedron:
         ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
         ways /= np.linalg.norm(ways, axis=1)[:, None]
         apart = np.abs(ways @ ways.T) < 1 - 1e-12
-        first: Array = ways[[bool(apart[i, :i].all()) for i in range(len(ways))]]
-        return first
+        return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
 
     @cached_property
     def _bulk(self) -> Bulk:
@@ -154,9 +151,7 @@ class Polyhedron:
     def inertia(self) -> Array:
         """Tensor of inertia about the centroid, in the axes of the world [kg m2], shape (3, 3)."""
         second = self.density * self._bulk.second
-        tensor: Array = np.trace(second) * np.eye(3) - second
-        tensor.setflags(write=False)
-        return tensor
+        return frozen(np.trace(second) * np.eye(3) - second)
 
     @cached_property
     def principal(self) -> tuple[Array, Array]:
@@ -181,17 +176,11 @@ def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull,
 
     A TypeError or ValueError names what is wrong with them.
     """
-    points = require_reals("vertices", vertices, f"an array of real numbers of the shape (4 to {MOST_VERTICES}, 3)")
-    if points.ndim != 2 or points.shape[1] != 3 or not 4 <= len(points) <= MOST_VERTICES:
-        raise ValueError(f"vertices has the shape {points.shape}; (4 to {MOST_VERTICES}, 3) is needed")
-    if not (np.abs(points) <= FARTHEST).all():  # a NaN is not
-        raise ValueError(f"vertices holds a coordinate outside the valid range {-FARTHEST:g} to {FARTHEST:g} m")
+    points = required_vertices(vertices, 4, 3)
     extent = float(np.ptp(points, axis=0).max())
     if not extent > 1e-3:
         raise ValueError(f"vertices extend over {extent:.3g} m; the valid range begins at 0.001 m")
-    near = max(1e-9 * extent, 1e-7)
-    pairs = cKDTree(points).query_pairs(near)
-    if pairs:
+    if pairs := cKDTree(points).query_pairs(max(1e-9 * extent, 1e-7)):
         i, j = min(pairs)
         raise ValueError(f"vertices {i} and {j} coincide at {points[i].tolist()} m")
     try:

@@ -49,10 +49,7 @@ def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list
 def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> Block:
     """Some blocks as one rigid wall on a joint: as thick as the joint, with their mass, its centroid where theirs is.
 
-    In space the joint is as thick as it is in the direction in which it is thinnest, about whose edges they rock.
-
-    Raises:
-        ValueError: if they are too squat for a rocking wall.
+    In space the joint is as thick as where it is thinnest. A ValueError says if they are too squat for a rocking wall.
     """
     mass = np.array([blocks[i].mass for i in part])
     height = float(mass @ [blocks[i].centroid[-1] - joint.middle[-1] for i in part]) / float(mass.sum())
@@ -92,7 +89,8 @@ def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int,
             base, k_side = under[joint.above], float(k_n[i])
             while not blocks[joints[base].below].fixed:
                 base = under[joints[base].below]
-            top = _top(blocks, joints, joint.below) - float(joints[base].middle[1])
+            stop = [max(j.start[1], j.end[1]) for j in joints if j.below == joint.below and is_side(blocks, j)]
+            top = max(stop) - float(joints[base].middle[1])
         wall = walls[base]
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
@@ -102,8 +100,3 @@ def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int,
             warnings.warn(f"the joint {joint.name}: {warning.message}", warning.category, stacklevel=4)
         retardation[i] = contacts.base.retardation if contacts.side is None else contacts.side.retardation
     return retardation
-
-
-def _top(blocks: Blocks, joints: Sequence[Joint], side: int) -> float:
-    """The highest point at which a fixed block touches blocks beside it, z [m]."""
-    return max(max(j.start[1], j.end[1]) for j in joints if j.below == side and is_side(blocks, j))

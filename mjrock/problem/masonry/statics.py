@@ -63,12 +63,11 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
         return None
     while high - low > 0.5 * ROUNDED:
         middle = 0.5 * (low + high)
-        low, high = (
-            (low, middle) if _stands(_balanced(masonry, applied, np.maximum(friction, middle))) else (middle, high)
-        )
+        stands = _stands(_balanced(masonry, applied, np.maximum(friction, middle)))
+        low, high = (low, middle) if stands else (middle, high)
     enough = math.ceil(high / ROUNDED) * ROUNDED
     answer = _balanced(masonry, applied, friction, np.maximum(friction, enough))
-    m, edges = len(masonry.lines.k), edges_of_cone(masonry)
+    m, edges = len(masonry.lines.k), EDGES if masonry.in_space else 2
     beyond = np.reshape(answer.x[edges * m : 2 * edges * m], (edges, m)).sum(axis=0)
     short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
@@ -97,16 +96,14 @@ def moving(masonry: Masonry, velocities: Array) -> tuple[str, ...]:
 
 def weight_of(masonry: Masonry) -> Array:
     """The weight of each free block as a generalised force, shape (unknowns,) [N, N m]."""
-    across = 3 if masonry.in_space else 2
     down = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
-    down[:, across - 1] = [-GRAVITY * masonry.blocks[i].mass for i in masonry.free]
+    down[:, 2 if masonry.in_space else 1] = [-GRAVITY * masonry.blocks[i].mass for i in masonry.free]
     return down.ravel()
 
 
 def sizes_of(masonry: Masonry) -> Array:
     """What moments of each unknown are divided by to compare with forces: 1, and the size of the block [m]."""
-    parts = 3 if masonry.in_space else 1
-    forces = 3 if masonry.in_space else 2
+    forces, parts = (3, 3) if masonry.in_space else (2, 1)
     return np.array([(*[1.0] * forces, *[masonry.blocks[i].size] * parts) for i in masonry.free]).ravel()
 
 
@@ -115,23 +112,14 @@ def method(masonry: Masonry) -> str:
     return "highs-ipm" if masonry.in_space else "highs"
 
 
-def edges_of_cone(masonry: Masonry) -> int:
-    """How many forces span the cone of friction of a contact line."""
-    return EDGES if masonry.in_space else 2
-
-
 def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = None) -> csc_array:
     """Generalised forces of unit pressures along the edges of the cones, moments over the size of the block.
 
-    Args:
-        masonry: the masonry.
-        friction: coefficient of each joint [-], shape (joints,).
-        across: directions along the face of each line, as of `Lines.across`, the first of which the edges begin at.
-
-    Returns:
-        One column for each edge and line, the first edges of all lines before the second, shape (unknowns, edges m).
+    There is a column for each edge and line, the first edges of all lines before the second, shape (unknowns, edges m).
+    The friction is that of each joint [-], shape (joints,). The edges begin at the first of the directions `across`
+    along the faces, which are those of `Lines.across` unless others are given.
     """
-    lines, count = masonry.lines, edges_of_cone(masonry)
+    lines, count = masonry.lines, EDGES if masonry.in_space else 2
     pressing = rates(masonry.blocks, lines, lines.normal)
     rubbing = [rates(masonry.blocks, lines, along) for along in across or lines.across]
     turns = 2 * math.pi * np.arange(count) / count

@@ -42,9 +42,7 @@ class Support:
 def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     """The supports, from a mapping of names of fixed blocks to (t, dx, dz), in space to (t, dx, dy, dz).
 
-    Raises:
-        TypeError: for what is no such mapping.
-        ValueError: for a block that is not fixed, times that do not increase, or rows of different lengths.
+    A TypeError or ValueError names the block and what is wrong.
     """
     if isinstance(given, tuple) and all(isinstance(support, Support) for support in given):
         return given
@@ -57,10 +55,8 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
             raise ValueError(f"supports: {shown(name)} is no fixed block; the valid ones are {', '.join(fixed)}")
         if not isinstance(histories, list | tuple) or len(histories) != len(labels):
             raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted})")
-        rows = {
-            label: require_row(f"supports, {name}, {label}", values, "number")
-            for label, values in zip(labels, histories, strict=True)
-        }
+        pairs = zip(labels, histories, strict=True)
+        rows = {label: require_row(f"supports, {name}, {label}", values, "number") for label, values in pairs}
         lengths = [len(row) for row in rows.values()]
         if len(set(lengths)) > 1:
             counts = f"{', '.join(map(str, lengths[:-1]))} and {lengths[-1]}"
@@ -72,6 +68,7 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
             raise ValueError(
                 f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m"
             )
-        histories_of = {label: tuple(row.tolist()) for label, row in rows.items()}
-        supports.append(Support(masonry.names.index(name), **histories_of))
+        supports.append(
+            Support(masonry.names.index(name), **{label: tuple(row.tolist()) for label, row in rows.items()})
+        )
     return tuple(supports)

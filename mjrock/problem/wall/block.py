@@ -256,20 +256,15 @@ class Block:
         return self.restoring.outer.rotation_at(require_real("energy", energy))
 
     def pose(self, theta: ArrayLike) -> Array:
-        """Displacement (x, z) of the centroid [m] and rotation [rad] of the rigid wall turned about its toe.
+        """Displacement (x, z) of the centroid [m] and rotation [rad] of the rigid wall turned about its toe, (n, 3).
 
-        Args:
-            theta: rotations [rad], shape (n,).
-
-        Returns:
-            x away from the side stop, z upwards, and theta, shape (n, 3).
+        x points away from the side stop, and z upwards. The rotations theta [rad] have the shape (n,).
 
         Raises:
             TypeError, ValueError: unless the rotations are a row of finite numbers.
         """
-        return pose_of(
-            require_row("theta", theta, "rotation [rad]"), self.centroid_offset, self.centroid_height, self.half_base
-        )
+        rotations = require_row("theta", theta, "rotation [rad]")
+        return pose_of(rotations, self.centroid_offset, self.centroid_height, self.half_base)
 
     def turning(self, theta: Real, direction: Real) -> Array:
         """Rate of `pose` per unit of angular velocity, the wall turning about the toe in `direction`, +1 or -1;

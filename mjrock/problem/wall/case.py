@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 
@@ -24,18 +22,15 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from .block import Block
-from .damper import Damper
-from .effects import KINDS, AddedMass, Effect, Load, SideStop, Thrust, Tie
+from .effects import KINDS, AddedMass, Carrying, Effect, Load, SideStop, Thrust, Tie
 from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
 from .ties_on_wall import Pull, stored, taken, yielded
 
-Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass, Damper)
-
 
 @dataclass(frozen=True)
-class Case:
+class Case(Carrying):
     """A wall released, tilted, on its base.
 
     Args:
@@ -91,10 +86,7 @@ class Case:
 
     def _require_effects(self) -> None:
         """Check that each effect is on the wall and that the wall stands with them, and keep them as a tuple."""
-        given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
-        if not isinstance(given, Sequence) or isinstance(given, str):
-            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
-        keep(self, effects=tuple(given))
+        self._keep_sequence()
         if not self.effects:
             return
         top, b = 2 * self.block.h * (1 + 1e-12), self.block.b * (1 + 1e-12)
@@ -132,10 +124,6 @@ class Case:
                 parts.append(f"{name} {motion.name!r}")
         parts += [type(effect).__name__ for effect in self.effects]
         return f"<Case of {self.block!r}: {', '.join(parts)}>"
-
-    def each(self, kind: type[Kind]) -> tuple[Kind, ...]:
-        """The effects of one kind, in their order."""
-        return tuple(effect for effect in self.effects if isinstance(effect, kind))
 
     @cached_property
     def wall(self) -> Block:
@@ -203,10 +191,7 @@ class Case:
     def peak_energies(self, peaks: Array) -> tuple[Array, Array]:
         """Energy at the rotation peaks of a base at rest [J], shape (n,): on leaving each, and on the way to it.
 
-        The second is larger by what ties have taken on the way there.
-
-        Args:
-            peaks: rotation maxima with their sign [rad], shape (n,).
+        The second is larger by what ties have taken on the way there. Peaks have their sign [rad], shape (n,).
         """
         energy = np.asarray(self.restoring.energy(peaks), dtype=float)
         if not self.pulls:
@@ -241,8 +226,7 @@ class Case:
 
     def returns_from(self, theta: Array) -> Flags:
         """Whether the wall may still come back from rotations of either sign [rad], shape (n,)."""
-        returns: Flags = (theta <= self.overturning_rotation) & (theta >= -self.inward_limit)
-        return returns
+        return np.asarray((theta <= self.overturning_rotation) & (theta >= -self.inward_limit))
 
     def returning(self, theta: Array) -> int:
         """How many samples of a motion come before the wall can no longer come back, one at least."""
@@ -253,8 +237,7 @@ class Case:
         """Kinetic and potential energy of the rigid wall, above the wall at rest [J], without ties; shape (n,)."""
         outwards = np.where(theta == 0, omega, theta) >= 0
         inertia = np.where(outwards, self.wall.inertia_about(1), self.wall.inertia_about(-1))
-        energy: Array = self.restoring.energy(theta) + 0.5 * inertia * omega**2
-        return energy
+        return np.asarray(self.restoring.energy(theta) + 0.5 * inertia * omega**2)
 
     @cached_property
     def release_energy(self) -> float:

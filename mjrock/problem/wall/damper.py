@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ...quantities import keep, require_whole, require_within
-from .in_space import LATER, Point, height_of, point_or_none, written
-from .input_bounds import BLOCKS
+from ...quantities import keep, require_within
+from .in_space import LATER, Point, keep_place, written
 
 
 @dataclass(frozen=True)
@@ -39,14 +38,9 @@ class Damper:
     __repr__ = written
 
     def __post_init__(self) -> None:
-        at, anchor = point_or_none("at of the damper", self.at), point_or_none("anchor of the damper", self.anchor)
-        keep(self, at=at, anchor=anchor)
-        if self.anchor_block is not None:
-            keep(self, anchor_block=require_whole("anchor_block of the damper", self.anchor_block, 0, BLOCKS))
+        keep_place(self, "damper")
         keep(
             self,
-            height=height_of("damper", self.height, self.at),
             c=require_within("coefficient c of the damper", self.c, 0.0, 1e9, "N s/m"),
             length=require_within("length of the damper", self.length, 0.01, 1000.0, "m"),
-            block=require_whole("block of the damper", self.block, 0, BLOCKS),
         )

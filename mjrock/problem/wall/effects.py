@@ -8,12 +8,13 @@ space an effect acts at a point, `at`, in place of a height.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
-from ...quantities import keep, require_real, require_whole, require_within
+from ...quantities import keep, require_real, require_within, shown
 from .damper import Damper
-from .in_space import LATER, Point, direction_or_none, height_of, point_or_none, written
-from .input_bounds import BLOCKS, HIGHEST
+from .in_space import HIGHEST, LATER, Point, keep_place, point_or_none, written
 
 
 @dataclass(frozen=True)
@@ -57,17 +58,13 @@ class Tie:
     __repr__ = written
 
     def __post_init__(self) -> None:
-        keep(self, at=point_or_none("at of the tie", self.at), anchor=point_or_none("anchor of the tie", self.anchor))
-        if self.anchor_block is not None:
-            keep(self, anchor_block=require_whole("anchor_block of the tie", self.anchor_block, 0, BLOCKS))
+        keep_place(self, "tie")
         keep(
             self,
-            height=height_of("tie", self.height, self.at),
             stiffness=require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m"),
             slack=require_within("slack of the tie", self.slack, 0.0, 10.0, "m"),
             strength=require_real("strength of the tie", self.strength),
             length=require_within("length of the tie", self.length, 0.01, 1000.0, "m"),
-            block=require_whole("block of the tie", self.block, 0, BLOCKS),
         )
         if not self.strength > 0:
             raise ValueError(
@@ -131,14 +128,14 @@ class Thrust:
     __repr__ = written
 
     def __post_init__(self) -> None:
-        direction = direction_or_none("direction of the thrust", self.direction)
-        keep(self, at=point_or_none("at of the thrust", self.at), direction=direction)
-        keep(
-            self,
-            height=height_of("thrust", self.height, self.at),
-            force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"),
-            block=require_whole("block of the thrust", self.block, 0, BLOCKS),
-        )
+        if (given := point_or_none("direction of the thrust", self.direction)) is not None:
+            length = math.hypot(*given)
+            if not length > 1e-9:
+                name = f"direction of the thrust = {given}"
+                raise ValueError(f"{name} has no length; the valid range are vectors longer than 1e-9")
+            keep(self, direction=(given[0] / length, given[1] / length, given[2] / length))
+        keep_place(self, "thrust")
+        keep(self, force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"))
 
 
 @dataclass(frozen=True)
@@ -165,13 +162,11 @@ class Load:
     __repr__ = written
 
     def __post_init__(self) -> None:
-        keep(self, at=point_or_none("at of the load", self.at))
+        keep_place(self, "load")
         keep(
             self,
             force=require_within("force of the load", self.force, 0.0, 1e9, "N"),
-            height=height_of("load", self.height, self.at),
             offset=require_within("offset of the load", self.offset, -10.0, 10.0, "m"),
-            block=require_whole("block of the load", self.block, 0, BLOCKS),
         )
 
 
@@ -199,13 +194,11 @@ class AddedMass:
     __repr__ = written
 
     def __post_init__(self) -> None:
-        keep(self, at=point_or_none("at of the added mass", self.at))
+        keep_place(self, "added mass")
         keep(
             self,
             mass=require_within("added mass", self.mass, 0.0, 1e8, "kg"),
-            height=height_of("added mass", self.height, self.at),
             offset=require_within("offset of the added mass", self.offset, -13.0, 13.0, "m"),
-            block=require_whole("block of the added mass", self.block, 0, BLOCKS),
         )
 
 
@@ -232,3 +225,21 @@ Effect = Tie | Thrust | Load | AddedMass | Damper
 """What `Case.effects` may hold."""
 KINDS = (Tie, Thrust, Load, AddedMass, Damper)
 """The same, as classes."""
+Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass, Damper)
+
+
+class Carrying:
+    """What carries effects."""
+
+    effects: tuple[Effect, ...]
+
+    def each(self, kind: type[Kind]) -> tuple[Kind, ...]:
+        """The effects of one kind, in their order."""
+        return tuple(effect for effect in self.effects if isinstance(effect, kind))
+
+    def _keep_sequence(self) -> None:
+        """Keep the effects, or a single one, as a tuple."""
+        given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
+        if not isinstance(given, Sequence) or isinstance(given, str):
+            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
+        keep(self, effects=tuple(given))

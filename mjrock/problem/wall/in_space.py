@@ -1,22 +1,22 @@
-"""Where an effect acts on masonry in space: fields that effects have beside those of the plane.
+"""Where an effect acts: its block and height, and fields that effects have in space beside those of the plane.
 
 A field that came later counts in the fingerprint of a task only where it is set. Tasks without it keep theirs.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import fields
 from typing import Any
 
-from ...quantities import require_array, require_within
-from .input_bounds import HIGHEST
+from ...quantities import keep, require_array, require_whole, require_within
 
 Point = tuple[float, float, float]
+HIGHEST = 200.0
+"""Largest height of a wall, and so of an effect [m]."""
+BLOCKS = 100_000
+"""Largest number of a block."""
 FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
-
-
 LATER = {"later": True}
 """Metadata of a field that came later. It is given by keyword, and None unless it is set."""
 
@@ -40,28 +40,27 @@ def point_or_none(name: str, value: Any) -> Point | None:
     return x, y, z
 
 
-def direction_or_none(name: str, value: Any) -> Point | None:
-    """A vector in space at unit length, or None.
+def keep_place(effect: Any, kind: str) -> None:
+    """Check and keep where an effect is: its block, its height or point in space, and the anchor of a tie or damper.
 
     Raises:
-        TypeError, ValueError: with the name, unless it is three numbers that are not all zero.
+        TypeError, ValueError: with the name and the kind of effect, for what is no number, no point or out of range.
     """
-    point = point_or_none(name, value)
-    if point is None:
-        return None
-    length = math.hypot(*point)
-    if not length > 1e-9:
-        raise ValueError(f"{name} = {point} has no length; the valid range are vectors longer than 1e-9")
-    return point[0] / length, point[1] / length, point[2] / length
+    for name in ("at", "anchor"):
+        if hasattr(effect, name):
+            keep(effect, **{name: point_or_none(f"{name} of the {kind}", getattr(effect, name))})
+    if getattr(effect, "anchor_block", None) is not None:
+        anchor_block = require_whole(f"anchor_block of the {kind}", effect.anchor_block, 0, BLOCKS)
+        keep(effect, anchor_block=anchor_block)
+    keep(
+        effect,
+        height=_height(kind, effect.height, effect.at),
+        block=require_whole(f"block of the {kind}", effect.block, 0, BLOCKS),
+    )
 
 
-def height_of(kind: str, height: float | None, at: Point | None) -> float:
-    """The height of an effect, that of its point in space where it has one [m].
-
-    Raises:
-        TypeError: if it has neither.
-        ValueError: if the height is out of its range, or both are given and differ.
-    """
+def _height(kind: str, height: float | None, at: Point | None) -> float:
+    """The height of an effect, that of its point in space where it has one [m]."""
     if at is None:
         return require_within(f"height of the {kind}", height, 0.0, HIGHEST, "m")
     if height is not None and require_within(f"height of the {kind}", height, -FARTHEST, FARTHEST, "m") != at[2]:

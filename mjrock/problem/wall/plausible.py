@@ -149,7 +149,7 @@ def _of_tie(case: Any, name: str, tie: Tie) -> list[str]:
             f"{name} yields at an elongation of {tie.stretch:.3g} m, and the wall is {2 * case.block.b:g} m thick: is "
             "its stiffness in N/m?"
         ]
-    pull = case.pulls[[effect for effect in case.effects if isinstance(effect, Tie)].index(tie)]
+    pull = case.pulls[case.each(Tie).index(tie)]
     opens = float(pulled(pull, max(case.restoring.outer.alpha, case.wall.alpha), 1.0)[0]) + tie.slack
     if tie.slack > opens > 0:
         return [

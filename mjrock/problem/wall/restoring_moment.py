@@ -94,14 +94,10 @@ def of_force(x: float, z: float, outwards: float, downwards: float, half_base: f
 
 
 def pose_of(theta: Array, x: float, z: float, half_base: float) -> Array:
-    """Displacement (x, z) [m] of a point of a rigid wall that turns about its toes, and its rotation; shape (n, 3).
+    """Displacement (x, z) [m] of a point of a rigid wall at rotations theta about its toes [rad], and theta, (n, 3).
 
-    It stands beside `mjrock.geometry` because it takes many rotations at once, and rocking theory uses it.
-
-    Args:
-        theta: rotations [rad], shape (n,).
-        x, z: the point at rest, from the middle of the base [m].
-        half_base: distance of either toe from the middle of the base [m].
+    At rest the point lies at x, z [m], and either toe at `half_base` [m], from the middle of the base. It stands beside
+    `mjrock.geometry` because it takes many rotations at once, and rocking theory uses it.
     """
     lever = np.copysign(half_base, theta) - x
     sine, versine = np.sin(theta), 1 - np.cos(theta)

@@ -51,13 +51,8 @@ class Opening:
 
 
 class Moments(NamedTuple):
-    """Volume and its moments.
-
-    Args:
-        volume: [m3].
-        x, z: of the first order, from the middle of the base outwards and upwards [m4].
-        xx, zz: of the second order, about the same axes [m5].
-    """
+    """Volume [m3], and its moments of the first order from the middle of the base outwards and upwards, x and z [m4],
+    and of the second order, xx and zz [m5]."""
 
     volume: float
     x: float
@@ -67,11 +62,8 @@ class Moments(NamedTuple):
 
 
 def require_profile(profile: Sequence[Sequence[float]], thickness: float, height: float) -> Profile:
-    """A profile as pairs of floats.
-
-    Raises:
-        ValueError: if it does not go from the base of this thickness up to this height, or a value is out of range.
-    """
+    """A profile as pairs of floats; a ValueError says if it does not go from the base of this thickness up to this
+    height [m], or if a value is out of range."""
     if not isinstance(profile, Sequence) or isinstance(profile, str):
         raise TypeError(f"profile = {shown(profile)} is no sequence of pairs of height and thickness [m]")
     pairs: list[tuple[float, float]] = []
@@ -108,20 +100,16 @@ def require_openings(openings: Sequence[Opening], length: float, height: float) 
 
 
 def moments(profile: Profile, length: float, openings: Sequence[Opening]) -> Moments:
-    """Volume and moments of a wall.
+    """Volume and moments of a wall of a length [m], without its openings.
 
-    Args:
-        profile: its thickness over the height, measured from the straight inner face, which stands half the lowest
-            thickness behind the middle of the base.
-        length: along the wall [m].
-        openings: what is left out.
+    The thickness of its profile is measured from the straight inner face, which stands half the lowest thickness behind
+    the middle of the base.
     """
     inner = -0.5 * profile[0][1]
     total = [0.0] * 5
     for (low, t_low), (high, t_high) in pairwise(profile):
         cuts = {low, high} | {z for opening in openings for z in (opening.sill, opening.head) if low < z < high}
-        heights = sorted(cuts)
-        for z0, z1 in pairwise(heights):
+        for z0, z1 in pairwise(sorted(cuts)):
             middle = 0.5 * (z0 + z1)
             left = length - sum(opening.width for opening in openings if opening.sill < middle < opening.head)
             t0, t1 = (t_low + (t_high - t_low) * (z - low) / (high - low) for z in (z0, z1))
