@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import inlined, jitable
+from ..compiled import compiled, inlined, jitable
 from ..quantities import Array
 from .vectors import Vector, minus, moment, plus, scaled, spun, vector
 
@@ -99,8 +99,13 @@ def take_frames(q: Array, frames: Array, axes: tuple[int, ...]) -> None:
 def frames_of(q: Array, freedom: Freedom = PLANE) -> Array:
     """The frames of a pose, shape (n, 4) or (n, 12)."""
     frames = freedom.frames(len(q) // freedom.nq)
-    take_frames(q, frames, freedom.axes)
+    _take_frames(q, frames, freedom.axes)
     return frames
+
+
+@compiled
+def _take_frames(q: Array, frames: Array, axes: tuple[int, ...]) -> None:
+    take_frames(q, frames, axes)
 
 
 @inlined

@@ -264,7 +264,7 @@ def test_formulas_of_walls_alone_are_those_of_any_body():
     case = mr.Case(wall, 0.0, 1.0, side_stop=False, effects=(tie,))
     scene, rest = mr.wall_scene(case, contacts), (wall.centroid_offset, wall.centroid_height)
     for theta in (0.1, -0.2, 1e-9):
-        (pose,), frames = pose_of(np.array([theta]), *rest, wall.half_base), frames_of([0.0, 0.0, theta])
+        (pose,), frames = pose_of(np.array([theta]), *rest, wall.half_base), frames_of(np.array([0.0, 0.0, theta]))
         toe = math.copysign(wall.half_base, theta)
         turned = swung(frames, 0, (toe - rest[0], -rest[1]))  # the toe stays where it is
         assert pose == pytest.approx([-turned[0], -turned[1], theta], rel=1e-12, abs=1e-15)
