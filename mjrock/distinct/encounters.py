@@ -76,13 +76,17 @@ class Looking:
         self.keys = np.empty(0, dtype=np.int64)
         self.overlaps = np.empty(0)
 
-    def ways(self, bodies: Rows) -> tuple[Array, Array]:
-        """How far a corner of each body has moved at most [m], and its velocity at most [m/s], shape (bodies,) each."""
+    def moved(self, bodies: Rows) -> Array:
+        """How far a corner of each body has moved at most [m], shape (bodies,)."""
+        raise NotImplementedError
+
+    def speeds(self, bodies: Rows) -> Array:
+        """The velocity of a corner of each body at most [m/s], shape (bodies,)."""
         raise NotImplementedError
 
     def loose(self, system: Any) -> Flags:
         """Which bodies have moved by more than the narrowest of their joints is wide."""
-        return np.asarray(self.ways(system.bodies)[0] > self.widths)
+        return np.asarray(self.moved(system.bodies) > self.widths)
 
     def looked_for(self, system: Any, loose: Flags, until: float) -> Any:
         """The system with the lines of the encounters that may happen within a time [s]."""
@@ -90,7 +94,7 @@ class Looking:
 
     def _near(self, bodies: Rows, until: float) -> float:
         """Distance up to which a corner is near what it may meet within a time [m]."""
-        return max(NEAR * float(self.ways(bodies)[1].max()) * until, LEAST * float(self.sizes.min()))
+        return max(NEAR * float(self.speeds(bodies).max()) * until, LEAST * float(self.sizes.min()))
 
     def _held(self, system: Any, loose: Flags) -> Integers:
         """Pairs of blocks whose joint still touches, as numbers in order. A joint of loose blocks that has opened is
@@ -130,10 +134,13 @@ class Encounters(Looking):
         self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.origin, strict=True)])
         self.room = np.zeros((self.most, 5))
 
-    def ways(self, bodies: Rows) -> tuple[Array, Array]:
+    def moved(self, bodies: Rows) -> Array:
         """As in `Looking`."""
-        moved = np.hypot(bodies["x"], bodies["z"]) + np.abs(bodies["theta"]) * self.sizes
-        return moved, np.hypot(bodies["vx"], bodies["vz"]) + np.abs(bodies["w"]) * self.sizes
+        return np.asarray(np.hypot(bodies["x"], bodies["z"]) + np.abs(bodies["theta"]) * self.sizes)
+
+    def speeds(self, bodies: Rows) -> Array:
+        """As in `Looking`."""
+        return np.asarray(np.hypot(bodies["vx"], bodies["vz"]) + np.abs(bodies["w"]) * self.sizes)
 
     def looked_for(self, system: System, loose: Flags, until: float) -> System:
         """As in `Looking`."""

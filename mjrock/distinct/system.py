@@ -88,7 +88,8 @@ def named(names: Sequence[str], values: Array) -> dict[str, Array]:
 
 def stacked(table: Rows, names: Sequence[str]) -> NDArray[Any]:
     """Columns of rows side by side, shape (rows, columns)."""
-    return np.column_stack([table[name] for name in names])
+    columns = np.asarray(table)  # a record array would make an object of its own of each column
+    return np.column_stack([columns[name] for name in names])
 
 
 class Supports(NamedTuple):

@@ -48,12 +48,15 @@ class EncountersInSpace(Looking):
         ways = rows(WAY, len(system.ways) + 2 * self.most) if len(system.ways) else system.ways
         return system._replace(edges=self.edges, ways=ways)
 
-    def ways(self, bodies: Rows) -> tuple[Array, Array]:
+    def moved(self, bodies: Rows) -> Array:
         """As in `Looking`."""
-        turned = 2 * np.arccos(np.minimum(np.abs(bodies["qw"]), 1.0))
-        moved = np.linalg.norm(stacked(bodies, PLACE), axis=1) + turned * self.sizes
-        speed = np.linalg.norm(stacked(bodies, ("vx", "vy", "vz")), axis=1)
-        return moved, speed + np.linalg.norm(stacked(bodies, ("wx", "wy", "wz")), axis=1) * self.sizes
+        turned = 2 * np.arccos(np.minimum(np.abs(np.asarray(bodies)["qw"]), 1.0))
+        return np.asarray(np.linalg.norm(stacked(bodies, PLACE), axis=1) + turned * self.sizes)
+
+    def speeds(self, bodies: Rows) -> Array:
+        """As in `Looking`."""
+        linear, angular = stacked(bodies, ("vx", "vy", "vz")), stacked(bodies, ("wx", "wy", "wz"))
+        return np.asarray(np.linalg.norm(linear, axis=1) + np.linalg.norm(angular, axis=1) * self.sizes)
 
     def looked_for(self, system: System, loose: Flags, until: float) -> System:
         """As in `Looking`."""
