@@ -27,6 +27,7 @@ from mjrock.quantities import Array
 from mjrock.scene.potential import Potential
 from scripts.shared import cli
 from scripts.shared.models_in_space import IN_SPACE
+from scripts.shared.two_times import at_two_times
 
 RADIUS, FRICTION, XI = 5.0, 0.9, 0.01
 STEP = 0.0005
@@ -101,16 +102,11 @@ def crept() -> str:
     )
 
 
-def drawn(masonry: mr.Masonry, answer: mr.Response) -> Figure:
+def drawn(answer: mr.Response) -> Figure:
     """The dome at rest and as it falls."""
-    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
     far = sunk(answer)
     moment = int(np.argmax(far > SHOWN)) if far.max() > SHOWN else len(far) - 1
-    for i, (row, word) in enumerate(((0, "as drawn"), (moment, "falling"))):
-        ax = figure.add_subplot(1, 2, i + 1, projection="3d")
-        plotting.blocks(ax, masonry, answer.pose[row], camera=(28.0, 35.0))
-        ax.set_title(f"{word}, $t$ = {answer.t[row]:.2f} s", fontsize=9)
-    return figure
+    return at_two_times(answer, {"as drawn": 0, "falling": moment}, camera=(28.0, 35.0))
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -133,7 +129,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             rows.append(row)
         masonry = dome(0.041, FACETS[-1], STIFFNESSES[-1])
     answer = growing(masonry)
-    plotting.save(drawn(masonry, answer), out / "dome.png")
+    plotting.save(drawn(answer), out / "dome.png")
     text = f"least thickness that stands over the radius, in steps of {STEP:g}; Heyman: 0.042\n" + cli.table(
         header, rows
     )

@@ -20,13 +20,12 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct import explicit
 from scripts.shared import cli
+from scripts.shared.two_times import at_two_times
 
 LENGTH, HEIGHT, DEPTH, UNIT = 3.2, 1.6, 1.2, (0.4, 0.2)
 WINDOWS = tuple((y, mr.Opening(width=0.4, height=0.6, sill=0.6)) for y in (-0.6, 0.6))
@@ -39,10 +38,8 @@ AFTER = 0.2
 """Time that is shown after the first block has fallen [s]."""
 SIZES = ((0.8, 2), (1.6, 2), (1.6, 3), (2.4, 2))
 """Heights [m] and `points` whose time is measured."""
-ROOM = (0.04, 0.0, 0.93, 1.0)
-"""Left, bottom, width and height of the pictures, over the figure [-]: labels of axes in space stand beside them."""
-CLOSE = -9.0
-"""Space between the vertical axis and its name, over what matplotlib leaves, which is wide beside a low facade [pt]."""
+CAMERA = (20.0, 38.0)
+"""Elevation and azimuth of the pictures [deg]."""
 SHORT = 0.1
 """Time that is followed to measure it [s]."""
 
@@ -78,17 +75,6 @@ def cost(height: float, points: int) -> list[object]:
     ]  # fmt: skip
 
 
-def drawn(answer: mr.Response, moment: int) -> Figure:
-    """The facade at rest and at a moment."""
-    figure = Figure(figsize=(9.6, 4.0), layout=ConstrainedLayoutEngine(rect=ROOM))
-    for i, (row, word) in enumerate(((0, "at rest"), (moment, "shaken"))):
-        ax = figure.add_subplot(1, 2, i + 1, projection="3d")
-        plotting.blocks(ax, answer.case.masonry, answer.pose[row], camera=(20.0, 38.0))
-        ax.zaxis.labelpad = CLOSE
-        ax.set_title(f"{word}, $t$ = {answer.t[row]:.2f} s", fontsize=9)
-    return figure
-
-
 def moment_of(answer: mr.Response) -> int:
     """The sample at which the first block falls, or the last one."""
     first = next(iter(answer.fallen.values()), math.inf)
@@ -106,10 +92,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     answer = shaken(masonry, 0.05 if args.quick else DURATION)
     moment, stats = moment_of(answer), answer.stats
     far = np.linalg.norm(answer.pose[moment, :, :3] - answer.pose[0, :, :3], axis=1)
-    plotting.save(drawn(answer, moment), out / "facade_in_space.png")
+    plotting.save(at_two_times(answer, {"at rest": 0, "shaken": moment}, CAMERA), out / "facade_in_space.png")
     last = moment + round(AFTER / 0.01)
     film = replace(answer, t=answer.t[:last], pose=answer.pose[:last])
-    path = plotting.animate(film, out / "facade_in_space.gif", speed=0.5, fps=12, dpi=80, camera=(20.0, 38.0))
+    path = plotting.animate(film, out / "facade_in_space.gif", speed=0.5, fps=12, dpi=80, camera=CAMERA)
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]
     rows = [cost(0.4, 2)] if args.quick else [cost(*size) for size in SIZES]
     each = 1e9 * stats["stepping_time"] / stats["steps"] / len(masonry.lines.k)
