@@ -16,7 +16,7 @@ CLOSE = -9.0
 
 def at_two_times(answer: mr.Response, words: dict[str, int], camera: tuple[float, float]) -> Figure:
     """Masonry at two samples, each under a word, from a camera at this elevation and azimuth [deg]."""
-    figure = Figure(figsize=(9.6, 4.0), layout=ConstrainedLayoutEngine(rect=ROOM))
+    figure = Figure(figsize=(9.6, 4.0), layout=ConstrainedLayoutEngine(rect=ROOM, wspace=0.08))
     for i, (word, sample) in enumerate(words.items()):
         ax = figure.add_subplot(1, 2, i + 1, projection="3d")
         plotting.blocks(ax, answer.case.masonry, answer.pose[sample], camera=camera)
