@@ -14,9 +14,6 @@ from .stiffness import measured_stiffness
 
 Range = tuple[float, float]
 SOURCE = "Circolare 21 gennaio 2019 n. 7, Table C8.5.I"
-REFERENCE_FRICTION = 0.577
-"""Coefficient of friction of joints of masonry [-], reference value of the Circolare 2019 n. 7, C8.7.1.2.1.1 and
-equation C8.7.1.17."""
 
 
 @dataclass(frozen=True)
