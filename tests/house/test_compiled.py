@@ -29,7 +29,7 @@ contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, 
 motion = mr.GroundMotion.sine(-2.6, 0.6, samples=40)
 rocking = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.7), contacts, ledger=True)
 shaken = mr.simulate(mr.Case(wall, 0.0, 0.5, motion=motion), contacts)
-fixed = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.1), contacts, 1e-4)
+fixed = mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.02), contacts, 1e-4)
 theory = mr.solve_analytical(mr.Case(wall, 0.0, 3.0, motion=motion), e)
 np.savez(sys.argv[1], rocking=rocking.theta, ledger=rocking.energy_residual, shaken=shaken.theta, fixed=fixed.theta,
          theory=theory.theta, impacts=theory.impacts, steps=[rocking.stats["steps"], shaken.stats["steps"]])
