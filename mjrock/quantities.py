@@ -266,8 +266,8 @@ NAMED = 5
 """Most things that a message names."""
 
 
-def frozen(values: ArrayLike) -> Array:
-    """Numbers as an array of their own that cannot be written to."""
+def frozen(values: ArrayLike) -> NDArray[Any]:
+    """A copy, as an array, that cannot be written to."""
     array = np.array(values)
     array.setflags(write=False)
     return array

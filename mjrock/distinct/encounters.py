@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
+from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
 from ..result.joints import joint_numbers
@@ -66,9 +67,7 @@ class Looking:
 
     def __init__(self, masonry: Masonry, system: Any, group: Sequence[str]) -> None:
         self.joints, self.group, self.most = system.lines, len(set(group)), MOST * len(masonry.blocks) + 64
-        number = np.full(len(masonry.blocks), -1)
-        number[list(masonry.free)] = np.arange(len(masonry.free))
-        self.body = number.astype(np.int64)
+        self.body = free_numbers(masonry.blocks)
         self.widths = narrowest(masonry)
         self.sizes = np.array([masonry.blocks[i].size for i in masonry.free])
         self.softest = softest(self.joints, len(masonry.free))

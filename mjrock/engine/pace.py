@@ -98,7 +98,6 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     spring = min(method.most, math.sqrt(method.short * accuracy)) / scene.highest_frequency
     strongest = float(np.max(scene.c * inverse_weights(scene)))
     lightest = LIGHTEST[scene.freedom.translations] * strongest
-    lightest = LIGHTEST[scene.freedom.translations] * strongest
     dashpot = math.sqrt(method.dashpot * accuracy) / lightest if strongest else math.inf
     return min(spring, max(dashpot, spring / 8))
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..geometry.kinematics import Places
 from ..method import METHOD, Method
-from ..quantities import Array, Flags
-from ..scene.arrays import frozen
+from ..quantities import Array, Flags, frozen
 from ..scene.scene import Scene
 from .rows import Law, RowInertia
 from .solref import body_weight

@@ -23,9 +23,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined, jitable
-from ..geometry.frames import coordinates, displaced, take_frames, turn_between
-from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, where_friction_acts
-from ..geometry.vectors import Vector, dot, minus, spun, tangent, tangents, vector
+from ..geometry.frames import coordinates, take_frames, turn_between
+from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, ways_along, where_friction_acts
+from ..geometry.vectors import Vector, dot, minus, spun
 from ..quantities import Array, Integers
 from ..scene.scene import Scene
 from .pace import Pace, step_of
@@ -66,8 +66,8 @@ class Joints(NamedTuple):
         of = np.full(len(scene.k), -1)
         for joint, body in enumerate(order):
             of[rough & (scene.point_body == body)] = joint
-        tangents = scene.freedom.translations - 1
-        return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), tangents)))
+        ways = scene.freedom.translations - 1
+        return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), ways)))
 
 
 def _height(body: int, below: dict[int, set[int]]) -> int:
@@ -131,18 +131,6 @@ def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
 
 
 @inlined
-def ways_along(places: Places, i: int, frames: Array, axes: tuple[int, ...]) -> tuple[Vector, ...]:
-    """Unit vectors along the face of point i: one in the plane, and in space two that turn with its body."""
-    face = places.face_body[i]
-    if len(axes) == 2:
-        return (tangent(meeting(places, i, frames).normal),)
-    first, second = tangents(vector(places.normal, i, axes))
-    if face < 0:
-        return first, second
-    return displaced(first, frames, face, first), displaced(second, frames, face, second)
-
-
-@inlined
 def rolled(places: Places, i: int, meets: Meeting, way: Vector, moved: Moved) -> float:
     """How far point i moves along one way of its face in a step without slip, as the bodies turn [m]."""
     axes, face = places.axes, places.face_body[i]
@@ -171,7 +159,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
     joints.stuck[j] = i
     if i < 0:
         return
-    meets, ways = meeting(places, i, frames), ways_along(places, i, frames, places.axes)
+    meets, ways = meeting(places, i, frames), ways_along(places, i, frames)
     for k in range(len(ways)):
         place = dot(ways[k], meets.across)
         if first:

@@ -17,7 +17,7 @@ from ..compiled import compiled, inlined, jitable
 from ..quantities import Array, Integers
 from .frames import Freedom, displaced, linear, place, push_body, spin, swung, take_frames
 from .links import ends, parting
-from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, vector
+from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, tangents, vector
 
 
 class Places(NamedTuple):
@@ -172,6 +172,18 @@ def over_face(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -
     if face < 0:
         return moving
     return minus(moving, plus(linear(v, face, axes), spun(spin(frames, v, face, axes), meets.face_arm)))
+
+
+@inlined
+def ways_along(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
+    """Unit vectors along the face of point i: one in the plane, and in space the two `tangents` that turn with it."""
+    face = places.face_body[i]
+    if len(places.axes) == 2:
+        return (tangent(meeting(places, i, frames).normal),)
+    first, second = tangents(vector(places.normal, i, places.axes))
+    if face < 0:
+        return first, second
+    return displaced(first, frames, face, first), displaced(second, frames, face, second)
 
 
 @inlined

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from ..quantities import Array, Integers, shown
+from ..quantities import Array, Integers, frozen, shown
 
 GROUND = -1
 """The body of a face or an anchor that belongs to the ground."""
@@ -55,13 +55,6 @@ def require_inertia(inertia: Array) -> None:
                 f"inertia with the principal moments {', '.join(f'{moment:g}' for moment in moments)}: no body has one "
                 "that is larger than the sum of the other two"
             )
-
-
-def frozen(values: ArrayLike) -> NDArray[Any]:
-    """A copy that cannot be changed."""
-    copy = np.array(values)
-    copy.setflags(write=False)
-    return copy
 
 
 def nothing() -> NDArray[Any]:

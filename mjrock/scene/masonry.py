@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import applied, laden, placed
-from ..problem.masonry.lines import Lines
+from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.statics import falling, friction_lacking, slippery
 from ..problem.wall.effects import Effect, Tie
@@ -91,9 +91,7 @@ def unsettled(masonry: Masonry, pose: Array) -> ValueError:
 @lru_cache(maxsize=16)
 def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
     """The scene of masonry, which all cases of it with the same effects share."""
-    blocks, number = masonry.blocks, np.full(len(masonry.blocks), GROUND)
-    free = list(masonry.free)
-    number[free] = np.arange(len(free))
+    blocks, free, number = masonry.blocks, list(masonry.free), free_numbers(masonry.blocks)
     lines = _sorted(masonry.lines, number)
     mass, centroids, inertia = laden(masonry, effects)
     origin = np.where(number[:, None] == GROUND, 0.0, centroids)

@@ -14,9 +14,19 @@ from scipy.sparse import csr_array, diags_array
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import displaced, frames_of, place, push_body, swung, unswung, velocities
-from ..geometry.kinematics import Forces, Places, Ties, along, meeting, opening, over_face, where_friction_acts
+from ..geometry.kinematics import (
+    Forces,
+    Places,
+    Ties,
+    along,
+    meeting,
+    opening,
+    over_face,
+    ways_along,
+    where_friction_acts,
+)
 from ..geometry.poses import at_rest
-from ..geometry.vectors import dot, minus, plus, tangents, vector
+from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, sprung
 from ..quantities import GRAVITY, Array, Integers
 from .structure import Structure, force_energy, weight_energy
@@ -192,10 +202,7 @@ def _slip_rates(places: Places, frames: Array, axes: tuple[int, ...], unit: Arra
                 else:
                     meets = where_friction_acts(places, meeting(places, i, frames))
                     velocity = over_face(places, i, meets, frames, unit)
-                    first, second = tangents(vector(places.normal, i, axes))
-                    if bodies[1] >= 0:
-                        first = displaced(first, frames, bodies[1], first)
-                        second = displaced(second, frames, bodies[1], second)
+                    first, second = ways_along(places, i, frames)
                     rates[0, i, side, j], rates[1, i, side, j] = dot(first, velocity), dot(second, velocity)
                 unit[nv * bodies[side] + j] = 0.0
 
@@ -206,11 +213,10 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
         axes, body, face = places.axes, places.body[i], places.face_body[i]
         at = vector(places.at, i, axes)
         apart = displaced(place(frames, body, axes), frames, body, at)
-        first, second = tangents(vector(places.normal, i, axes))
+        first, second = ways_along(places, i, frames)
         if face >= 0:
             at = plus(vector(places.face_at, i, axes), vector(places.between, i, axes))
             apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
-            first, second = displaced(first, frames, face, first), displaced(second, frames, face, second)
         slips[i, 0], slips[i, 1] = dot(first, apart), dot(second, apart)
 
 

@@ -20,8 +20,8 @@ from scipy.sparse import csr_array
 
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..geometry.kinematics import Forces, Places, Ties, gaps
-from ..quantities import Array, Flags, Integers
-from .arrays import checked, frozen, nothing
+from ..quantities import Array, Flags, Integers, frozen
+from .arrays import checked, nothing
 from .dampers import Dampers
 from .equilibrium import lowered, settled
 from .frequencies import highest_frequency, rocking_frequency, tie_frequency
@@ -241,19 +241,24 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, nq)."""
-        if self.settled is None and self.freedom == SPACE:
-            return settled_in_space(self.potential, self.friction)[0]
-        return settled(self.potential, self.friction) if self.settled is None else self.settled
+        if self.settled is not None:
+            return self.settled
+        return self.rest_in_space[0] if self.freedom == SPACE else settled(self.potential, self.friction)
+
+    @cached_property
+    def rest_in_space(self) -> tuple[Array, Array]:
+        """Pose of bodies of space at rest, shape (n, 7), and the friction that holds them there, shape (m, 2) [N]."""
+        return settled_in_space(self.potential, self.friction)
 
     @cached_property
     def bears(self) -> Array:
         """Penetration of each contact at rest [m], zero where it is open, shape (m,)."""
-        return frozen(np.maximum(-gaps(self.places, _one(self.at_rest))[0], 0))
+        return frozen(np.maximum(-gaps(self.places, self.at_rest.reshape(1, -1).copy())[0], 0))
 
     @cached_property
     def rest_energies(self) -> Array:
         """Kinetic, potential and elastic energy of the scene at rest [J], shape (3,)."""
-        return self.accounts(_one(self.at_rest), np.zeros((1, len(self.masses))))[0][0]
+        return self.accounts(self.at_rest.reshape(1, -1).copy(), np.zeros((1, len(self.masses))))[0][0]
 
     def accounts(self, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
         """Kinetic, potential and elastic energy, and what ties have taken, see `structure.energies`."""
@@ -292,8 +297,3 @@ class Scene:
             parts = getattr(self, name) if name == "outlines" else (getattr(self, name),)
             digest.update(b"".join(p.tobytes() if isinstance(p, np.ndarray) else repr(p).encode() for p in parts))
         return digest.hexdigest()
-
-
-def _one(pose: Array) -> Array:
-    """A pose as a history of one step, shape (1, n nq)."""
-    return np.array(pose, dtype=float).reshape(1, -1)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
@@ -58,18 +60,21 @@ def apart(one: Path, other: Path) -> Array:
     return difference
 
 
-def until_parted(one: Path, other: Path) -> tuple[float, float, float]:
-    """When two paths part [s], infinite if they do not, and the peak of either until then [rad]."""
+class Parting(NamedTuple):
+    """When two paths part [s], infinite if they do not; until then the peak of the one [rad], over that of the other
+    [-]."""
+
+    when: float
+    peak: float
+    ratio: float
+
+
+def parting(one: Path, other: Path) -> Parting:
+    """Until when two runs follow the same path."""
     parted = apart(one, other) > PARTED
     end = int(parted.argmax()) if parted.any() else len(parted)
-    first, second = (float(path.tilt[: max(1, end)].max()) for path in (one, other))
-    return (end * SAMPLE if parted.any() else math.inf), first, second
-
-
-def parting(one: Path, other: Path) -> tuple[float, float]:
-    """When two paths part [s], infinite if they do not, and the ratio of their peaks until then."""
-    when, first, second = until_parted(one, other)
-    return when, first / max(second, 1e-12)
+    peak, reference = (float(path.tilt[: max(1, end)].max()) for path in (one, other))
+    return Parting(end * SAMPLE if parted.any() else math.inf, peak, peak / max(reference, 1e-12))
 
 
 @dataclass(frozen=True)
@@ -96,10 +101,17 @@ class Pairs:
 def pairs_of(runs: Sequence[dict[str, Path]], name: str, other: str) -> Pairs:
     """What tells two ways to run the same records apart."""
     pairs = [(paths[name], paths[other]) for paths in runs]
-    parts, peaks, others = np.array([until_parted(*pair) for pair in pairs]).T
-    before = peaks / np.maximum(others, 1e-12)
+    parts, peaks, before = np.array([parting(*pair) for pair in pairs]).T
     ends = np.array([[path.overturns for path in pair] for pair in pairs])
     first, second = ends.sum(axis=0)
     both = int(ends.all(axis=1).sum())
     stand = np.array([a.peak / b.peak for a, b in pairs if not (a.overturns or b.overturns)])
     return Pairs(parts, peaks, before, stand, (int(first), int(second)), (int(first) - both, int(second) - both))
+
+
+def draw_square(ax: Axes, low: float, edge: float) -> None:
+    """Logarithmic axes of peaks against peaks from `low`, with the line of equal ones, grey beyond the `edge`."""
+    ax.plot([low, edge], [low, edge], color="0.6", linewidth=0.8, zorder=0)
+    for draw in (ax.axvspan, ax.axhspan):
+        draw(edge, 2 * edge, color="0.92", zorder=-1)
+    ax.set(xscale="log", yscale="log", xlim=(low, 2 * edge), ylim=(low, 2 * edge))

@@ -40,7 +40,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
-from scripts.shared.paths import OVERTURNED, PARTED, SAMPLE, Path, apart, pairs_of, parting, path_of
+from scripts.shared.paths import OVERTURNED, PARTED, SAMPLE, Path, apart, draw_square, pairs_of, parting, path_of
 
 SIZE, SOFT = (0.6, 0.4, 2.0), 1e8
 """Size of the block [m] and stiffness of its joint [N/m3]."""
@@ -285,7 +285,7 @@ def drawn(histories: dict[str, dict[str, mr.Response]], paths: Sequence[dict[str
 def draw_record(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
     """Of the records under which no column overturns, the one whose paths part at the median time."""
     ways = ("MuJoCo 1e-4", "explicit", "half the step")
-    times = [parting(own["explicit"], own["MuJoCo 1e-4"])[0] for own in paths]
+    times = [parting(own["explicit"], own["MuJoCo 1e-4"]).when for own in paths]
     standing = [i for i, own in enumerate(paths) if not any(own[way].overturns for way in ways)] or [0]
     shown = sorted(standing, key=lambda i: times[i])[len(standing) // 2]
     for way, line in zip(ways, ("-", "-", "--"), strict=True):
@@ -323,11 +323,7 @@ def draw_peaks(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
         colour = "k" if marker == "x" else RUNS[way]
         x, y = (np.degrees(np.minimum(peaks[name], 1.5 * edge)) for name in ("explicit", way))
         ax.plot(x, y, marker, color=colour, markerfacecolor="none", markersize=5, label=way)
-    low, edge = math.degrees(low), math.degrees(edge)
-    ax.plot([low, edge], [low, edge], color="0.6", linewidth=0.8, zorder=0)
-    for draw in (ax.axvspan, ax.axhspan):
-        draw(edge, 2 * edge, color="0.92", zorder=-1)
-    ax.set(xscale="log", yscale="log", xlim=(low, 2 * edge), ylim=(low, 2 * edge))
+    draw_square(ax, math.degrees(low), math.degrees(edge))
     ax.set(xlabel="peak tilt, explicit [deg]", ylabel="peak tilt [deg]")
     ax.set_title("peaks of all records; grey: overturned", fontsize=10)
     ax.legend(frameon=False, fontsize=8, loc="upper left")

@@ -14,17 +14,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
-from unittest import mock
 
 import numpy as np
 from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.distinct.space import setup
 from mjrock.problem.masonry.statics import falling
 from mjrock.quantities import Array
-from mjrock.scene.potential import Potential
+from mjrock.scene.masonry import standing_masonry
 from scripts.shared import cli
 from scripts.shared.models_in_space import IN_SPACE
 from scripts.shared.two_times import at_two_times
@@ -51,19 +49,14 @@ def dome(share: float, facets: tuple[int, int], k_n: float) -> mr.Masonry:
     return mr.Masonry.dome(RADIUS, share * RADIUS, *facets, k_n=k_n, k_s=k_n, friction=FRICTION, xi=XI)
 
 
-def as_drawn(potential: Potential, friction: Array) -> tuple[Array, Array]:
-    """Blocks as drawn, shape (n, 7), and no friction, shape (m, 2), in the place of what `settled_in_space` finds."""
-    return potential.unmoved.reshape(-1, 7), np.zeros((len(friction), 2))
-
-
 def growing(masonry: mr.Masonry) -> mr.Response:
     """The dome while gravity grows, from blocks that no force has pressed on one another."""
     t = np.linspace(0.0, DURATION, 2001)
     falls = -mr.GRAVITY * (0.5 + 0.5 * np.cos(np.pi * np.minimum(t / RAMP, 1.0)))
     case = mr.MasonryCase(masonry, DURATION, vertical=mr.GroundMotion(falls, float(t[1])))
-    with mock.patch.object(setup, "settled_in_space", as_drawn):  # without a search for its pose under the weight
-        setup.standing.cache_clear()
-        return mr.solve_explicit(case, output_step=0.01)
+    scene = standing_masonry(masonry)  # blocks as drawn and no friction, in the place of what its search would find
+    vars(scene)["rest_in_space"] = scene.potential.unmoved.reshape(-1, 7), np.zeros((len(scene.friction), 2))
+    return mr.solve_explicit(case, output_step=0.01)
 
 
 def sunk(answer: mr.Response) -> Array:

@@ -31,7 +31,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
-from scripts.shared.paths import OVERTURNED, SAMPLE, Path, pairs_of, parting, path_of
+from scripts.shared.paths import OVERTURNED, SAMPLE, Path, draw_square, pairs_of, parting, path_of
 
 STRUCTURES = {"column": (5.0, 6.0), "arch": (8.0, 4.0)}
 """Largest acceleration of the records [m/s2], and their duration [s]."""
@@ -101,7 +101,7 @@ def drawn(found: dict[str, list[dict[str, Path]]]) -> Figure:
 def draw_paths(ax: Axes, name: str, found: Sequence[dict[str, Path]]) -> None:
     """Of the records under which nothing overturns, the one whose paths part at the median time."""
     first, second, _ = RUNS
-    late = [parting(one[second], one[first])[0] for one in found]
+    late = [parting(one[second], one[first]).when for one in found]
     standing = [i for i, one in enumerate(found) if not any(path.overturns for path in one.values())]
     parted = [i for i in standing if math.isfinite(late[i])] or standing or [0]
     shown = sorted(parted, key=lambda i: late[i])[len(parted) // 2]
@@ -132,10 +132,7 @@ def draw_pairs(ax: Axes, found: Sequence[dict[str, Path]]) -> None:
         x = [min(one[other].peak, 1.5 * edge) for one in found]
         y = [min(one[second].peak, 1.5 * edge) for one in found]
         ax.plot(x, y, marker, color=RUNS[other][0], markerfacecolor="none", label=f"against {other}")
-    ax.plot([low, edge], [low, edge], color="0.6", linewidth=0.8, zorder=0)
-    for draw in (ax.axvspan, ax.axhspan):
-        draw(edge, 2 * edge, color="0.92", zorder=-1)
-    ax.set(xscale="log", yscale="log", xlim=(low, 2 * edge), ylim=(low, 2 * edge))
+    draw_square(ax, low, edge)
     ax.set(xlabel="peak rotation [rad]", ylabel="peak rotation, explicit [rad]")
     ax.set_title("grey: overturned", fontsize=9)
     ax.legend(frameon=False, fontsize=8, loc="upper left")
@@ -177,7 +174,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     for name, own in found.items():
         for i, one in enumerate(own):
             peaks = [f"{one[run].peak:.5g}" for run in RUNS]
-            parted = [f"{value:.5g}" for run in (first, third) for value in parting(one[second], one[run])]
+            apart = (parting(one[second], one[run]) for run in (first, third))
+            parted = [f"{value:.5g}" for pair in apart for value in (pair.when, pair.ratio)]
             rows.append([name, i, *peaks, *parted])
     cli.report(out / "many_records", text, header, rows)
 

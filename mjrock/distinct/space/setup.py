@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -15,7 +14,6 @@ from ...result.response import State
 from ...scene.equilibrium import UnsettledError
 from ...scene.explicit_step import SHARE
 from ...scene.masonry import masonry_course, require_carried, standing_masonry, unsettled
-from ...scene.rest_in_space import settled_in_space
 from ...scene.scene import Scene
 from ..following import Setup
 from .assembly import copied, masonry_system, moved_by, started, take_grips
@@ -48,10 +46,10 @@ def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene,
     scene = standing_masonry(masonry, effects)
     system = masonry_system(scene, masonry)
     try:
-        pose, drag = settled_in_space(scene.potential, scene.friction)
+        pose, drag = scene.rest_in_space
     except UnsettledError as error:
         require_carried(masonry, effects)
         raise unsettled(masonry, error.pose) from None
     started(system, pose, np.zeros((len(pose), 6)))
     take_grips(system.lines, drag)
-    return replace(scene, settled=pose), system
+    return scene, system
