@@ -159,7 +159,7 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> No
     joints.stuck[j] = i
     if i < 0:
         return
-    meets, ways = meeting(places, i, frames), ways_along(places, i, frames)
+    meets, ways = meeting(places, i, frames), ways_along(places, i, frames, places.axes)
     for k in range(len(ways)):
         place = dot(ways[k], meets.across)
         if first:

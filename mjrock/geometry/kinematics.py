@@ -175,12 +175,12 @@ def over_face(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -
 
 
 @inlined
-def ways_along(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
+def ways_along(places: Places, i: int, frames: Array, axes: tuple[int, ...]) -> tuple[Vector, ...]:
     """Unit vectors along the face of point i: one in the plane, and in space the two `tangents` that turn with it."""
     face = places.face_body[i]
-    if len(places.axes) == 2:
+    if len(axes) == 2:
         return (tangent(meeting(places, i, frames).normal),)
-    first, second = tangents(vector(places.normal, i, places.axes))
+    first, second = tangents(vector(places.normal, i, axes))
     if face < 0:
         return first, second
     return displaced(first, frames, face, first), displaced(second, frames, face, second)

@@ -202,7 +202,7 @@ def _slip_rates(places: Places, frames: Array, axes: tuple[int, ...], unit: Arra
                 else:
                     meets = where_friction_acts(places, meeting(places, i, frames))
                     velocity = over_face(places, i, meets, frames, unit)
-                    first, second = ways_along(places, i, frames)
+                    first, second = ways_along(places, i, frames, axes)
                     rates[0, i, side, j], rates[1, i, side, j] = dot(first, velocity), dot(second, velocity)
                 unit[nv * bodies[side] + j] = 0.0
 
@@ -213,7 +213,7 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
         axes, body, face = places.axes, places.body[i], places.face_body[i]
         at = vector(places.at, i, axes)
         apart = displaced(place(frames, body, axes), frames, body, at)
-        first, second = ways_along(places, i, frames)
+        first, second = ways_along(places, i, frames, axes)
         if face >= 0:
             at = plus(vector(places.face_at, i, axes), vector(places.between, i, axes))
             apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
