@@ -23,6 +23,7 @@ from ..result.joint_motion import joint_motion
 from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion, joint_numbers
 from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
+from ..result.motion import SampledMotion
 from ..result.response import Response
 from ..result.rocking import Rocking
 from ..result.ties import Plastic
@@ -77,9 +78,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         case=run.case,
         solver="explicit",
         t=run.t[::stride],
-        pose=samples.pose[::stride],
-        velocity=samples.velocity[::stride],
-        energy=run.energy[::stride],
+        motion=SampledMotion(samples.pose[::stride], samples.velocity[::stride], run.energy[::stride]),
         plastic=plastic_of(run),
         ledger=ledger_of(run, stride) if ledger else None,
         stats=reading.pop("stats") | stats,

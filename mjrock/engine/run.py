@@ -11,6 +11,7 @@ import numpy as np
 
 from ..quantities import Array, Integers
 from ..result.ledger import ENERGY_GAIN, from_nowhere
+from ..result.motion import SampledMotion
 from ..result.response import Response
 from ..result.ties import Plastic, told_of_ties
 from ..scene.course import Course
@@ -79,9 +80,7 @@ class Run:
             case=self.asked.case,
             solver="MuJoCo",
             t=t,
-            pose=pose,
-            velocity=velocity,
-            energy=np.interp(t, steps.t, self.energy),
+            motion=SampledMotion(pose, velocity, np.interp(t, steps.t, self.energy)),
             outcome=reading.outcome,
             message=reading.message + told_of_ties(plastic),
             rocking=reading.rocking,

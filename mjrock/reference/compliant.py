@@ -22,6 +22,7 @@ from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
 from ..result.ending import ending
 from ..result.history import rocking_history
+from ..result.motion import SampledMotion
 from ..result.response import Response
 from ..result.rocking import Rocking
 from .equations import Wall
@@ -73,9 +74,7 @@ def solve_compliant(
         case=case,
         solver="compliant",
         t=sampled[::stride],
-        pose=history[::stride, None, :3],
-        velocity=history[::stride, None, 3:],
-        energy=energy[::stride],
+        motion=SampledMotion(history[::stride, None, :3], history[::stride, None, 3:], energy[::stride]),
         rocking=Rocking(impacts, peaks),
         outcome=outcome,
         message=message,

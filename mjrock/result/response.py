@@ -19,6 +19,7 @@ from ..quantities import Array, require_path
 from .ending import Outcome
 from .joints import JointMotion
 from .ledger import Ledger
+from .motion import Motion
 from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
@@ -40,12 +41,7 @@ class Response:
         case: what was asked.
         solver: which solver answered.
         t: times [s], shape (n,).
-        pose: displacement x, z of each centroid from the undeformed contacts [m], and rotation theta [rad], shape (n,
-            bodies, 3). x points away from the side stop, z upwards, and theta is positive where a top turns towards +x.
-            In space displacement x, y, z [m] and unit quaternion of the rotation, w first, shape (n, bodies, 7).
-        velocity: its rate [m/s, m/s, rad/s], shape (n, bodies, 3). In space the velocity x, y, z [m/s], and the angular
-            velocity in the axes of the body, which are those of the world at rest [rad/s], shape (n, bodies, 6).
-        energy: kinetic, potential and, where contacts are compliant, elastic energy above rest [J], shape (n,).
+        motion: pose, velocity and energy of the bodies at these times.
         outcome: how the run ended. Masonry has overturned when a block has fallen.
         message: the same in words, for the user.
         rocking: impacts and peaks of a wall; None for masonry.
@@ -61,9 +57,7 @@ class Response:
     case: Any  # Case or MasonryCase
     solver: str
     t: Array
-    pose: Array
-    velocity: Array
-    energy: Array
+    motion: Motion
     outcome: Outcome
     message: str
     rocking: Rocking | None = None
@@ -74,14 +68,38 @@ class Response:
     end: State | None = None
 
     @property
+    def pose(self) -> Array:
+        """Displacement of each centroid from the undeformed contacts [m] and rotation [rad], shape (n, bodies, 3).
+
+        In the plane x, z and theta. x points away from the side stop, z upwards, and theta is positive where a top
+        turns towards +x. In space displacement x, y, z and unit quaternion of the rotation, w first, shape (n, bodies,
+        7).
+        """
+        return self.motion.pose
+
+    @property
+    def velocity(self) -> Array:
+        """Rate of the pose [m/s, m/s, rad/s], shape (n, bodies, 3).
+
+        In space the velocity x, y, z [m/s], and the angular velocity in the axes of the body, which are those of the
+        world at rest [rad/s], shape (n, bodies, 6).
+        """
+        return self.motion.velocity
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic, potential and, where contacts are compliant, elastic energy above rest [J], shape (n,)."""
+        return self.motion.energy
+
+    @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
-        return bool(self.pose.shape[2] == SPACE.nq)
+        return self.rocking is None and self.pose.shape[2] == SPACE.nq
 
     @property
     def tilt(self) -> Array:
         """Angle between the axis of each body that was vertical at rest and the vertical [rad], shape (n, bodies)."""
-        return tilt_of(self.pose) if self.in_space else np.abs(self.pose[:, :, 2])
+        return tilt_of(self.pose) if self.in_space else np.abs(self.motion.theta)
 
     @property
     def theta(self) -> Array:
@@ -91,7 +109,7 @@ class Response:
             AttributeError: in space, where a rotation is a quaternion.
         """
         self._require_plane("theta")
-        return self.pose[:, :, 2] if self.rocking is None else self.pose[:, 0, 2]
+        return self.motion.theta if self.rocking is None else self.motion.theta[:, 0]
 
     @property
     def omega(self) -> Array:
@@ -101,12 +119,12 @@ class Response:
             AttributeError: in space, where it has three components.
         """
         self._require_plane("omega")
-        return self.velocity[:, :, 2] if self.rocking is None else self.velocity[:, 0, 2]
+        return self.motion.omega if self.rocking is None else self.motion.omega[:, 0]
 
     @property
     def peak(self) -> Array:
         """Largest |rotation| of each body among the samples [rad], in space about any axis, shape (bodies,)."""
-        angle = angle_of(self.pose) if self.in_space else np.abs(self.pose[:, :, 2])
+        angle = angle_of(self.pose) if self.in_space else np.abs(self.motion.theta)
         return np.asarray(angle.max(axis=0))
 
     def _require_plane(self, name: str) -> None:

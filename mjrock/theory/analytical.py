@@ -22,7 +22,7 @@ from ..result.rocking import Impact, Rocking
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .forced import rock_forced
 from .free import rock_freely
-from .motion import Motion
+from .motion import RigidMotion, RockingMotion
 
 
 def solve_analytical(
@@ -78,7 +78,6 @@ def solve_analytical(
     samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
     theta, omega = motion.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
-    pose, velocity = case.wall.motion(theta, omega)
     stretched, plastic = _with_ties(case, motion, samples, theta)
     if outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, plastic)
@@ -86,9 +85,7 @@ def solve_analytical(
         case=case,
         solver="analytical",
         t=samples,
-        pose=pose,
-        velocity=velocity,
-        energy=case.energy(theta, omega) + stretched,
+        motion=RigidMotion(case, theta, omega, stretched),
         rocking=Rocking(tuple(map(Impact._make, motion.impacts.tolist())), np.append(released, motion.peaks)),
         outcome=outcome,
         plastic=plastic,
@@ -103,7 +100,7 @@ def solve_analytical(
     )
 
 
-def _outcome(case: Case, motion: Motion) -> Outcome:
+def _outcome(case: Case, motion: RockingMotion) -> Outcome:
     """How a motion ended."""
     if motion.fell or not case.returns_from(np.array([motion.theta]))[0]:
         return Outcome.OVERTURNED
@@ -131,7 +128,7 @@ def _require_solvable(case: Case, e: Restitution) -> None:
         )
 
 
-def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> Motion:
+def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> RockingMotion:
     """The motion from impact to impact, free or forced."""
     restitution = e.lumped if case.side_stop else e.base
     shaken = case.motion is not None or case.vertical is not None
@@ -143,7 +140,7 @@ def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) 
     return rock_freely(case, restitution, least, rtol, atol)
 
 
-def _with_ties(case: Case, motion: Motion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
+def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
     """Energy of the ties at the samples [J], and what they have yielded."""
     if not case.pulls or motion.plastic is None:
         return 0.0, {}

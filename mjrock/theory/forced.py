@@ -18,7 +18,7 @@ from ..problem.wall.ties_on_wall import yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
 from ..result.samples import interpolated
 from .law import Law, Push, Ties, Toe, acceleration, nystroem, pushed
-from .motion import Motion
+from .motion import RockingMotion
 from .ties import take_changes, until_change
 
 NYSTROEM = 50.0
@@ -206,7 +206,7 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, 
     return t, theta, omega, side, at_rest, fell, ended
 
 
-def rock_forced(case: Case, e: float, least: float, rtol: float) -> Motion:
+def rock_forced(case: Case, e: float, least: float, rtol: float) -> RockingMotion:
     """Rocking over a shaken base, or with ties; `e` and `least` as in `rock_freely`, `rtol` sets the longest step, see
     NYSTROEM."""
     law = Law.of(case)
@@ -229,6 +229,6 @@ def rock_forced(case: Case, e: float, least: float, rtol: float) -> Motion:
 
     steps = len(t) // 2
     plastic = yielded(case.pulls, theta) if case.pulls else np.empty((len(t), 0))
-    return Motion(
+    return RockingMotion(
         impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, steps, 3 * steps, (t, plastic)
     )

@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 from ..problem.wall.case import Case
 from ..quantities import ON_ITS_FACE, Array
 from ..result.rocking import Impact
-from .motion import Motion
+from .motion import RockingMotion
 
 Event = Literal["peak", "impact", "fall", "time"]
 """How an arc ended."""
@@ -87,7 +87,7 @@ class Arcs:
         return theta, omega
 
 
-def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) -> Motion:
+def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) -> RockingMotion:
     """Rocking over a base at rest.
 
     Args:
@@ -113,7 +113,7 @@ def rock_freely(case: Case, e: float, least: float, rtol: float, atol: float) ->
             impacts.append(Impact(state[0], before, after, 0.5 * arriving * before**2, 0.5 * leaving * after**2))
             at_rest = impacts[-1].energy_after <= least
             s, state = math.copysign(1.0, after), (state[0], 0.0, after)
-    return Motion(
+    return RockingMotion(
         impacts=np.reshape(np.array(impacts, dtype=float), (-1, 5)),
         peaks=np.array(peaks),
         t=state[0],

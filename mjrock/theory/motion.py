@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
+from ..problem.wall.case import Case
 from ..quantities import Array
 
 
 @dataclass(frozen=True)
-class Motion:
+class RockingMotion:
     """A motion of a rigid wall from impact to impact.
 
     Args:
@@ -35,3 +37,45 @@ class Motion:
     arcs: int
     evaluations: int
     plastic: tuple[Array, Array] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class RigidMotion:
+    """A `mjrock.result.motion.Motion` of a rigid wall. Pose, velocity and energy are computed when they are first read:
+    campaigns read peaks and impacts alone, and computing them takes longer than the rocking.
+
+    Args:
+        case: the wall.
+        rotation, rate: rotation [rad] and angular velocity [rad/s] at the samples, shape (n,).
+        of_ties: energy of the ties at the samples [J].
+    """
+
+    case: Case
+    rotation: Array
+    rate: Array
+    of_ties: Array | float
+
+    @property
+    def theta(self) -> Array:
+        """Rotation of the one body [rad], shape (n, 1)."""
+        return self.rotation[:, None]
+
+    @property
+    def omega(self) -> Array:
+        """Angular velocity of the one body [rad/s], shape (n, 1)."""
+        return self.rate[:, None]
+
+    @cached_property
+    def pose(self) -> Array:
+        """Displacement of the centroid [m] and rotation [rad], shape (n, 1, 3)."""
+        return self.case.wall.pose(self.rotation)[:, None]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Its rate [m/s, rad/s], shape (n, 1, 3)."""
+        return self.case.wall.velocity(self.rotation, self.rate)[:, None]
+
+    @cached_property
+    def energy(self) -> Array:
+        """Energy of the wall and its ties above rest [J], shape (n,)."""
+        return self.case.energy(self.rotation, self.rate) + self.of_ties

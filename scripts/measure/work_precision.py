@@ -36,6 +36,7 @@ from mjrock.result.history import rocking_history
 from mjrock.result.response import Response
 from mjrock.result.rocking import Rocking, peak_energies, restitution_of
 from mjrock.scene.of_case import course_of
+from mjrock.theory.motion import RigidMotion
 from scripts.shared import cli
 from scripts.shared.paper import FIGURE_3, K_N
 
@@ -189,9 +190,8 @@ def scipy_law(rtol: float) -> Solve:
 
 def _as_response(case: mr.Case, contacts: mr.Contacts, t, theta, omega, steps: int) -> Response:  # type: ignore[no-untyped-def]
     _, peaks, impacts = rocking_history(case, t, theta, omega, 0 * t, (contacts.uplift_rotation(case.block), 0.0))
-    pose, velocity = case.wall.motion(theta, omega)
     return Response(
-        *(case, "stock", t, pose, velocity, case.energy(theta, omega), mr.Outcome.TIME_ENDED, ""),
+        *(case, "stock", t, RigidMotion(case, theta, omega, 0.0), mr.Outcome.TIME_ENDED, ""),
         rocking=Rocking(impacts, peaks),
         stats={"steps": steps},
     )

@@ -24,6 +24,7 @@ import numpy as np
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct import explicit
+from mjrock.result.motion import SampledMotion
 from scripts.shared import cli
 from scripts.shared.two_times import at_two_times
 
@@ -94,7 +95,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     far = np.linalg.norm(answer.pose[moment, :, :3] - answer.pose[0, :, :3], axis=1)
     plotting.save(at_two_times(answer, {"at rest": 0, "shaken": moment}, CAMERA), out / "facade_in_space.png")
     last = moment + round(AFTER / 0.01)
-    film = replace(answer, t=answer.t[:last], pose=answer.pose[:last])
+    moved = SampledMotion(answer.pose[:last], answer.velocity[:last], answer.energy[:last])
+    film = replace(answer, t=answer.t[:last], motion=moved)
     path = plotting.animate(film, out / "facade_in_space.gif", speed=0.5, fps=12, dpi=80, camera=CAMERA)
     header = ["blocks", "points", "set-up [s]", "step [us]", "s a simulated s", "ns a point and step"]
     rows = [cost(0.4, 2)] if args.quick else [cost(*size) for size in SIZES]

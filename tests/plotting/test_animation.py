@@ -10,6 +10,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation, histories, section
 from mjrock.plotting.bodies import Bodies
+from mjrock.result.motion import SampledMotion
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)
 E = mr.Restitution.from_geometry(WALL)
@@ -178,7 +179,8 @@ def test_blocks_of_masonry_are_drawn_where_they_are(mass):
     )
     poses = np.zeros((5, 2, 3))
     poses[-1, 1] = [0.1, 0.0, np.pi / 2]
-    bodies = Bodies.of(dataclasses.replace(theory(), t=np.linspace(0, 1, 5), case=case, pose=poses))
+    motion = SampledMotion(poses, np.zeros_like(poses), np.zeros(5))
+    bodies = Bodies.of(dataclasses.replace(theory(), t=np.linspace(0, 1, 5), case=case, motion=motion))
     np.testing.assert_array_equal(bodies.fixed[0], corners - [0, 2])
     np.testing.assert_allclose(bodies.placed(-1, 0, bodies.outlines[0]), corners, atol=1e-12)
     centroid = np.array([0.5, 3.0 + mass / (mass + blocks[2].mass)])

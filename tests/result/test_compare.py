@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.result.motion import SampledMotion
 
 
 def turned(response, theta):
@@ -14,8 +15,8 @@ def turned(response, theta):
     n = len(theta)
     pose = response.pose[:n].copy()
     pose[:, 0, 2] = theta
-    parts = {name: getattr(response, name)[:n] for name in ("t", "velocity", "energy")}
-    return dataclasses.replace(response, pose=pose, **parts)
+    motion = SampledMotion(pose, response.velocity[:n], response.energy[:n])
+    return dataclasses.replace(response, t=response.t[:n], motion=motion)
 
 
 @pytest.fixture(scope="module")

@@ -135,3 +135,16 @@ def test_bad_tolerances(two_sided, e, values):
 def test_a_wall_that_would_go_through_the_stop(one_sided):
     with pytest.raises(ValueError, match=r"lumped restitution = 0\.405"):
         mr.solve_analytical(one_sided, mr.Restitution(0.9, 0.5))
+
+
+def test_what_a_campaign_does_not_read_is_not_computed(one_sided, e):
+    """Peaks, impacts and rotations take no pose; pose and velocity are then those of the wall about its toes."""
+    answer = mr.solve_analytical(one_sided, e)
+    assert answer.peak_over_alpha < 1
+    assert len(answer.restitution)
+    assert answer.theta.shape == answer.t.shape
+    assert not {"pose", "velocity", "energy"} & set(vars(answer.motion))
+    np.testing.assert_array_equal(answer.pose[:, 0], one_sided.wall.pose(answer.theta))
+    np.testing.assert_allclose(
+        np.gradient(answer.pose[:, 0, 0], answer.t)[5:50], answer.velocity[5:50, 0, 0], rtol=1e-3
+    )

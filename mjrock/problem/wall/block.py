@@ -273,11 +273,10 @@ class Block:
         sine, cosine = np.sin(theta), np.cos(theta)
         return np.stack([z * cosine + toe * sine, toe * cosine - z * sine, np.ones_like(sine)], axis=-1)
 
-    def motion(self, theta: Array, omega: Array) -> tuple[Array, Array]:
-        """Pose and velocity of the rigid wall that rocks, shape (n, 1, 3) each; see `pose` and `turning`."""
+    def velocity(self, theta: Array, omega: Array) -> Array:
+        """Rate of `pose` of the rigid wall that rocks, at rotations [rad] and angular velocities [rad/s], (n, 3)."""
         outwards = np.where(theta == 0, omega, theta) >= 0
-        velocity = omega[:, None] * self.turning(theta, np.where(outwards, 1.0, -1.0))
-        return self.pose(theta)[:, None], velocity[:, None]
+        return np.asarray(omega[:, None] * self.turning(theta, np.where(outwards, 1.0, -1.0)))
 
     @property
     def outline(self) -> Array:
