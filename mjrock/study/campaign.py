@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import BrokenExecutor, Executor
+from itertools import chain
 from multiprocessing import current_process
 from pathlib import Path
 from typing import Any, cast
 
 from ..quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
-from .campaign_pool import Dispatch
+from .campaign_pool import Workers
 from .campaign_run import Runner
-from .campaign_task import Row, Task, column_names, keyed
+from .campaign_task import Row, Task, carry_out_all, column_names, keyed
 from .overheard import listening
 from .progress import Progress
 from .store import Store
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
+GUARD = (
+    "the worker processes die as they start: they import the script that calls the campaign; let it do so "
+    'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
+)
 
 
 def campaign(
@@ -82,10 +87,10 @@ def campaign(
         if isinstance(tasks, list | tuple):
             for names in dict.fromkeys(column_names(keyed(task)[1]) for task in tasks):
                 file.add_columns(names)
-        run = Runner(file, progress, folder, retry)
+        run = Runner(file, progress, folder, retry=retry, limit=limit)
         try:
             with listening(run.warned.add):
-                _carry_out(run, tasks, executor, count, limit)
+                _carry_out(run, tasks, executor, count)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
@@ -114,16 +119,27 @@ def required_tasks(tasks: object) -> Iterable[Task]:
     return cast(Iterable[Task], tasks)
 
 
-def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, count: int, limit: float | None) -> None:
+def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, count: int) -> None:
     """Run the tasks where they are to run."""
     pending = run.pending(tasks)
-    if executor is not None:
-        run.across(pending, executor, getattr(executor, "_max_workers", count))
-    elif limit is None and count == 1 and current_process().daemon:
+    if executor is None and run.limit is None and count == 1 and current_process().daemon:
         for job in pending:
             run.here(job, "this process may not start others")
-    else:
-        Dispatch(run, pending, count, limit, script=count > 1 or limit is not None).go()
+        return
+    try:
+        if executor is not None:
+            width = getattr(executor, "_max_workers", count)
+            run.across(pending, width, lambda tasks: executor.submit(carry_out_all, tasks))
+        elif (first := next(pending, None)) is not None:
+            script = count > 1 or run.limit is not None
+            with Workers(count, run.limit, script=script) as workers:
+                run.across(chain([first], pending), count, workers.submit, None if script else run.here)
+    except BrokenExecutor as error:
+        if executor is None and not run.finished:
+            raise RuntimeError(GUARD) from None
+        raise RuntimeError(
+            f"the processes broke down: {error}; what is done is kept, and the same call carries on"
+        ) from error
 
 
 def results(tasks: Iterable[Task], store: str | Path) -> list[Row | None]:

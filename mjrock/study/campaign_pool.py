@@ -1,131 +1,159 @@
-"""The worker processes of a campaign, and the jobs that go to them."""
+"""Worker processes of this machine, by `pebble`, which ends those whose task takes too long and replaces dead ones."""
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator
-from multiprocessing import connection
-from pickle import PicklingError
+import contextlib
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
+from multiprocessing import resource_tracker
+from multiprocessing.context import SpawnContext, SpawnProcess
+from pathlib import Path
+from types import ModuleType
+from typing import Any
 
-from .campaign_run import Job, Runner
-from .campaign_task import failed_row
-from .campaign_worker import Worker
+from pebble import ProcessPool
+from tqdm import tqdm
 
-DEATHS = 2
-"""A task during which this many worker processes have died is run alone."""
-LOOK = 0.2
-"""Time between two looks at how long the tasks in progress have taken [s]."""
+from .campaign_task import Row, Task, carry_out
+from .overheard import listening
+
+CHUNK_SECONDS = 0.5
+"""Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short
+enough to keep the progress bar moving."""
+QUIT = 256
+"""Exit status of a worker that ended with 0, which `pebble` would take for one that it has ended itself."""
 
 
-class Dispatch:
-    """The worker processes of a campaign.
+class Workers:
+    """Processes that carry out tasks, a list at a time. Leaving the `with` statement ends them at once.
 
-    One that dies is replaced. If a task ended it, the row of the task says so. If it was killed, the task is run again.
-    After DEATHS deaths it is run while the others wait, in case memory was short. If its process dies again, the row of
-    the task says so. The process of a task that takes longer than the limit [s] is ended, and the task gets a failed
-    row; None stands for no limit. Where the processes do not import the script that calls the campaign, tasks that they
-    cannot read for that reason run in this process.
+    Args:
+        count: how many.
+        limit: how long one list may take [s], or None.
+        script: whether the processes import the script that calls the campaign. They have to if the tasks are made of
+            what the script defines. The script then needs `if __name__ == "__main__":`.
     """
 
-    def __init__(self, run: Runner, pending: Iterator[Job], count: int, limit: float | None, *, script: bool) -> None:
-        self.run, self.pending, self.count, self.limit, self.script = run, pending, count, limit, script
-        self.ahead: deque[Job] = deque()  # made while the processes are busy
-        self.again: deque[Job] = deque()
-        self.workers: list[Worker] = []
+    def __init__(self, count: int, limit: float | None, *, script: bool) -> None:
+        self.limit = limit
+        self.pool = ProcessPool(count, initializer=start_worker, context=_Context(script))
 
-    def go(self) -> None:
-        """Run all jobs. Whatever is raised, Ctrl-C included, ends the processes at once."""
-        if not self.look_ahead():
-            return
-        try:
-            for _ in range(self.count):
-                self.workers.append(Worker(script=self.script))
-            while self.hand_out():
-                self.look_ahead()
-                self.collect()
-        except BaseException:
-            for worker in self.workers:
-                worker.process.kill()
-            for worker in self.workers:
-                worker.end(0)
-            raise
-        for worker in self.workers:
-            worker.connection.close()
-        for worker in self.workers:
-            worker.end(1)
+    def submit(self, tasks: Sequence[tuple[Task, Path | None]]) -> Future[list[Row]]:
+        """The rows of the first tasks; raises whatever pickle does for a task that it cannot take."""
+        found: Future[list[Row]] = self.pool.schedule(serve, (pickle.dumps(list(tasks)),), timeout=self.limit)
+        return found
 
-    def look_ahead(self) -> bool:
-        """Make the jobs of the next chunk, and say whether there are any."""
-        while len(self.ahead) < self.run.chunk() and (job := next(self.pending, None)):
-            self.ahead.append(job)
-        return bool(self.ahead)
+    def __enter__(self) -> Workers:
+        return self
 
-    def take(self) -> list[Job]:
-        """The jobs of the next chunk. Those that a process had that died go one by one."""
-        flying = [worker.jobs[0] for worker in self.workers if worker.jobs]
-        if any(job.deaths >= DEATHS for job in flying):
-            return []
-        if self.again:
-            return [self.again.popleft()] if self.again[0].deaths < DEATHS or not flying else []
-        self.look_ahead()
-        return [self.ahead.popleft() for _ in range(min(self.run.chunk(), len(self.ahead)))]
+    def __exit__(self, *error: object) -> None:
+        self.pool.stop()  # type: ignore[no-untyped-call]
+        self.pool.join()
 
-    def hand_out(self) -> bool:
-        """Give jobs to every process that has none, and say whether the campaign goes on."""
-        for worker in self.workers:
-            while worker.ready and not worker.jobs and (jobs := self.take()):
-                try:
-                    worker.send([(job.task, job.history) for job in jobs])
-                    worker.jobs = jobs
-                except Exception as error:
-                    self.refused(jobs, error)
-        return any(worker.jobs for worker in self.workers) or bool(self.again) or self.look_ahead()
 
-    def collect(self) -> None:
-        """Wait for rows, write them, and replace processes that have died or whose task takes too long."""
-        waited = [worker.connection for worker in self.workers] + [worker.process.sentinel for worker in self.workers]
-        ready = connection.wait(waited, None if self.limit is None else LOOK)
-        for worker in list(self.workers):
-            if worker.connection in ready or worker.process.sentinel in ready:
-                answer = worker.receive()
-                if answer is None:
-                    self.replace(worker, overdue=False)
-                elif isinstance(answer, dict):
-                    jobs, worker.jobs = worker.jobs, []
-                    self.refused(jobs, PicklingError(answer["error"]))
-                elif answer:
-                    jobs, worker.jobs = worker.jobs[: len(answer)], worker.jobs[len(answer) :]
-                    self.run.write(jobs, answer)
-            elif self.limit is not None and worker.jobs and worker.busy > self.limit:
-                self.replace(worker, overdue=True)
+class _Worker(SpawnProcess):
+    """A worker process, which Ctrl-C does not reach: the campaign ends it."""
 
-    def refused(self, jobs: list[Job], error: Exception) -> None:
-        """Try the tasks of a chunk that could not be pickled or read one by one. One that was alone runs here, if its
-        process lacks the script, or fails."""
-        if self.script or len(jobs) > 1:
-            self.again.extend(self.run.singly(jobs, error))
-        else:
-            self.run.here(jobs[0], error)
+    script = True
+    dead = False
 
-    def replace(self, worker: Worker, *, overdue: bool) -> None:
-        """Start another process in place of one that has died or whose task takes too long."""
-        index = max(worker.started, 1) - 1  # one that dies before it starts a task may die of reading it
-        how = worker.end(0 if overdue else 1)
-        ended = worker.started > 0 and (worker.process.exitcode or 0) >= 0
-        self.workers[self.workers.index(worker)] = Worker(script=self.script)
-        if not worker.jobs:
-            return
-        job = worker.jobs.pop(index)
-        self.again.extend(worker.jobs)
-        if job.history is not None:
-            for path in job.history.parent.glob(f"{job.history.name}.*.partial*"):
-                path.unlink(missing_ok=True)
-        job.deaths += not overdue
-        if overdue:
-            row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
-            self.run.write([job], [row | {"seconds": self.limit}])
-        elif ended or job.deaths > DEATHS:
-            often = f", {job.deaths} times in all" if job.deaths > 1 else ""
-            self.run.write([job], [failed_row(RuntimeError(f"its worker process {how}{often}"))])
-        else:
-            self.again.append(job)
+    def start(self) -> None:
+        """Start it."""
+        with _uninterrupted(), contextlib.nullcontext() if self.script else _unscripted():
+            super().start()
+
+    def is_alive(self) -> bool:
+        """Whether it runs. A death is told at the second look, when `pebble` has read which task was in progress."""
+        told, self.dead = self.dead, not super().is_alive()
+        return not (told and self.dead)
+
+    @property
+    def exitcode(self) -> int | None:
+        """How it ended, see QUIT."""
+        code = super().exitcode
+        return QUIT if code == 0 else code
+
+
+class _UnscriptedWorker(_Worker):
+    """A worker process that does not import the script."""
+
+    script = False
+
+
+class _Context(SpawnContext):
+    """Starts `_Worker` processes."""
+
+    def __init__(self, script: bool) -> None:
+        super().__init__()
+        self.Process = _Worker if script else _UnscriptedWorker  # type: ignore[misc]
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Start processes to which Ctrl-C does not go, not even while they start."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # it would unblock the signal as it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def _unscripted() -> Iterator[None]:
+    """Start processes that do not import the script: a module without a file stands for it meanwhile."""
+    before = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = before
+
+
+def start_worker() -> None:
+    """What a worker process does first. It can then be ended at once, also while compiled code runs."""
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    tqdm.set_lock(threading.RLock())  # its own is a semaphore, which a process that is killed would leave behind
+    if not sys.warnoptions:
+        warnings.simplefilter("always", UserWarning)  # the campaign counts them
+    threading.Thread(target=_end_with_the_campaign, daemon=True).start()
+
+
+def _end_with_the_campaign() -> None:
+    parent: Any = multiprocessing.parent_process()
+    parent.join()
+    os._exit(1)
+
+
+def serve(content: bytes) -> list[Row]:
+    """The rows of the first of the pickled tasks, as many as are carried out in CHUNK_SECONDS.
+
+    Raises:
+        PicklingError: if the tasks cannot be read here.
+    """
+    try:
+        tasks = pickle.loads(content)
+    except BaseException as error:
+        raise pickle.PicklingError(f"{type(error).__name__}: {error}") from None
+    rows: list[Row] = []
+    end = time.monotonic() + CHUNK_SECONDS
+    for task, history in tasks:
+        warned: list[str] = []
+        with listening(warned.append):
+            row = carry_out(task, history)
+        row["warned"] = warned
+        rows.append(row)
+        if time.monotonic() > end:
+            break
+    return rows

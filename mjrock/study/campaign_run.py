@@ -4,25 +4,32 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import signal
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
+from pickle import PickleError
 from queue import Empty, SimpleQueue
 from threading import Thread
 
 import numpy as np
+from pebble import ProcessExpired
 
-from .campaign_task import VERSION, Refused, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed
-from .campaign_worker import FLUSH
+from .campaign_pool import CHUNK_SECONDS, QUIT
+from .campaign_task import VERSION, Refused, Row, Task, carry_out, column_names, failed_row, keyed
 from .overheard import Overheard
 from .progress import Progress
 from .store import Store
 
-CHUNK_SECONDS = 0.5
-"""Work that a worker is given at a time [s]: long compared with the 1 ms of handing it over, and short enough to keep
-the progress bar moving."""
+DEATHS = 2
+"""A task during which this many worker processes have died is run alone."""
+LOOK = 0.1
+"""Time between two looks for the row of a task that runs in this process [s]."""
+
+Submit = Callable[[list[tuple[Task, Path | None]]], Future[list[Row]]]
+"""Hands tasks over, and returns the future rows of the first of them."""
 
 
 @dataclass
@@ -36,11 +43,17 @@ class Job:
     deaths: int = 0
 
 
+Refusal = Callable[[Job, Exception], None]
+"""What is done with a job that cannot be handed over, because of an error."""
+
+
 class Runner:
     """A running campaign: its store, its counts, and where its tasks are."""
 
-    def __init__(self, file: Store, progress: Progress, folder: Path | None, retry: bool) -> None:
-        self.file, self.progress, self.folder, self.retry = file, progress, folder, retry
+    def __init__(
+        self, file: Store, progress: Progress, folder: Path | None, *, retry: bool, limit: float | None
+    ) -> None:
+        self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
         self.statuses: Counter[str] = Counter()
         self.outcomes: Counter[str] = Counter()
         self.warned = Overheard()
@@ -117,51 +130,94 @@ class Runner:
         Thread(target=lambda: rows.put(carry_out(job.task, job.history)), daemon=True).start()
         while True:
             with contextlib.suppress(Empty):
-                return self.write([job], [rows.get(timeout=FLUSH)])
+                return self.write([job], [rows.get(timeout=LOOK)])
 
-    def chunk(self) -> int:
-        """How many jobs are about CHUNK_SECONDS of work."""
-        return int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64)) if self.finished else 1
+    def across(self, pending: Iterator[Job], width: int, submit: Submit, refused: Refusal | None = None) -> None:
+        """Run jobs in other processes, with twice as many chunks in flight as there are processes.
 
-    def across(self, pending: Iterator[Job], executor: Executor, width: int) -> None:
-        """Run jobs on an executor, with twice as many chunks in flight as it has workers.
+        What a chunk leaves undone runs again, task by task. So does a task whose process was killed: after DEATHS
+        deaths alone, in case memory was short, and if its process dies again, it gets a row that says so.
 
-        A chunk that the executor could not carry out runs again, task by task.
+        Args:
+            pending: the jobs.
+            width: how many processes there are.
+            submit: hands a chunk over.
+            refused: what is done with a job that cannot be handed over; by default it gets a row with the error.
+
+        Raises:
+            BrokenExecutor: if no process can take a job any more.
         """
         again: deque[Job] = deque()
         flying: dict[Future[list[Row]], list[Job]] = {}
         try:
             while True:
-                while len(flying) < 2 * width:
-                    jobs = [again.popleft()] if again else list(itertools.islice(pending, self.chunk()))
-                    if not jobs:
-                        break
-                    flying[executor.submit(carry_out_all, [(job.task, job.history) for job in jobs])] = jobs
+                while len(flying) < 2 * width and (jobs := self.take(pending, again, flying.values())):
+                    try:
+                        flying[submit([(job.task, job.history) for job in jobs])] = jobs
+                    except (PickleError, AttributeError, TypeError) as error:  # what pickle raises
+                        again.extend(self.left(jobs, error, refused))
                 if not flying:
                     return
                 for future in wait(flying, return_when=FIRST_COMPLETED).done:
                     jobs = flying.pop(future)
                     try:
-                        self.write(jobs, future.result())
-                    except (BrokenExecutor, OSError):
+                        rows = future.result()
+                    except BrokenExecutor:
                         raise
                     except Exception as error:
-                        again.extend(self.singly(jobs, error))
-        except BaseException as error:
+                        again.extend(self.left(jobs, error, refused))
+                    else:
+                        self.write(jobs[: len(rows)], rows)
+                        again.extend(jobs[len(rows) :])
+        finally:
             for future in flying:
                 future.cancel()
-            if isinstance(error, BrokenExecutor):
-                raise RuntimeError(
-                    f"the executor broke down: {error}; what is done is kept, and the same call carries on"
-                ) from error
-            raise
 
-    def singly(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
-        """The jobs of a chunk that could not be handed over, each of which is to be tried alone.
+    def take(self, pending: Iterator[Job], again: deque[Job], flying: Collection[Sequence[Job]]) -> list[Job]:
+        """The jobs of the next chunk, none where one that is in flight, or the next one, has to run alone."""
+        if any(job.deaths >= DEATHS for jobs in flying for job in jobs):
+            return []
+        if again:
+            return [again.popleft()] if again[0].deaths < DEATHS or not flying else []
+        return list(itertools.islice(pending, self.chunk()))
 
-        One that was alone already gets a row with the error.
-        """
+    def chunk(self) -> int:
+        """How many jobs are about CHUNK_SECONDS of work; one where there is a time limit."""
+        if self.limit is not None or not self.finished:
+            return 1
+        return int(np.clip(CHUNK_SECONDS * self.finished / max(self.seconds, 1e-9), 1, 64))
+
+    def left(self, jobs: Sequence[Job], error: Exception, refused: Refusal | None) -> Sequence[Job]:
+        """The jobs of a chunk without rows that are to be tried again, each alone. Others get their rows."""
+        for job in jobs:
+            for path in job.history.parent.glob(f"{job.history.name}.*.partial*") if job.history is not None else ():
+                path.unlink(missing_ok=True)
         if len(jobs) > 1:
             return jobs
-        self.write(jobs, [failed_row(error)])
+        (job,) = jobs
+        if isinstance(error, ProcessExpired):
+            return self.died(job, error.exitcode or 0)
+        if isinstance(error, TimeoutError) and self.limit is not None:
+            row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
+            self.write(jobs, [row | {"seconds": self.limit}])
+        elif isinstance(error, OSError):
+            raise error
+        elif refused is not None:
+            refused(job, error)
+        else:
+            self.write(jobs, [failed_row(error)])
+        return ()
+
+    def died(self, job: Job, exitcode: int) -> Sequence[Job]:
+        """The job whose process has died, if it was killed and is to be tried again."""
+        job.deaths += 1
+        if exitcode < 0 and job.deaths <= DEATHS:
+            return [job]
+        if exitcode < 0:
+            how = f"was killed by {signal.Signals(-exitcode).name}"
+        else:
+            cause = ", as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold" if exitcode == 1 else ""
+            how = f"ended with exit status {exitcode % QUIT}{cause}"
+        often = f", {job.deaths} times in all" if job.deaths > 1 else ""
+        self.write([job], [failed_row(RuntimeError(f"its worker process {how}{often}"))])
         return ()

@@ -1,6 +1,5 @@
 """Campaigns in trouble: tasks that misbehave, points that cannot be built, Ctrl-C, and cases that take too long."""
 
-import multiprocessing
 import os
 import signal
 import subprocess
@@ -13,11 +12,9 @@ import numpy as np
 import pytest
 from campaign_tasks import Misbehave, Square
 from test_campaign import ENVIRONMENT, children, gone
-from tqdm import tqdm
 
 import mjrock as mr
 from mjrock.study import progress
-from mjrock.study.campaign_worker import serve
 from scripts.shared import cli
 
 KINDS = ["", "exit", "interrupt", "generator", "columns", "list", "last"]
@@ -48,6 +45,7 @@ def test_whatever_a_task_raises_is_a_row(tmp_path, where):
 
 DEATHS = {
     "_exit": "ended with exit status 3",
+    "_exit 0": "ended with exit status 0",
     "libc": "ended with exit status 1, as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold",
     "kill": "was killed by SIGKILL, 3 times in all",
 }
@@ -58,7 +56,7 @@ DEATHS = {
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
     """Each of three, among others that run on. The next call leaves them alone."""
-    tasks = [Misbehave(kind) for kind in ("first", "_exit", "second", "libc", "kill", "last")]
+    tasks = [Misbehave(kind) for kind in ("first", "_exit", "second", "_exit 0", "libc", "kill", "last")]
     path = mr.campaign(tasks, tmp_path / "c.sqlite", workers=workers)
     rows = mr.results(tasks, path)
     errors = [DEATHS.get(task.kind) for task in tasks]
@@ -67,15 +65,6 @@ def test_a_task_that_ends_its_process_is_a_row(tmp_path, workers):
     assert [row["answer"] for row in rows] == [None if how else 42 for how in errors]
     mr.campaign(tasks, path, workers=workers)
     assert mr.results(tasks, path) == rows
-
-
-def test_a_process_that_starts_when_all_is_done_ends_in_silence(monkeypatch):
-    """The others were quicker, and the campaign has closed its connection."""
-    monkeypatch.setattr(signal, "signal", lambda *_: None)
-    monkeypatch.setattr(tqdm, "set_lock", lambda _: None)
-    ours, theirs = multiprocessing.Pipe()
-    ours.close()
-    serve(theirs, [0.0, np.inf])
 
 
 def nothing():
