@@ -23,8 +23,8 @@ APPLICATION = 0x6D6A726B
 FIXED = ("key", "position", "status", "error", "version", "seconds")
 """Columns of every row. `position` is the place in the list of tasks. `seconds` is the only column that is a timing."""
 CHECKSUM = "checksum"
-"""The column with the checksum of a row, which is verified and left out when the row is read. SQLite checks the structure
-of its file, and not the values: a byte that is flipped in a number passes its `integrity_check`."""
+"""The column with the checksum of a row, which is verified and left out when the row is read. SQLite checks the
+structure of its file, and not the values: a byte that is flipped in a number passes its `integrity_check`."""
 UNREADABLE = (sqlite3.Error, UnicodeError, OverflowError)
 """What reading a damaged file raises."""
 ENVIRONMENT = tuple(
