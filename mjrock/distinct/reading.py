@@ -27,6 +27,7 @@ from ..result.response import Response
 from ..result.rocking import Rocking
 from ..result.ties import Plastic
 from ..scene.course import Course
+from ..scene.quiet import is_quiet
 from ..scene.scene import Scene
 from .system import Books, Samples
 
@@ -103,7 +104,7 @@ def wall_reading(run: Run) -> dict[str, Any]:
     uplift = Uplift.of(case, contacts)
     theta, omega = run.samples.pose[:, 0, 2], run.samples.velocity[:, 0, 2]
     _, peaks, impacts = rocking_history(case, run.t, theta, omega, run.energy, uplift, released=run.course.released)
-    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy)
+    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy, run.samples.velocity[-1, 0])
     slip = run.samples.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return {
         "rocking": Rocking(impacts, peaks),
@@ -121,7 +122,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
     motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
-    quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
+    quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()

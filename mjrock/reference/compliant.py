@@ -68,7 +68,7 @@ def solve_compliant(
     uplift = Uplift.of(case, contacts)
     _, peaks, impacts = rocking_history(case, sampled, theta, omega, energy, uplift)
     stride = max(1, round(output_step / fine))
-    outcome, message = ending(case, sampled, theta, energy, uplift.energy)
+    outcome, message = ending(case, sampled, theta, energy, uplift.energy, history[-1, 3:])
     return Response(
         case=case,
         solver="compliant",
