@@ -15,7 +15,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array
+from ..quantities import Array, Integers
 from ..result.ending import ending, masonry_ending
 from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
@@ -25,6 +25,7 @@ from ..result.joints import JointMotion, joint_numbers
 from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.response import Response
 from ..result.rocking import Rocking
+from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.quiet import is_quiet
@@ -34,7 +35,7 @@ from .system import Books, Samples
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and how far apart [s]."""
+    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s]."""
 
     case: Case | MasonryCase
     contacts: Contacts | None
@@ -43,17 +44,12 @@ class Run:
     system: Any
     books: Books
     samples: Samples
-    spacing: float
+    t: Array
 
     @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
         return bool(self.samples.pose.shape[2] == SPACE.nq)
-
-    @cached_property
-    def t(self) -> Array:
-        """Times of the samples [s]."""
-        return np.asarray(self.spacing * np.arange(len(self.samples.pose), dtype=float))
 
     @cached_property
     def energy(self) -> Array:
@@ -65,7 +61,7 @@ class Run:
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
-    """The response of a run: every `stride` of its samples, its accounts where it has a `ledger`, and what it took.
+    """The response of a run: every `stride` of its samples and the last, its `ledger` if asked for, what it took.
 
     Raises:
         RuntimeError: if energy has appeared from nowhere.
@@ -73,16 +69,16 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
     count = reading.pop("count")
     require_no_gain(run, count, stats)
-    samples = run.samples
+    samples, kept = run.samples, thinned(len(run.t), stride)
     return Response(
         case=run.case,
         solver="explicit",
-        t=run.t[::stride],
-        pose=samples.pose[::stride],
-        velocity=samples.velocity[::stride],
-        energy=run.energy[::stride],
+        t=run.t[kept],
+        pose=samples.pose[kept],
+        velocity=samples.velocity[kept],
+        energy=run.energy[kept],
         plastic=plastic_of(run),
-        ledger=ledger_of(run, stride) if ledger else None,
+        ledger=ledger_of(run, kept) if ledger else None,
         stats=reading.pop("stats") | stats,
         end=(samples.pose[-1].copy(), samples.velocity[-1].copy()),
         **reading,
@@ -171,24 +167,24 @@ def advice(stats: Mapping[str, Any]) -> str:
     )
 
 
-def ledger_of(run: Run, stride: int) -> Ledger:
-    """The ledger of a run."""
+def ledger_of(run: Run, kept: Integers) -> Ledger:
+    """The ledger of a run at some of its samples."""
     samples, scene = run.samples, run.scene
-    work = samples.work[::stride, 2:].T
+    work = samples.work[kept, 2:].T
     yielding = len(scene.damper_names)
     breaking, groups = (yielding + i * len(scene.tie_names) for i in (1, 2))
     may_break = np.isfinite(scene.tie_ultimate)
     dashpots = dict(zip(scene.damper_names, work[:yielding], strict=True))
     dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:], strict=False))
-    kinetic, potential, elastic = samples.energy[::stride].T
+    kinetic, potential, elastic = samples.energy[kept].T
     return Ledger(
-        t=run.t[::stride],
+        t=run.t[kept],
         kinetic=kinetic,
         potential=potential,
         elastic=elastic,
         dashpots=dashpots,
-        friction=samples.work[::stride, 0] - samples.work[0, 0],
-        ground=samples.work[::stride, 1],
+        friction=samples.work[kept, 0] - samples.work[0, 0],
+        ground=samples.work[kept, 1],
         ties=dict(zip(scene.tie_names, work[yielding:breaking], strict=True)),
         broken={
             name: account
