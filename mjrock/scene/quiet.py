@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..quantities import Array
 from .masses import kinetic_energies
 from .scene import Scene

@@ -46,7 +46,9 @@ def when_at_rest_by_energy(solve, after):
     return solve(float(run.t[late[np.argmin(np.abs(run.energy[late]))]]))
 
 
-@pytest.mark.parametrize("solver", [mr.simulate, lambda *args: mr.simulate(*args, 2e-4, coulomb=True), mr.solve_explicit])
+@pytest.mark.parametrize(
+    "solver", [mr.simulate, lambda *args: mr.simulate(*args, 2e-4, coulomb=True), mr.solve_explicit]
+)
 def test_a_wall_that_a_thrust_pushes_along(solver):
     """The base slides off under a push and keeps sliding, with less energy than at rest."""
     push, thrust = mr.GroundMotion(np.array([0, -8.0, -8.0, 0, 0]), 0.05), mr.Thrust(0.2, 0.25 * WALL.weight)
@@ -102,9 +104,14 @@ def test_masonry_that_falls_freely(in_space, solver):
     """A thrust presses a block on a face, and friction holds it, until the ground all but follows the thrust."""
     made, force = masonry(FACE, in_space, k_n=1e8, friction=0.7), 2 * FACE[1].mass * mr.GRAVITY
     where = {"at": (-0.25, 0.0, 1.25)} if in_space else {"height": 1.25}
-    thrust, follows = mr.Thrust(force=force, block=1, **where), mr.GroundMotion(np.full(99, 0.95 * 2 * mr.GRAVITY), 0.01)
+    thrust, follows = (
+        mr.Thrust(force=force, block=1, **where),
+        mr.GroundMotion(np.full(99, 0.95 * 2 * mr.GRAVITY), 0.01),
+    )
     case = mr.MasonryCase(made, 0.25, motion=follows, effects=thrust)
-    run = when_at_rest_by_energy(lambda T: solver(mr.MasonryCase(made, T, motion=follows, effects=thrust)), (0.05, 0.25))
+    run = when_at_rest_by_energy(
+        lambda T: solver(mr.MasonryCase(made, T, motion=follows, effects=thrust)), (0.05, 0.25)
+    )
     assert abs(run.energy[-1]) < mr.masonry_scene(run.case).rest_energies[2]
     assert np.linalg.norm(run.velocity[-1]) > 1
     assert run.outcome is mr.Outcome.TIME_ENDED
