@@ -41,7 +41,9 @@ def test_axes_that_do_not_fit_are_refused():
     flat, spatial = ([0.0, 1.0], [0.0, 0.1], [0.0, 0.0]), ([0.0, 1.0], [0.0, 0.1], [0.0, 0.0], [0.0, 0.0])
     in_plane = mr.MasonryCase(mr.Masonry(COLUMN.blocks), 1.0, supports={"ground": flat})
     in_space = mr.MasonryCase(SPACE, 1.0, supports={"ground": spatial})
-    with pytest.raises(TypeError, match=r"supports, ground = .* is not \(t, dx, dy, dz\), which masonry in space takes"):
+    with pytest.raises(
+        TypeError, match=r"supports, ground = .* is not \(t, dx, dy, dz\), which masonry in space takes"
+    ):
         dataclasses.replace(in_plane, masonry=SPACE)
     with pytest.raises(TypeError, match=r"supports, ground = .* is not \(t, dx, dz\), which masonry in the plane"):
         dataclasses.replace(in_space, masonry=COLUMN)
