@@ -30,7 +30,7 @@ LOOK = 5e-3
 """Longest time between two looks for blocks that meet others [s]."""
 WORTH_SAYING = 10.0
 """Time that steps may take before that is spoken of [s]."""
-DAMPED = 3.0
+DAMPED = 10.0
 """How many times shorter dashpots make a step than springs alone before that is spoken of [-]."""
 
 
