@@ -125,3 +125,12 @@ def test_a_function_of_the_joint_is_asked_once(name, values):
     assert asked == [joint.name for joint in masonry.joints]
     used = {"friction": "joint_friction", "k_n": "joint_stiffness", "xi": "joint_damping", "k_s": "joint_shear"}[name]
     assert getattr(masonry, used).tolist() == 3 * [values]
+
+
+@pytest.mark.parametrize("frequency", [1e-2, 1.0, 1e6])
+def test_a_retardation_at_any_frequency_is_no_doubt(frequency):
+    """xi = c/k x frequency / 2 gives the joints that c/k."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        masonry = columns(1, 1e9, xi=0.5 * 1e-4 * frequency, frequency=frequency)
+    assert masonry.retardation == pytest.approx(1e-4)

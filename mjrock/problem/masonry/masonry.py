@@ -28,8 +28,8 @@ FAR = 30.0
 """How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
 OVERDAMPED = 30.0
 """Damping ratio of the lowest mode above which the frequency that xi refers to is doubted [-]."""
-UNDAMPED = 1e-3
-"""The same over xi below which it is doubted [-], and the least xi of which that is asked."""
+UNDAMPED = 1e-4
+"""The same below which it is doubted [-], where xi is a hundred times as much."""
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,8 @@ class Masonry(Forms, FormsInSpace, Exchange):
         except ValueError:  # no joint that a motion could compress
             lowest = 0.0
         found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
-        if not ((found > OVERDAMPED and lowest > FAR * frequency) or (0 < found < UNDAMPED * xi and xi > UNDAMPED)):
+        overdamped = found > OVERDAMPED and lowest > FAR * frequency
+        if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
             return ""
         return (
             f"frequency = {frequency:g} rad/s, and the lowest one of this masonry is {lowest:.3g} rad/s: with xi = "
