@@ -136,7 +136,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
             clock = clock._replace(stop=min(stop, look, clock.step + at_once))
             step, row, ended = setup.advance(system, books, samples, clock)
             took = time.perf_counter() - begun
-            at_once = max(1, min(4 * at_once, int(at_once * HEARD / took)))
+            at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
             bar.update((step - clock.step) * clock.h)
             clock = clock._replace(step=step, row=row)
     return system, clock.step, clock.row

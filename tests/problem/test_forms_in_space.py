@@ -103,8 +103,8 @@ def test_lintels_may_just_touch(apart, turned):
     made = mr.Masonry.facade(4.0, 2.4, 0.8, UNIT, openings=pair[::-1] if turned else pair, xi=0)
     lengths = Counter(round(float(np.ptp(block.corners[:, 1])), 9) for block in made.blocks)
     assert lengths[0.8] == 2  # the lintels
+    nearer = (y and y - 0.2, mr.Opening(0.4, 0.4, 0.2 + (sill and sill - 0.2)))
     with pytest.raises(ValueError, match="or the lintels over them, overlap"):
-        nearer = (y and y - 0.2, mr.Opening(0.4, 0.4, 0.2 + (sill and sill - 0.2)))
         mr.Masonry.facade(4.0, 2.4, 0.8, UNIT, openings=[pair[0], nearer], xi=0)
 
 

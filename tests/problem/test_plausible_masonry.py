@@ -1,6 +1,7 @@
 """What is odd about masonry warns as it does for a wall, with both numbers, and plausible masonry does not."""
 
 import warnings
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -50,8 +51,8 @@ MISUSE = {
     ),
     "frequency of another masonry": (
         lambda: columns(1, 1e9, frequency=0.01),
-        r"frequency = 0\.01 rad/s, and the lowest one of this masonry is 42\.6 rad/s: with xi = 0\.05 that one is damped "
-        r"to 213 times critical, c/k = 10 s",
+        r"frequency = 0\.01 rad/s, and the lowest one of this masonry is 42\.6 rad/s: with xi = 0\.05 that one "
+        r"is damped to 213 times critical, c/k = 10 s",
     ),
     "frequency far above": (lambda: columns(1, 1e9, frequency=1e8), r"damped to \d\.\d\de-0\d times critical"),
     "timestep in ns": (
@@ -85,7 +86,7 @@ def plausible(rng):
     if rng.random() < 0.3:
         return mr.MasonryCase(mr.Masonry.arch(rng.uniform(2, 6), 0.6, voussoirs=9, k_n=k_n, xi=xi), 4.0)
     parts = np.linspace(0, height, int(rng.integers(2, 6)))
-    blocks = [box(-thickness / 2, thickness / 2, *ends) for ends in zip(parts, parts[1:], strict=False)]
+    blocks = [box(-thickness / 2, thickness / 2, *ends) for ends in pairwise(parts)]
     masonry = mr.Masonry([GROUND, *blocks], k_n=k_n, xi=xi)
     if rng.random() < 0.5:
         own = 2 * xi / masonry.retardation.max()

@@ -213,6 +213,6 @@ class Masonry(Forms, FormsInSpace, Exchange):
             return ""
         return (
             f"frequency = {frequency:g} rad/s, and the lowest one of this masonry is {lowest:.3g} rad/s: with xi = "
-            f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in rad/s, "
-            "and None takes the lowest"
+            f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
+            "rad/s, and None takes the lowest"
         )
