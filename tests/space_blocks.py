@@ -30,9 +30,9 @@ def free_body(mass, inertia, spin):
 
 def followed(system, duration, h, every):
     """The samples of a system that is followed without being changed."""
-    count = round(duration / (h * every)) + 1
-    samples, system = Samples.of(count, len(system.bodies), 2, SPACE), copied(system)
-    advance(system, Books.of(system, 1), samples, Clock(0, h, every, 0, count, math.inf))
+    last = every * round(duration / (h * every))
+    samples, system = Samples.of(last // every + 1, len(system.bodies), 2, SPACE), copied(system)
+    advance(system, Books.of(system, 1), samples, Clock(0, h, every, 0, last + 1, last, math.inf))
     return samples, system
 
 

@@ -111,7 +111,7 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[S
     lines["k_s"] = masonry.joint_shear[of] * lines["k"] / masonry.joint_stiffness[of]
     sprung = np.isfinite(lines["k_s"])
     lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]
-    moved = {support.block: i for i, support in enumerate(supports)}
+    moved = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
     below = [moved.get(masonry.joints[j].below, -1) for j in of]
     lines["support"] = np.where(lines["face"] < 0, below, -1)
 

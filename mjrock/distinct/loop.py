@@ -29,7 +29,8 @@ class Clock(NamedTuple):
         h: length of a step [s].
         every: steps from one sample to the next.
         row: number of the next sample.
-        rows: how many samples to make.
+        stop: number of the step before which to stop.
+        last: number of the last step of the run.
         ends: rotation at which the run ends [rad], infinite for a run to its end.
     """
 
@@ -37,7 +38,8 @@ class Clock(NamedTuple):
     h: float
     every: int
     row: int
-    rows: int
+    stop: int
+    last: int
     ends: float
 
 
@@ -137,14 +139,15 @@ def broken(bodies: Rows, ends: float) -> bool:
 
 @compiled
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
-    """Steps until some samples are made.
+    """Steps up to that before which to stop. Samples are made of every so many, and of the last.
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
-    n, h, row, last = clock.step, clock.h, clock.row, clock.row + clock.rows
+    n, h, row = clock.step, clock.h, clock.row
     accounted = samples.work.shape[1] > 2 or len(system.supports.moved) > 0
-    while True:
-        before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
+    while n < clock.stop:
+        before, kick = h if n > 0 else 0.0, h if n > 0 else 0.5 * h
+        sampled = n % clock.every == 0 or n == clock.last
         move_supports(system.supports, n * h, before)
         weigh(system, books, n * h, h, kick)
         pull_links(system, books, n * h, before)
@@ -168,5 +171,4 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
                 return n, row, True
         move_bodies(system.bodies, h)
         n += 1
-        if row == last:
-            return n, row, False
+    return n, row, False

@@ -15,7 +15,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array
+from ..quantities import Array, Integers
 from ..result.ending import ending, masonry_ending
 from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
@@ -26,15 +26,17 @@ from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.motion import SampledMotion
 from ..result.response import Response
 from ..result.rocking import Rocking
+from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
+from ..scene.quiet import is_quiet
 from ..scene.scene import Scene
 from .system import Books, Samples
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and how far apart [s]."""
+    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s]."""
 
     case: Case | MasonryCase
     contacts: Contacts | None
@@ -43,17 +45,12 @@ class Run:
     system: Any
     books: Books
     samples: Samples
-    spacing: float
+    t: Array
 
     @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
         return bool(self.samples.pose.shape[2] == SPACE.nq)
-
-    @cached_property
-    def t(self) -> Array:
-        """Times of the samples [s]."""
-        return np.asarray(self.spacing * np.arange(len(self.samples.pose), dtype=float))
 
     @cached_property
     def energy(self) -> Array:
@@ -65,7 +62,7 @@ class Run:
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
-    """The response of a run: every `stride` of its samples, its accounts where it has a `ledger`, and what it took.
+    """The response of a run: every `stride` of its samples and the last, its `ledger` if asked for, what it took.
 
     Raises:
         RuntimeError: if energy has appeared from nowhere.
@@ -73,14 +70,14 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
     count = reading.pop("count")
     require_no_gain(run, count, stats)
-    samples = run.samples
+    samples, kept = run.samples, thinned(len(run.t), stride)
     return Response(
         case=run.case,
         solver="explicit",
-        t=run.t[::stride],
-        motion=SampledMotion(samples.pose[::stride], samples.velocity[::stride], run.energy[::stride]),
+        t=run.t[kept],
+        motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
         plastic=plastic_of(run),
-        ledger=ledger_of(run, stride) if ledger else None,
+        ledger=ledger_of(run, kept) if ledger else None,
         stats=reading.pop("stats") | stats,
         end=(samples.pose[-1].copy(), samples.velocity[-1].copy()),
         **reading,
@@ -102,7 +99,7 @@ def wall_reading(run: Run) -> dict[str, Any]:
     uplift = Uplift.of(case, contacts)
     theta, omega = run.samples.pose[:, 0, 2], run.samples.velocity[:, 0, 2]
     _, peaks, impacts = rocking_history(case, run.t, theta, omega, run.energy, uplift, released=run.course.released)
-    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy)
+    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy, run.samples.velocity[-1, 0])
     slip = run.samples.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return {
         "rocking": Rocking(impacts, peaks),
@@ -120,7 +117,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
     motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
-    quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
+    quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()
@@ -169,24 +166,24 @@ def advice(stats: Mapping[str, Any]) -> str:
     )
 
 
-def ledger_of(run: Run, stride: int) -> Ledger:
-    """The ledger of a run."""
+def ledger_of(run: Run, kept: Integers) -> Ledger:
+    """The ledger of a run at some of its samples."""
     samples, scene = run.samples, run.scene
-    work = samples.work[::stride, 2:].T
+    work = samples.work[kept, 2:].T
     yielding = len(scene.damper_names)
     breaking, groups = (yielding + i * len(scene.tie_names) for i in (1, 2))
     may_break = np.isfinite(scene.tie_ultimate)
     dashpots = dict(zip(scene.damper_names, work[:yielding], strict=True))
     dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:], strict=False))
-    kinetic, potential, elastic = samples.energy[::stride].T
+    kinetic, potential, elastic = samples.energy[kept].T
     return Ledger(
-        t=run.t[::stride],
+        t=run.t[kept],
         kinetic=kinetic,
         potential=potential,
         elastic=elastic,
         dashpots=dashpots,
-        friction=samples.work[::stride, 0] - samples.work[0, 0],
-        ground=samples.work[::stride, 1],
+        friction=samples.work[kept, 0] - samples.work[0, 0],
+        ground=samples.work[kept, 1],
         ties=dict(zip(scene.tie_names, work[yielding:breaking], strict=True)),
         broken={
             name: account

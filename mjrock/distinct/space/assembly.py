@@ -148,7 +148,7 @@ def take_grips(points: Rows, drag: Array) -> None:
 
 def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks."""
-    numbers = {support.block: i for i, support in enumerate(supports)}
+    numbers = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
     below = {joint.name: numbers.get(joint.below, -1) for joint in masonry.joints}
     support = np.array([below[name] for name in scene.group])
     system.lines["support"] = np.where(system.lines["face"] < 0, support, -1)

@@ -123,14 +123,15 @@ def astray(bodies: Rows) -> bool:
 
 @compiled
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
-    """Steps until some samples are made.
+    """Steps up to that before which to stop. Samples are made of every so many, and of the last.
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
-    n, h, row, last = clock.step, clock.h, clock.row, clock.row + clock.rows
+    n, h, row = clock.step, clock.h, clock.row
     accounted = samples.work.shape[1] > 2 or len(system.supports.moved) > 0
-    while True:
-        before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
+    while n < clock.stop:
+        before, kick = h if n > 0 else 0.0, h if n > 0 else 0.5 * h
+        sampled = n % clock.every == 0 or n == clock.last
         move_supports(system.supports, n * h, before)
         weigh(system, books, n * h, h, kick)
         pull_links(system, books, n * h, before)
@@ -154,5 +155,4 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
                 return n, row, True
         move_bodies(system.bodies, h)
         n += 1
-        if row == last:
-            return n, row, False
+    return n, row, False
