@@ -15,6 +15,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ._version import __version__
+from .interrupts import interrupts_held_back
 
 if TYPE_CHECKING:
     from . import plotting as plotting
@@ -179,12 +180,14 @@ else:
 
 
 def __getattr__(name: str) -> object:
-    """A public name, or `mjrock.plotting`, imported when it is first asked for."""
-    if name == "plotting":
-        return importlib.import_module(".plotting", __name__)
-    if name not in HOME:
+    """A public name, or `mjrock.plotting`, imported when it is first asked for. Ctrl-C is heard when it is there."""
+    if name != "plotting" and name not in HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f".{HOME[name]}", __name__), name)
+    with interrupts_held_back():
+        module = importlib.import_module(f".{HOME.get(name, name)}", __name__)
+    if name == "plotting":
+        return module
+    value = getattr(module, name)
     globals()[name] = value
     return value
 

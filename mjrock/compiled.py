@@ -12,15 +12,21 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import re
 import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+from .interrupts import interrupts_held_back
+
 COST = "about half a minute"
 """Time that compiling takes in the first run, on one core that has nothing else to do."""
 NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
+
+IMPORT = re.compile(r"^from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
+"""An import from the package as a module is imported itself, not in a function or for a type checker."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -32,23 +38,44 @@ def _notice(text: str) -> None:
     sys.stderr.write(f"mjrock: {text}\n")
 
 
-def _sources() -> str:
-    """A digest of every module that holds compiled functions.
+@cache
+def _imports(path: Path) -> list[Path]:
+    """The modules of the package that a module imports as it is imported itself."""
+    found = []
+    for dots, module, names in IMPORT.findall(path.read_text(encoding="utf-8")):
+        folder = path.parents[len(dots) - 1].joinpath(*module.split("."))
+        found += [folder.with_suffix(".py"), *(folder / f"{name}.py" for name in re.findall(r"\w+", names))]
+    return [module for module in found if module.is_file()]
+
+
+def stamp(path: Path) -> str:
+    """A digest of the modules with compiled functions among a module and all that it imports, directly or not.
 
     numba recompiles a function when its own file has changed. A compiled function also contains the functions of other
     files that it calls, so that a change in any of these files has to recompile it as well.
     """
+    found, ahead = set(), [path]
+    while ahead:
+        module = ahead.pop()
+        if module not in found:
+            found.add(module)
+            ahead += _imports(module)
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
-        text = path.read_bytes()
+    for module in sorted(found):
+        text = module.read_bytes()
         if any(mark in text for mark in (b"@compiled", b"@jitable", b"@inlined")):
             digest.update(text)
     return digest.hexdigest()
 
 
-@cache
 def _numba() -> Any:
-    """numba, or None where there is none; what waits is made known to it."""
+    """numba, or None where there is none; what waits is made known to it. Ctrl-C is heard when all of it is there."""
+    with interrupts_held_back():
+        return _imported_numba()
+
+
+@cache
+def _imported_numba() -> Any:
     try:
         import numba
         import numba.core.caching
@@ -63,7 +90,7 @@ def _numba() -> Any:
 
         def __init__(self, function: Function) -> None:
             super().__init__(function)
-            self._cache_file._source_stamp = sources
+            self._cache_file._source_stamp = stamp(Path(function.__code__.co_filename))
 
         def load_overload(self, *key: Any) -> Any:
             """The compiled function, or None where it cannot be read."""
@@ -100,9 +127,8 @@ def _numba() -> Any:
         def on_end(self, event: Any) -> None:
             """Nothing to say."""
 
-    sources = _sources()
     event.register("numba:compile", _FirstCompilation())
-    globals().update(numba=numba, SOURCES=sources, _Cache=_Cache, _FirstCompilation=_FirstCompilation)
+    globals().update(numba=numba, _Cache=_Cache, _FirstCompilation=_FirstCompilation)
     while _waiting:
         function, how = _waiting.pop(0)
         _register(numba, function, how)
@@ -116,7 +142,7 @@ def _register(numba: Any, function: Callable[..., Any], how: dict[str, bool]) ->
 
 def __getattr__(name: str) -> Any:
     """numba and what is made of it, where there is numba."""
-    if name in ("numba", "SOURCES", "_Cache", "_FirstCompilation") and _numba() is not None:
+    if name in ("numba", "_Cache", "_FirstCompilation") and _numba() is not None:
         return globals()[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

@@ -2,28 +2,104 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
+import shutil
+import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import IO, Any
 
 import numpy as np
 
 
-@contextmanager
+@contextlib.contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """The path of a file to write, which takes the name `path` at the end, and is removed where an error comes first.
+    """The path of a file to write, whose content is at `path` at the end, and which is removed where an error comes.
 
-    Its name ends as that of `path` does, for writers that tell the format by it.
+    Its name ends as that of `path` does, for writers that tell the format by it. A file that is at `path`, or at the
+    end of links, is replaced, and its mode and owner stay. A device or a pipe stays and is given the content.
+
+    Raises:
+        OSError: with `path`, if it is a folder, may not be written, stands for an open file as /dev/stdout may, or is a
+            pipe that nobody reads; and if writing fails, as on a full disk.
     """
-    path = Path(path)
-    partial = path.with_name(f"{path.name}.{os.getpid()}.partial{path.suffix}")
+    path = partial = Path(path)
     try:
-        yield partial
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+        old = _status(path)
+        if old is None or stat.S_ISREG(old.st_mode):
+            target = Path(os.path.realpath(path))
+            partial = target.with_name(f"{target.name}.{os.getpid()}.partial{path.suffix}")
+            try:
+                yield partial
+                if old is not None:
+                    _keep_owner_and_mode(partial, old)
+                os.replace(partial, target)
+            finally:
+                partial.unlink(missing_ok=True)
+        else:
+            with TemporaryDirectory() as folder:
+                partial = Path(folder) / path.name
+                yield partial
+                with open(partial, "rb") as content, _opened(path) as sink:
+                    shutil.copyfileobj(content, sink)
+    except OSError as error:
+        if error.filename is not None and str(error.filename) != str(partial):
+            raise
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from None
+
+
+def _status(path: Path) -> os.stat_result | None:
+    """What is at a path, at the end of links; None if there is nothing. OSError if it is nothing to write to."""
+    try:
+        old = path.stat()
+    except FileNotFoundError:
+        return None
+    if stat.S_ISDIR(old.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not os.access(path, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+    folder = Path(os.path.realpath(path.parent))
+    if stat.S_ISREG(old.st_mode) and (folder.parts[1:2] == ("proc",) or folder in (Path("/dev"), Path("/dev/fd"))):
+        raise OSError(errno.EBUSY, "stands for a file that is open; give the path of that file", str(path))
+    return old
+
+
+def _keep_owner_and_mode(path: Path, old: os.stat_result) -> None:
+    new = path.stat()
+    if (new.st_uid, new.st_gid) != (old.st_uid, old.st_gid):
+        with contextlib.suppress(OSError):  # the superuser alone gives files away
+            os.chown(path, old.st_uid, old.st_gid)
+    if new.st_mode != old.st_mode:
+        path.chmod(stat.S_IMODE(old.st_mode))
+
+
+def _opened(path: Path) -> IO[bytes]:
+    """A device or a pipe, open for writing. A pipe that nobody reads is an OSError and is not waited for."""
+    try:
+        descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    except OSError as error:
+        if error.errno == errno.ENXIO:
+            raise OSError(error.errno, "nobody reads from it", str(path)) from None
+        raise
+    if hasattr(os, "O_NONBLOCK"):
+        os.set_blocking(descriptor, True)
+    return open(descriptor, "wb")
+
+
+def require_file(path: Path) -> Path:
+    """The path of a file that is to be read.
+
+    Raises:
+        OSError: with the path, if there is nothing, or what is no file, such as a pipe, which may never end.
+    """
+    mode = path.stat().st_mode
+    if not stat.S_ISREG(mode):
+        folder = stat.S_ISDIR(mode)
+        raise OSError(errno.EISDIR if folder else errno.EINVAL, "is no file", str(path))
+    return path
 
 
 def write_text(path: str | Path, text: str) -> Path:

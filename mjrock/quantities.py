@@ -186,6 +186,8 @@ def require_plain(name: str, values: ArrayLike, takes: str, kinds: str) -> NDArr
         given = np.asarray(values)
     except ValueError:
         raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
+    except MemoryError:
+        raise ValueError(f"{name} = {shown(values)} has more values than memory holds; it takes {takes}") from None
     if given.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
         held = "values of these kinds" if "b" in kinds else "real numbers"
         raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")

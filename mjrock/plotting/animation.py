@@ -159,7 +159,7 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
             interval = int(1000 / fps) / 1000  # a browser counts milliseconds
             options: dict[str, Any] = {"embed_frames": True, "embed_limit": 4096, "default_mode": "loop"}
             return PageWriter(fps=JUST / interval, **options), interval  # type: ignore[arg-type]
-    raise ValueError(f"path = {path.name!r} ends in none of .gif, .mp4, .html")
+    raise ValueError(f"path = {(path.name or str(path))!r} ends in none of .gif, .mp4, .html")
 
 
 def frame_times(t: Array, step: float) -> Array:

@@ -112,6 +112,7 @@ def history(
     Raises:
         ValueError: for no response, responses under different ground motions, or another number of labels.
     """
+    require_text("title", title)
     if not isinstance(responses, Sequence):
         require_kind("responses", responses, Response)
     given = [responses] if isinstance(responses, Response) else list(responses)

@@ -53,6 +53,7 @@ def blocks(
         ValueError: for a pose of another shape, a value outside its range, or axes of two dimensions for blocks in
             space.
     """
+    require_kind("ax", ax, Axes)
     if isinstance(masonry, Response):
         pose = masonry.pose[-1] if pose is None else pose
         masonry = require_masonry("blocks", masonry)

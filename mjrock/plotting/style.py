@@ -9,7 +9,8 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..quantities import require_path
+from ..files import replacing
+from ..quantities import require_kind, require_path
 from ..result.response import Response
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -59,10 +60,20 @@ def save(figure: Figure, path: str | Path) -> Path:
     """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes).
 
     A path without a suffix is that of a PNG. Returns the path that was written.
+
+    Raises:
+        TypeError: for what is no figure.
+        ValueError: for a suffix that Matplotlib does not write.
     """
+    require_kind("figure", figure, Figure)
     path = require_path("path", path)
-    path = path if path.suffix else path.with_suffix(".png")
-    figure.savefig(path, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
+    if path.name not in ("", "..") and not path.suffix:
+        path = path.with_suffix(".png")
+    formats = figure.canvas.get_supported_filetypes()
+    if path.suffix[1:].lower() not in formats:
+        raise ValueError(f"path = {(path.name or str(path))!r} ends in none of .{', .'.join(sorted(formats))}")
+    with replacing(path) as partial:
+        figure.savefig(partial, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
     return path
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 
+from ..quantities import require_kind
 from ..study.sensitivity import Sensitivity
 
 
@@ -16,6 +17,8 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
     The bar "together" is the range of all runs. The vertical line is the base. A bar that reaches the dashed line has a
     run in which the wall overturned.
     """
+    require_kind("ax", ax, Axes)
+    require_kind("found", found, Sensitivity)
     bars = dict(found.swings)
     if any(len(names) > 1 for names in found.changed):
         bars["together"] = found.range

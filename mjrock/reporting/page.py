@@ -81,7 +81,7 @@ def report(
     require_kind("case", case, Case)
     path = require_path("path", path)
     if path.suffix.lower() != ".html":
-        raise ValueError(f"path = {path.name!r} does not end in .html")
+        raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html")
     require_text("title", title)
     require_text("notes", notes, 100_000)
     require_kind("e", e, Restitution, type(None))

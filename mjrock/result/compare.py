@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_kind
 from .ending import Outcome
 from .response import Response
@@ -179,10 +180,14 @@ def compare(reference: Response, candidate: Response) -> Comparison:
     The difference is taken at the reference's samples, the candidate interpolated linearly, over the time both cover.
 
     Raises:
+        TypeError: for responses of masonry.
         ValueError: if the responses answer different cases.
     """
     require_kind("reference", reference, Response)
     require_kind("candidate", candidate, Response)
+    for name, response in (("reference", reference), ("candidate", candidate)):
+        if not isinstance(response.case, Case):
+            raise TypeError(f"{name} is that of masonry; responses of one wall are compared")
     if reference.case != candidate.case:
         raise ValueError(f"the responses answer different cases: {reference.case} and {candidate.case}")
     common = reference.t <= min(reference.t[-1], candidate.t[-1]) * (1 + 1e-12)

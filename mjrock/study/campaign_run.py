@@ -76,7 +76,7 @@ class Runner:
                 self.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
             history = None if self.folder is None else self.folder / f"{key}.npz"
             status = statuses.get(key)
-            kept = status == "failed" or history is None or history.exists()
+            kept = status in ("failed", "taken") or history is None or history.exists()
             if status is not None and kept and not (self.retry and status == "failed"):
                 self.skipped += 1
                 continue

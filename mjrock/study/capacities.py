@@ -11,9 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from ..quantities import Array, Flags, is_iterable, require_row, require_within, shown
+from ..quantities import Array, Flags, is_iterable, require_real, require_row, require_within, shown
 from ..result.ending import Outcome
 from .fragility import Fragility, drawn, labels_for, numbered
+
+OUTCOMES = frozenset(outcome.value for outcome in Outcome)
+"""How a row says that a run ended."""
 
 
 def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
@@ -36,11 +39,17 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
         if not isinstance(row, Mapping):
             raise TypeError(f"rows[{i}] = {shown(row)} is no row of a campaign")
         outcome, peak = row.get("outcome"), row.get("peak_over_alpha")
-        if outcome is None or peak is None:
-            raise ValueError(f"rows[{i}] has outcome = {outcome!r} and peak_over_alpha = {peak!r}: no result of a wall")
-        tied = any(name.startswith("tie_") and value is not None for name, value in row.items())
+        if not isinstance(outcome, str) or outcome not in OUTCOMES or peak is None:
+            raise ValueError(
+                f"rows[{i}] has outcome = {shown(outcome)} and peak_over_alpha = {shown(peak)}: no result of a wall"
+            )
+        peak, inwards = (
+            require_real(f"rows[{i}], {name}", row.get(name) or 0.0)
+            for name in ("peak_over_alpha", "inwards_over_alpha")
+        )
+        tied = any(str(name).startswith("tie_") and value is not None for name, value in row.items())
         leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
-        found.append(outcome == Outcome.OVERTURNED.value or leans or (row.get("inwards_over_alpha") or 0.0) >= 1.0)
+        found.append(outcome == Outcome.OVERTURNED.value or leans or inwards >= 1.0)
     return np.array(found, dtype=bool)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..quantities import shown, spelt
+from ..quantities import is_iterable, shown, spelt
 from .campaign_task import Refused
 
 
@@ -23,15 +23,15 @@ class Grid(Sequence[Any]):
         axes: the values of each axis; the last one varies fastest.
 
     Raises:
-        ValueError: if an axis has no values.
+        TypeError: for a build that is no function, or values that cannot be gone through.
+        ValueError: if an axis has no values, or more than memory holds.
     """
 
     def __init__(self, build: Callable[..., Any], **axes: Iterable[object]) -> None:
+        if not callable(build):
+            raise TypeError(f"build = {shown(build)} is no function that makes the task of a point")
         self.build = build
-        self.axes = {name: list(values) for name, values in axes.items()}
-        for name, values in self.axes.items():
-            if not values:
-                raise ValueError(f"the axis {name} has no values")
+        self.axes = {name: _listed(name, values) for name, values in axes.items()}
 
     def __repr__(self) -> str:
         axes = ", ".join(f"{name} ({len(values)})" for name, values in self.axes.items())
@@ -68,6 +68,19 @@ class Grid(Sequence[Any]):
     @staticmethod
     def _labels(point: Mapping[str, object]) -> dict[str, object]:
         return {name: label_of(value) for name, value in point.items()}
+
+
+def _listed(name: str, values: object) -> list[Any]:
+    """The values of an axis; a TypeError or ValueError with its name if there are none."""
+    if not is_iterable(values) and not isinstance(values, str):
+        raise TypeError(f"the axis {name} = {shown(values)} is no row of values")
+    try:
+        listed = list(values)  # type: ignore[call-overload]
+    except MemoryError:
+        raise ValueError(f"the axis {name} = {shown(values)} has more values than memory holds") from None
+    if not listed:
+        raise ValueError(f"the axis {name} has no values")
+    return listed
 
 
 def labelled(task: Any, labels: Mapping[str, object]) -> Any:

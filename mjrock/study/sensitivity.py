@@ -164,7 +164,12 @@ def sensitivity(
     points, changed = _points(build, base, vary, require_flag("together", together))
     tasks: list[Any] = []
     for point in points:
-        tasks.append(labelled(build(**point), {name: label_of(point[name]) for name in vary}))
+        labels = {name: label_of(point[name]) for name in vary}
+        try:
+            tasks.append(labelled(build(**point), labels))
+        except Exception as error:
+            at = ", ".join(f"{name} = {shown(value)}" for name, value in point.items())
+            raise ValueError(f"build fails at {at}: {type(error).__name__}: {error}") from error
     column = _column(tasks[0], measure)
     with TemporaryDirectory() as folder:
         path = Path(folder) / "sensitivity.sqlite" if store is None else require_path("store", store)

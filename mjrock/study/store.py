@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..files import require_file
 from ..quantities import require_path, spelt
 from ..result.table import written
 from .lock import locked
@@ -59,6 +60,8 @@ class Store:
         self.path = require_path("path", path)
         if not writing and not self.path.is_file():
             raise FileNotFoundError(f"{self.path}: there is no such campaign")
+        if writing and self.path.exists():
+            require_file(self.path)
         if writing:
             self._lock = locked(self.path)
         try:

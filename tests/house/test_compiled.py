@@ -112,6 +112,35 @@ def test_stored_once_and_made_anew_when_a_source_changes(tmp_path):
         assert np.abs(c["shaken"]).max() > 1.5 * np.abs(a["shaken"]).max()
 
 
+def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
+    """An edit of a module that it does not import leaves it, also one of a module that imports it."""
+    copy = tmp_path / "mjrock"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "laws"))
+
+    def edited(module):
+        """Which of three modules with loops have another stamp after an edit of a module with compiled functions."""
+        path = copy / module
+        text = path.read_text()
+        path.write_text(text + "\n# @compiled\n")
+        after = stamps()
+        path.write_text(text)
+        return {name for name, stamp in stamps().items() if stamp != after[name]}
+
+    def stamps():
+        compiled._imports.cache_clear()
+        names = ("engine/loop.py", "theory/forced.py", "distinct/loop.py")
+        return {name: compiled.stamp(copy / name) for name in names}
+
+    assert edited("distinct/loop.py") == {"distinct/loop.py"}
+    assert edited("distinct/contact.py") == {"distinct/loop.py"}
+    assert edited("theory/forced.py") == {"theory/forced.py"}
+    assert edited("engine/loop.py") == {"engine/loop.py"}
+    assert edited("engine/pace.py") == {"engine/loop.py"}
+    assert "engine/loop.py" in edited("geometry/frames.py")  # which it reaches by others
+    assert edited("compiled.py") == {"engine/loop.py", "theory/forced.py", "distinct/loop.py"}
+    assert edited("distinct/encounters.py") <= {"distinct/loop.py"}
+
+
 @pytest.mark.slow
 def test_a_read_only_installation_works(tmp_path):
     """No folder can be written, neither the package's nor the user's: the loops are compiled in each process."""

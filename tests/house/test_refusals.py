@@ -28,6 +28,22 @@ class Unspeakable:
         raise RuntimeError("repr fails")
 
 
+class Endless:
+    """What says that it has more values than memory holds."""
+
+    def __len__(self):
+        return 2**62
+
+    def __getitem__(self, i):
+        return 1.0
+
+
+LINES = ("a\nb", "a\n", "\ra", "a\x0bb", "a\u2028b")
+COLUMN = mr.Masonry.stack([WALL], 5e8)
+BOX = mr.Masonry.box((0.6, 0.4, 2.0))
+STANDS = mr.solve_explicit(mr.MasonryCase(COLUMN, 0.002))
+
+
 def analysis():
     return mr.Analysis(CASE, "analytical", E)
 
@@ -150,6 +166,36 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: filmed(t=[]), "t has the shape"),
         (lambda: filmed(t=[0.0, math.inf]), "t holds a value that is not finite"),
         (lambda: filmed(rests=object()), "rests = .* does not hold real numbers alone"),
+        (lambda: plotting.tornado(plotting.single(lambda ax: ax).axes[0], 2), "found = 2 of type int is not a Sens"),
+        (lambda: plotting.tornado(2, 2), "ax = 2 of type int is not a Axes"),
+        (lambda: plotting.save(3, "x.png"), "figure = 3 of type int is not a Figure"),
+        (lambda: plotting.save(plotting.single(lambda ax: ax), "0.5"), r"path = '0.5' ends in none of .*\.png"),
+        (lambda: plotting.blocks(1, COLUMN), "ax = 1 of type int is not a Axes"),
+        (lambda: plotting.history(ANSWER, title=object()), "title = .* of type object is not a str"),
+        (lambda: mr.Grid(analysis, i=3), "the axis i = 3 of type int is no row of values"),
+        (lambda: mr.Grid(analysis, i=Endless()), "the axis i = .* has more values than memory holds"),
+        (lambda: mr.Grid("nan", i=[1]), "build = 'nan' of type str is no function"),
+        (lambda: mr.GroundMotion(Endless(), 0.1), "accel = .* has more values than memory holds"),
+        (lambda: mr.compare(ANSWER, STANDS), "candidate is that of masonry; responses of one wall are compared"),
+        (lambda: mr.collapse_multiplier(COLUMN, set()), "direction = set.* does not hold real numbers alone"),
+        (lambda: mr.collapse_multiplier(BOX, set(), angle=0.1), "direction = set.* does not hold real numbers alone"),
+        (lambda: mr.collapse_multiplier(BOX, 2, angle=0.1), "direction = 2 of type int is no direction"),
+        (lambda: mr.lost([{"outcome": 3, "peak_over_alpha": 0.1}]), r"rows\[0\] has outcome = 3 of type int"),
+        (lambda: mr.lost([{"outcome": [], "peak_over_alpha": 0.1}]), r"rows\[0\] has outcome = \[\] of type list"),
+        (lambda: mr.lost([{"outcome": "lost", "peak_over_alpha": 0.1}]), r"rows\[0\] has outcome = 'lost'"),
+        (
+            lambda: mr.lost([{"outcome": "at rest", "peak_over_alpha": "high"}]),
+            r"rows\[0\], peak_over_alpha = 'high' of type str is not a real number",
+        ),
+        (
+            lambda: mr.lost([{"outcome": np.zeros(2), "peak_over_alpha": 0.1}]),
+            r"rows\[0\] has outcome = array\(.* of type ndarray",
+        ),
+        (
+            lambda: mr.sensitivity(lambda k: 0.01 * k, {"k": np.datetime64("2020-01-01")}, {"k": [0.5]}),
+            r"build fails at k = .*datetime64\('2020-01-01'\) of type datetime64: \w+: ufunc",
+        ),
+        *((lambda name=name: mr.Polygon(SQUARE, name=name), "name = .* the end of a line") for name in LINES),
     ],
 )
 def test_what_cannot_be_is_named(call, complaint, tmp_path, monkeypatch):

@@ -2,11 +2,13 @@
 
 import json
 import struct
+import time
 
 import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.masonry.mesh_files import read_obj
 
 UNIT = (0.4, 0.2)
 FACADE = mr.Masonry.facade(0.8, 0.4, 0.4, UNIT, xi=0)
@@ -172,10 +174,47 @@ def test_json_files_that_are_none(tmp_path):
             mr.Masonry.from_compas(written(tmp_path / f"{name}.json", broken), xi=0)
 
 
+def test_a_coordinate_beyond_floats_is_named(tmp_path):
+    model = json.loads(FACADE.to_compas(tmp_path / "a.json").read_text())
+    element = next(iter(model["data"]["elements"].values()))
+    element["data"]["geometry"]["data"]["vertex"]["0"]["x"] = 10**400
+    with pytest.raises(ValueError, match=r"b.json: the element .* is no block with a mesh: OverflowError"):
+        mr.Masonry.from_compas(written(tmp_path / "b.json", json.dumps(model)), xi=0)
+
+
+def test_files_of_many_faces_and_of_many_bodies_take_no_longer_than_their_size_asks(tmp_path):
+    """Bodies without end are refused as soon as they are too many, and a body knows its own vertices alone."""
+    faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 20_000
+    started = time.process_time()
+    with pytest.raises(ValueError, match=r"body_0 is more than 5000 closed bodies"):
+        mr.Masonry.from_obj(written(tmp_path / "faces.obj", faces))
+    took = time.process_time() - started
+    assert took < 2  # 0.2 s; it were 4 s if each pair of faces was divided for itself
+    boxes = obj(*((f"b{i}", cube((2.0 * i, 0, 0)), CUBE_FACES) for i in range(1000)))
+    meshes = read_obj(written(tmp_path / "boxes.obj", boxes))
+    assert len(meshes) == 1000
+    assert all(mesh.vertices.shape == (8, 3) for mesh in meshes)
+    assert [mesh.vertices[0].tolist() for mesh in meshes[:3]] == [[0, 0, 0], [2, 0, 0], [4, 0, 0]]
+
+
+@pytest.mark.parametrize("name", ["#a", "a # b", "a\\", " a", "a "])
+def test_names_that_no_obj_file_holds(tmp_path, name):
+    """They would come back as others, or as none, or tie two lines together. A COMPAS model holds them."""
+    ground = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True)
+    named = mr.Masonry([ground, mr.Polyhedron.box((1, 1, 1), (0, 0, 0.5), name=name)])
+    with pytest.raises(ValueError, match="the block .* has a # in its name, a backslash at its end or a blank"):
+        named.to_obj(tmp_path / "a.obj")
+    assert not list(tmp_path.iterdir())
+    if name.strip() == name:
+        assert mr.Masonry.from_compas(named.to_compas(tmp_path / "a.json")).names[1] == name
+
+
 def test_arguments_are_checked(tmp_path):
     path = FACADE.to_obj(tmp_path / "wall.obj")
     with pytest.raises(ValueError, match="fixed = 'floor' is no body; there are ground, facade_0_0"):
         mr.Masonry.from_obj(path, fixed=["floor"])
+    with pytest.raises(ValueError, match="fixed has 'ground' 2 times; each body is named once"):
+        mr.Masonry.from_obj(path, fixed=["ground", "ground"])
     with pytest.raises(TypeError, match="fixed = 'ground' of type str is no list of names"):
         mr.Masonry.from_obj(path, fixed="ground")
     with pytest.raises(ValueError, match="scale = 0 m is outside the valid range"):

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from multiprocessing import current_process
 from pathlib import Path
 
@@ -30,6 +31,12 @@ def table(path):
 
 def squares(marks, count=30, **options):
     return [Square(i, str(marks), labels={"name": f"n{i}"}, **options) for i in range(count)]
+
+
+def thrice(marks, count=30, **options):
+    """Three tasks of each content, which differ in a label."""
+    tasks = squares(marks, count, **options)
+    return [replace(task, labels=task.labels | {"tie": tie}) for task in tasks for tie in range(3)]
 
 
 def done_once(marks, count):
@@ -123,6 +130,20 @@ def test_nothing_is_done_twice(tmp_path):
     assert len(table(path).splitlines()) == 21
 
 
+@pytest.mark.parametrize("histories", [False, True])
+def test_equal_tasks_run_once_and_keep_the_labels_of_the_first(tmp_path, histories):
+    """Also while the first of them is still running, when neither its row nor its history is there."""
+    tasks = thrice(tmp_path, 5, wait=0.02)
+    options = {"histories": tmp_path / "h"} if histories else {}
+    for _ in range(2):  # the second time nothing is left to do
+        path = mr.campaign(tasks, tmp_path / "c.sqlite", executor=ThreadPoolExecutor(3), **options)
+    assert done_once(tmp_path, 5)
+    with mr.Store(path) as store:
+        assert [(row["name"], row["tie"], row["position"]) for row in store.rows()] == [
+            (f"n{i}", 0, 3 * i) for i in range(5)
+        ]
+
+
 def test_results_are_those_of_the_tasks_asked(tmp_path):
     path = mr.campaign(squares(tmp_path, 10), tmp_path / "c.sqlite", workers=1)
     rows = mr.results([Square(7), Square(99), Square(2)], path)
@@ -174,9 +195,9 @@ KILLED = """
 import sys
 from pathlib import Path
 import mjrock as mr
-from test_campaign import squares
+from test_campaign import thrice
 if __name__ == "__main__":
-    mr.campaign(squares(Path(sys.argv[1]), 60, wait=0.02), sys.argv[2], workers=2)
+    mr.campaign(thrice(Path(sys.argv[1]), 60, wait=0.02), sys.argv[2], workers=2, histories=sys.argv[2] + ".h")
 """
 
 
@@ -196,13 +217,17 @@ def gone(pids):
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks for processes in /proc")
 def test_kill_and_resume(tmp_path):
-    """kill -9 of the campaign mid-run, twice: it carries on, and its table is that of an undisturbed run."""
+    """kill -9 of the campaign mid-run, twice: it carries on, and its table is that of an undisturbed run.
+
+    Every content is asked three times, under other labels, and has a history.
+    """
     script = tmp_path / "run.py"
     script.write_text(KILLED)
     undisturbed, marks = tmp_path / "undisturbed", tmp_path / "marks"
     undisturbed.mkdir()
     marks.mkdir()
-    expected = table(mr.campaign(squares(undisturbed, 60), tmp_path / "u.sqlite", workers=1))
+    whole = mr.campaign(thrice(undisturbed, 60), tmp_path / "u.sqlite", workers=1, histories=tmp_path / "u.h")
+    expected = table(whole)
     path = tmp_path / "c.sqlite"
     for least in (5, 25):
         run = subprocess.Popen([sys.executable, str(script), str(marks), str(path)], env=ENVIRONMENT)

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Self
 
-from ...files import write_text
+from ...files import require_file, write_text
 from ...quantities import keep, require_array, require_kind, require_path, require_stiffness, require_within
 from ..wall.block import Block
 from .forms import FORMS, Form, Groups, PowerLaw
@@ -211,7 +211,7 @@ class DampingLaw:
         """
         path = require_path("path", path)
         try:
-            text = tomllib.loads(path.read_text(encoding="utf-8"))
+            text = tomllib.loads(require_file(path).read_text(encoding="utf-8"))
             values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in text.items()}
             for part in ("base", "side"):
                 given = dict(text[part])

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...files import require_file
 from ...quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
 
 Record = tuple[Array, float]
@@ -74,7 +75,7 @@ def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Rec
 
 def text_lines(path: Path) -> list[str]:
     """The lines of a text file in UTF-8 or Latin-1. Only CR, LF and CR LF end a line. A last ^Z of DOS is dropped."""
-    data = path.read_bytes()
+    data = require_file(path).read_bytes()
     if b"\0" in data:
         raise ValueError("a binary file or one in UTF-16; a text of accelerations in UTF-8 or Latin-1 is needed")
     try:

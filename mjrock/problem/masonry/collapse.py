@@ -83,11 +83,6 @@ def collapse_multiplier(masonry: Masonry, direction: float | ArrayLike = 1, *, a
 
 def _push(masonry: Masonry, direction: float | ArrayLike, angle: float | None) -> Array:
     """The unit vector of the force, shape (2,), in space (3,)."""
-    if angle is not None:
-        if not masonry.in_space:
-            raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give direction = 1 or -1")
-        angle = require_within("angle", angle, -2 * math.pi, 2 * math.pi, "rad")
-        return np.array([math.cos(angle), math.sin(angle), 0.0])
     given = require_reals("direction", direction, "1, -1 or a vector in plan of the shape (2,)")
     if given.shape == () and abs(float(given)) == 1:
         given = np.array([float(given), 0.0])
@@ -97,4 +92,9 @@ def _push(masonry: Masonry, direction: float | ArrayLike, angle: float | None) -
     length = float(np.hypot(*given))
     if not 1e-9 < length < math.inf:
         raise ValueError(f"direction = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")
+    if angle is not None:
+        if not masonry.in_space:
+            raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give direction = 1 or -1")
+        angle = require_within("angle", angle, -2 * math.pi, 2 * math.pi, "rad")
+        return np.array([math.cos(angle), math.sin(angle), 0.0])
     return np.append(given / length, 0.0) if masonry.in_space else given

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import struct
 import uuid
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...quantities import Array
-from .meshes import Mesh
+from .meshes import Mesh, used
 from .polyhedron import Polyhedron
 
 MOST_BYTES = 500_000_000
@@ -66,11 +67,11 @@ def read_obj(path: Path) -> list[Mesh]:
             ) from None
     if not faces:
         raise ValueError(f"path = {path} has no faces: it is no OBJ file, or is cut short")
-    things = [thing for thing, _ in faces]
+    things = Counter(thing for thing, _ in faces)
     places, meshes = np.array(vertices), []
     for i, ((thing, group), ring) in enumerate(faces.items()):
-        name = thing if thing and things.count(thing) == 1 else "_".join(part for part in (thing, group) if part)
-        meshes.append(Mesh(_plain(name, f"body_{i}"), places, ring))
+        name = thing if thing and things[thing] == 1 else "_".join(part for part in (thing, group) if part)
+        meshes.append(Mesh(_plain(name, f"body_{i}"), *used(places, ring)))
     return meshes
 
 
@@ -139,7 +140,7 @@ def read_compas(path: Path) -> list[Mesh]:
     for key, element in pairs:
         try:
             meshes.append(_element(element["data"], materials))
-        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
             raise ValueError(
                 f"path = {path}: the element {key} is no block with a mesh: {type(error).__name__} {error}"
             ) from None
@@ -163,9 +164,14 @@ def _element(element: dict[str, Any], materials: dict[str, Any]) -> Mesh:
 
 
 def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
-    """Blocks as the text of an OBJ file, one object each."""
+    """Blocks as the text of an OBJ file, one object each. A ValueError says which name it cannot hold."""
     lines, before = ["# metres, z upwards"], 1
     for block, name in zip(blocks, names, strict=True):
+        if "#" in name or name.endswith("\\") or name.strip() != name:
+            raise ValueError(
+                f"the block {name!r} has a # in its name, a backslash at its end or a blank at one of its ends, which "
+                "an OBJ file does not hold"
+            )
         lines.append(f"o {name}")
         lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in block.vertices]
         lines += ["f " + " ".join(str(before + i) for i in face) for face in block.faces]

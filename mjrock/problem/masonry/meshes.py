@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...quantities import Array
+from .builders import MOST_BLOCKS
 from .polyhedron import Polyhedron
 
 SAME_VOLUME = 1e-3
@@ -38,46 +39,62 @@ class Mesh(NamedTuple):
     density: float | None = None
 
 
+def used(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+    """The vertices that faces use, in their order, and the faces with the new numbers of them."""
+    numbers = sorted({vertex for face in faces for vertex in face})
+    where = {vertex: i for i, vertex in enumerate(numbers)}
+    return vertices[numbers], [tuple(where[vertex] for vertex in face) for face in faces]
+
+
 def bodies_of(mesh: Mesh) -> list[Mesh]:
-    """The closed bodies of a mesh; those of one mesh are numbered. A ValueError says if one is open.
+    """The closed bodies of a mesh; those of one mesh are numbered. A ValueError says if one is open, or they are many.
 
     Faces are taken in their order. They are a body as soon as every edge belongs to two of them, so that bodies which
     touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
     is divided.
     """
     places, number = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
-    faces = [tuple(number.ravel()[list(face)].tolist()) for face in mesh.faces]
+    number = number.ravel().tolist()
+    faces = [tuple(number[i] for i in face) for face in mesh.faces]
     faces = [face for face in faces if len(set(face)) == len(face)]
-    parts: list[Faces] = [[]]
+    parts: list[int] = []  # of each face
     open_edges: set[tuple[int, int]] = set()
+    part = 0
     for face in faces:
-        parts[-1].append(face)
+        parts.append(part)
         for i, j in zip(face, face[1:] + face[:1], strict=True):
             open_edges ^= {(min(i, j), max(i, j))}
-        if not open_edges:
-            parts.append([])
+        part += not open_edges
+        if part > MOST_BLOCKS:
+            raise ValueError(f"body {mesh.name} is more than {MOST_BLOCKS} closed bodies, which is the most")
     if open_edges:
         raise ValueError(f"body {mesh.name} is open: {len(open_edges)} of its edges belong to one face alone")
-    shells = [shell for part in parts if part for shell in _apart(part, len(places))]
+    shells = _apart(faces, parts)
     if not shells:
         raise ValueError(f"body {mesh.name} has no faces")
     bodies = []
     for i, shell in enumerate(shells):
-        used = sorted({vertex for face in shell for vertex in face})
-        where = {vertex: k for k, vertex in enumerate(used)}
         name = mesh.name if len(shells) == 1 else f"{mesh.name}_{i}"
-        rings = [tuple(where[vertex] for vertex in face) for face in shell]
-        bodies.append(mesh._replace(name=name, vertices=places[used], faces=rings))
+        vertices, rings = used(places, shell)
+        bodies.append(mesh._replace(name=name, vertices=vertices, faces=rings))
     return bodies
 
 
-def _apart(faces: Faces, count: int) -> Iterator[Faces]:
-    """Faces by the parts that share no vertex."""
-    pairs = np.array([(face[0], vertex) for face in faces for vertex in face])
-    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    labels = connected_components(graph, directed=False)[1]
-    for label in dict.fromkeys(labels[face[0]] for face in faces):
-        yield [face for face in faces if labels[face[0]] == label]
+def _apart(faces: Faces, parts: list[int]) -> list[Faces]:
+    """Faces by the bodies that they make: those of one part that hang together by their vertices."""
+    own: dict[tuple[int, int], int] = {}  # a vertex counts once in each part
+    pairs = []
+    for face, part in zip(faces, parts, strict=True):
+        numbers = [own.setdefault((part, vertex), len(own)) for vertex in face]
+        pairs += [(numbers[0], number) for number in numbers]
+    if not pairs:
+        return []
+    graph = coo_array((np.ones(len(pairs)), np.transpose(pairs)), shape=(len(own), len(own)))
+    labels = connected_components(graph, directed=False)[1].tolist()
+    shells: dict[int, Faces] = {}
+    for face, part in zip(faces, parts, strict=True):
+        shells.setdefault(labels[own[part, face[0]]], []).append(face)
+    return list(shells.values())
 
 
 def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
@@ -106,7 +123,9 @@ def blocks_of(meshes: Sequence[Mesh], density: float, fixed: Sequence[str]) -> l
     bodies = [body for mesh in meshes for body in bodies_of(mesh)]
     count = Counter(body.name for body in bodies)
     numbered = [body.name if count[body.name] == 1 else f"{body.name}_{i}" for i, body in enumerate(bodies)]
-    for name in fixed:
+    for name, times in Counter(fixed).items():
+        if times > 1:
+            raise ValueError(f"fixed has {name!r} {times} times; each body is named once")
         if name not in numbered:
             raise ValueError(f"fixed = {name!r} is no body; there are {', '.join(numbered[:10])}")
     return [

@@ -32,7 +32,8 @@ class Polygon:
         density: mass density [kg/m3], 100 to 30000.
         length: length out of the plane [m], 1e-3 to 1000.
         fixed: whether the block belongs to the ground, as an abutment does.
-        name: what it is called in results and in the model, at most 1000 characters, without "|"; None numbers it.
+        name: what it is called in results and in the model, at most 1000 characters on one line, without "|"; None
+            numbers it.
 
     Raises:
         ValueError: for fewer than three vertices, two that coincide, edges that cross, a corner that points inwards, or
@@ -123,8 +124,8 @@ class Polygon:
 
 def checked_name(name: str | None) -> str | None:
     """The name of a block, or None; a TypeError or ValueError says what is wrong with it."""
-    if name is not None and (not require_text("name", name) or "|" in name or name == "world"):
-        raise ValueError(f"name = {shown(name)} is empty, is world, or holds a |")
+    if name is not None and (require_text("name", name).splitlines() != [name] or "|" in name or name == "world"):
+        raise ValueError(f"name = {shown(name)} is empty, is world, or holds a | or the end of a line")
     return name
 
 

@@ -33,7 +33,8 @@ class Polyhedron:
             in the middle of an edge or of a face are left out.
         density: mass density [kg/m3], 100 to 30000.
         fixed: whether the block belongs to the ground, as an abutment does.
-        name: what it is called in results and in the model, at most 1000 characters, without "|"; None numbers it.
+        name: what it is called in results and in the model, at most 1000 characters on one line, without "|"; None
+            numbers it.
 
     Raises:
         ValueError: for fewer than four vertices, two that coincide, vertices in a plane, one that lies inside the hull

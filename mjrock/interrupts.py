@@ -1,0 +1,29 @@
+"""Ctrl-C at moments at which it would leave the process broken."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+from collections.abc import Iterator
+
+
+@contextlib.contextmanager
+def interrupts_held_back() -> Iterator[None]:
+    """Hear Ctrl-C only when the block has ended, for imports: one that is cut off leaves modules that are half made.
+
+    Python hears signals in the main thread, and nothing is done in another. The same holds where no function of Python
+    answers to Ctrl-C.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield
+        return
+    heard = []
+    signal.signal(signal.SIGINT, lambda *received: heard.append(received))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if heard:
+            handler(*heard[0])
