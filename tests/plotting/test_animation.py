@@ -154,8 +154,8 @@ def test_any_bodies_can_be_drawn(tmp_path):
 
 def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     triangle, square = [[-1.0, 0.0], [1.0, 0.0], [0.0, 2.0]], [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
-    poses = 0.3 * np.random.default_rng(0).normal(size=(4, 2, 3))
-    ground = np.array([[-5.0, -1.5], [1.0, -1.5], [1.0, -1.0]])
+    poses = 0.1 * np.random.default_rng(0).normal(size=(4, 2, 3))
+    ground = np.array([[-2.0, -0.5], [1.0, -0.5], [1.0, -0.2]])
     bodies = Bodies(np.arange(4.0), (triangle, square), [[0.0, 0.5], [3.0, 1.5]], poses, 2.0, (ground,))
     each = [[bodies.placed(i, j, one) for j, one in enumerate(bodies.outlines)] for i in range(4)]
     for i, (three, four) in enumerate(each):
