@@ -55,7 +55,9 @@ def _numba() -> Any:
         import numba.extending
         from numba.core import event
     except ImportError:
-        _notice("numba is not installed; the loops run as plain Python, some fifty times slower")
+        _notice(
+            "numba is not installed; the loops run as plain Python: some thirty times slower, explicit steps thousands of times"
+        )
         return None
 
     class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]
