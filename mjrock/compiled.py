@@ -56,7 +56,7 @@ def _numba() -> Any:
         from numba.core import event
     except ImportError:
         _notice(
-            "numba is not installed; the loops run as plain Python: some thirty times slower, explicit steps thousands of times"
+            "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
         )
         return None
 
