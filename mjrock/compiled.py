@@ -82,7 +82,9 @@ def _imported_numba() -> Any:
         import numba.extending
         from numba.core import event
     except ImportError:
-        _notice("numba is not installed; the loops run as plain Python, some fifty times slower")
+        _notice(
+            "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
+        )
         return None
 
     class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]

@@ -1,7 +1,7 @@
 """Mutation test of the physics: changes one operator or number at a time and asks whether the tests notice.
 
     python tests/mutants.py --count 60 --seed 1
-    python tests/mutants.py touches.py "accounts.py:9"
+    python tests/mutants.py touches.py "energy_work.py:9"
 
 The modules are those that hold compiled functions, which are searched for, and those that are named below. The package,
 the tests and the scripts are copied to a temporary folder. One mutant after the other is written there, and the tests
@@ -206,6 +206,19 @@ def passes(folder: Path, no_jit: str, names: tuple[str, ...]) -> bool:
     return done.returncode == 0
 
 
+def gone() -> list[str]:
+    """What this script names that is no longer there: modules, tests, and mutants that no test can notice."""
+    package, tests = ROOT / "mjrock", ROOT / "tests"
+    named = {*OTHERS, *OWN}
+    missing = sorted(f"mjrock/{name}" for name in named if not (package / name).exists())
+    wanted = {name for names in (*OWN.values(), *(names for _, names in ROUNDS)) for name in names}
+    missing += sorted(f"test_{name}.py" for name in wanted if not any(tests.rglob(f"test_{name}.py")))
+    suspects = [name for name in modules() if any(key.startswith(f"{Path(name).name}: ") for key in EQUIVALENT)]
+    changes = [mutant for name in suspects if (package / name).exists() for mutant in mutants_of(name)]
+    known = {f"{Path(mutant.module).name}: {mutant.lines()[2]}" for mutant in changes}
+    return missing + [f"EQUIVALENT, {key}" for key in EQUIVALENT if key not in known]
+
+
 def main() -> int:
     """Run the mutants that are asked for, and name the survivors."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
@@ -213,11 +226,15 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=40, help="how many are drawn (0 for all)")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
+    if lost := gone():
+        sys.exit("no longer there: " + "; ".join(lost))
     every = [mutant for module in modules() for mutant in mutants_of(module)]
     chosen = [one for one in every if any(text in str(one) for text in options.match or [""])]
     if 0 < options.count < len(chosen):
         chosen = random.Random(options.seed).sample(chosen, options.count)
     drawn = [one for one in chosen if one.known is None]
+    if options.match and not chosen:
+        sys.exit(f"no mutant holds any of {', '.join(options.match)}")
     print(f"{len(every)} mutants, {len(chosen)} drawn, {len(chosen) - len(drawn)} of them known to change nothing")
     survivors = 0
     with tempfile.TemporaryDirectory() as name:

@@ -23,7 +23,7 @@ from .film import GifWriter, PageWriter, Stage, standalone
 from .histories import acceleration, rotation, ties
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
-from .style import Drawing
+from .style import Drawing, titled
 from .view import fill, solids, ties_in_view
 
 MOST_FRAMES = 20_000
@@ -202,12 +202,13 @@ def scene(
             panel.set_xlim(bodies.t[0], max(bodies.t[-1], bodies.t[0] + 1e-9))
             updates.append(_marker(panel, bodies.t))
             panel.label_outer()
-    figure.suptitle(title, fontsize=10)
+    titled(figure, title, 10)
     moved = together(updates)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
-        fill(ax)
+        fill(ax, figure.bbox)
+        figure.draw_without_rendering()
 
     def update(frame: int) -> None:
         clock.set_text(f"{scale}, {rate}\n$t$ = {bodies.t[frame]:.2f} s")

@@ -24,11 +24,35 @@ def require_masonry(what: str, response: Response) -> Masonry:
     return masonry
 
 
+Ends = tuple[Array, Array]
+"""The lowest and the highest x and z of something [m], shape (2,) each."""
+
+
 def interpolated(times: Array, t: Array, poses: Array) -> Array:
     """Poses of shape (n, bodies, numbers) at other times, linearly."""
     columns = poses.reshape(len(t), -1).T
     between = np.stack([np.interp(times, t, column) for column in columns], axis=-1)
     return between.reshape(len(times), *poses.shape[1:])
+
+
+def ends_of(points: Array) -> tuple[Array, Array]:
+    """The lowest and the highest x and z of points [m], shape (..., 2)."""
+    flat = points.reshape(-1, 2)
+    return flat.min(axis=0), flat.max(axis=0)
+
+
+def window(rest: Ends, moving: Ends, fixed: Ends) -> Ends:
+    """The part of the plane that a picture shows [m]: bodies up to one extent of all from where they are at rest, and a
+    quarter of it below, and fixed ones up to a quarter of it beyond. All are given by their lowest and highest x and z.
+    """
+    room = float((rest[1] - rest[0]).max())
+    beyond = 0.25 * room
+    low, high = np.maximum(moving[0], rest[0] - [room, beyond]), np.minimum(moving[1], rest[1] + room)
+    low, high = np.minimum(low, rest[1]), np.maximum(high, rest[0])
+    return (
+        np.minimum(low, np.maximum(fixed[0], low - beyond)),
+        np.maximum(high, np.minimum(fixed[1], high + beyond)),
+    )
 
 
 def _outlines(name: str, given: object) -> tuple[Array, ...]:
@@ -122,14 +146,18 @@ class Bodies:
         return self._drawn(self.poses[frame], self.rests, self._padded)
 
     def extent(self) -> tuple[Array, Array]:
-        """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each."""
+        """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each.
+
+        What moves farther than one extent of the bodies at rest, or falls by a quarter of it below all of them, is
+        outside. Fixed bodies are shown up to a quarter beyond those that move.
+        """
+        if not self.outlines:
+            corners = np.concatenate(self.fixed)
+            return corners.min(axis=0), corners.max(axis=0)
         some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int))
-        ends = [(points.min(axis=0), points.max(axis=0)) for points in self.fixed]
-        for frame in some if self.outlines else ():
-            corners = self.corners(int(frame))
-            ends.append((corners.min(axis=(0, 1)), corners.max(axis=(0, 1))))
-        low, high = np.transpose(ends, (1, 0, 2))
-        return low.min(axis=0), high.max(axis=0)
+        moving = np.array([ends_of(self.corners(int(frame))) for frame in some])
+        fixed = np.concatenate(self.fixed) if self.fixed else self.rests
+        return window(ends_of(self.rests[:, None] + self._padded), ends_of(moving), ends_of(fixed))
 
     @cached_property
     def _padded(self) -> Array:

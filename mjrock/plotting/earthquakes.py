@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from ..study.fragility import Fragility
-from .style import STYLES
+from .style import STYLES, folded, legend_below
 
 MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
 """How a wall takes a pulse, and colours that a black-and-white print still tells apart."""
@@ -31,7 +31,7 @@ def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: 
 def mode_legend(figure: Figure) -> None:
     """What the colours of `overturning_map` stand for, below the figure."""
     handles = [Patch(facecolor=colour, edgecolor="0.4", linewidth=0.5, label=name) for name, colour in MODES.items()]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9)
+    legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
 
 
 def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, top: float | None = None) -> Axes:
@@ -44,10 +44,11 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     if top is None:
         top = max(1.2, 1.15 * float(values[np.isfinite(values)].max(initial=0.0)))
     shown = np.minimum(values, top)
-    ax.plot(levels, shown.T, color="0.75", linewidth=0.6)
+    mark = "" if levels.size > 1 else "o"  # a line of one point is none
+    ax.plot(levels, shown.T, color="0.75", linewidth=0.6, marker=mark)
     fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
     for line, style, label in zip(fractiles, (":", "-", "--"), ("16 %", "median", "84 %"), strict=True):
-        ax.plot(levels, line, color="#12406b", linewidth=1.8, linestyle=style, label=label)
+        ax.plot(levels, line, color="#12406b", linewidth=1.8, linestyle=style, marker=mark, label=label)
     ax.axhline(1, color="0.3", linewidth=0.6)
     ax.axhline(top, color="0.3", linewidth=0.6, linestyle=":")
     ax.text(0.01 * levels.max(), top, "overturned", fontsize=7, va="top", color="0.3")
@@ -79,7 +80,7 @@ def fragility(
     low, high = fit.band(x)
     ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
     ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8)
-    label = f"{style.get('label', solver)}: {fit.median:.2f} {unit}, {fit.dispersion:.2f}"
+    label = f"{folded(style.get('label', solver))}: {fit.median:.2f} {unit}, {fit.dispersion:.2f}"
     ax.plot(points, shares, marker=marker, linestyle="", color=colour, markersize=5, label=label)
     ax.set_xlim(0, max(1.02 * points.max(), ax.get_xlim()[1] if len(ax.lines) > 2 else 0.0))
     ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
@@ -89,7 +90,7 @@ def fragility(
 def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-3, most: float = 1.0) -> Axes:
     """Share of runs whose peak rotation stays below a value, a line a solver; overturned runs lie beyond `most`."""
     for solver, values in samples.items():
-        style = {k: v for k, v in STYLES.get(solver, {"label": solver}).items() if k != "linestyle"}
+        style = {k: v for k, v in STYLES.get(solver, {"label": folded(solver)}).items() if k != "linestyle"}
         ordered = np.sort(np.clip(np.asarray(values, dtype=float), least, 10 * most))
         ax.step(ordered, np.arange(1, len(ordered) + 1) / len(ordered), where="post", **style)
     ax.set(xscale="log", xlim=(least, most), ylim=(0, 1), xlabel=PEAK, ylabel="share of runs below it [-]")

@@ -12,9 +12,11 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
-from .style import below_figure, several, styles_of
+from .style import below_figure, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
+MOST = 6
+"""Entries of a legend of ties."""
 
 
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
@@ -38,7 +40,11 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
-    said = [f"{name}: beyond return from t = {t:.3g} s" for name, t in zip(names, fallen, strict=True) if t is not None]
+    said = [
+        f"{short(name)}: beyond return from t = {t:.3g} s"
+        for name, t in zip(names, fallen, strict=True)
+        if t is not None
+    ]
     if said:
         top = max(1.2, 1.05 * max(reached))
         inwards = min(float(response.theta.min() / response.case.wall.alpha) for response in responses)
@@ -75,26 +81,42 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
 
     Ties of one response that did the same are drawn once.
     """
+    entries = 0
     for response, style in zip(responses, styles_of(responses, labels), strict=True):
         drawn: dict[bytes, list[str]] = {}
         for name, tie in response.ties.items():
             drawn.setdefault(tie.force.tobytes(), []).append(name)
         for i, names in enumerate(drawn.values()):
             tie = response.ties[names[0]]
-            said = f"{style['label']}, " if len(responses) > 1 else ""
-            said += f"{', '.join(names)}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
-            look = style | {"label": said, "zorder": 2} | ({"linestyle": "--"} if i else {})
+            said = f"{short(style['label'])}, " if len(responses) > 1 else ""
+            said += f"{short(', '.join(names))}: drawn out by {1e3 * tie.plastic[-1]:.3g} mm"
+            look = style | {"label": said, "zorder": 2} | ({"linestyle": ("-", "--", "-.", ":")[i % 4]} if i else {})
             (line,) = ax.plot(response.t, tie.force / 1e3, **look)
             if tie.broken < np.inf:
-                line.set_label(f"{said}, broke at {tie.broken:.3g} s")
+                said += f", broke at {tie.broken:.3g} s"
                 at = min(int(np.searchsorted(response.t, tie.broken)), len(response.t) - 1)
                 height = tie.force[max(at - 1, 0)] / 1e3
                 ax.plot(response.t[at], height, "x", color=line.get_color(), markersize=9, markeredgewidth=2, zorder=5)
-    ax.set_ylim(bottom=0.0)
-    ax.set_ylim(top=1.0 + 1.35 * ax.get_ylim()[1] if ax.get_ylim()[1] == 0 else 1.35 * ax.get_ylim()[1])
-    ax.legend(frameon=False, fontsize=7, loc="upper right")
+            entries += 1
+            line.set_label(said if entries < MOST else "_")
+            last = line, said
+    if entries >= MOST:
+        last[0].set_label(last[1] if entries == MOST else f"and {entries - MOST + 1} more")
+    _legend_above(ax)
     ax.set(xlabel=TIME, ylabel="ties [kN]")
     return ax
+
+
+def _legend_above(ax: Axes) -> None:
+    """A legend above the lines of an Axes, in two columns where they are short enough."""
+    labels = ax.get_legend_handles_labels()[1]
+    width = ax.bbox.width / ax.get_figure(root=True).dpi  # [inch]
+    columns = 2 if len(labels) > 2 and 2 * (0.05 * max(map(len, labels)) + 0.35) < width else 1
+    rows = -(-len(labels) // columns)
+    top = max(float(np.max(line.get_ydata(), initial=0.0)) for line in ax.get_lines()) or 1.0
+    share = min(0.7, (0.1 + 0.125 * rows) * ax.get_figure(root=True).dpi / ax.bbox.height)
+    ax.set_ylim(0.0, 1.08 * top / (1 - share))
+    ax.legend(frameon=False, fontsize=6.5, loc="upper right", ncols=columns, labelspacing=0.3, columnspacing=1.0)
 
 
 def history(
@@ -140,7 +162,7 @@ def history(
     for ax in axes[:-1]:
         ax.set_xlabel("")
     axes[0].set_xlim(0, until)
-    axes[0].set_title(title, fontsize=10)
+    axes[0].set_title(wrapped(title, 5.4, 10), fontsize=10)
     if len(given) > 1:
         below_figure(figure, axes[int(case.shaken)])
     return figure
@@ -185,7 +207,7 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     energy(below, responses)
     below.set_xlim(0, max(r.t[-1] for r in responses))
     below_figure(figure, above)
-    above.set_title(title, fontsize=10)
+    above.set_title(wrapped(title, 5.4, 10), fontsize=10)
     return figure
 
 
@@ -196,7 +218,7 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top
     """
     figure, axes = several(len(panels), columns, (3.4, 2.2))
     for ax, (title, responses) in zip(axes.flat, panels, strict=False):
-        rotation(ax, responses).set_title(title, fontsize=9)
+        rotation(ax, responses).set_title(wrapped(title, 2.7, 9), fontsize=9)
         if top is not None:
             ax.set_ylim(-0.1 * top, top)
     for ax in axes[:-1].flat:

@@ -12,6 +12,7 @@ from matplotlib.ticker import NullFormatter
 from numpy.typing import ArrayLike
 
 from ..quantities import Array, require_reals
+from .style import titled
 
 ASKED = "restitution asked for $|e|$ [-]"
 
@@ -60,7 +61,7 @@ def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike)
 
 def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[ArrayLike, str]]) -> Figure:
     """Predicted over matched damping ratio against each variable; a variable is its values and its scale."""
-    figure = Figure(figsize=(2.3 * len(variables), 2.5), layout="constrained")
+    figure = Figure(figsize=(max(3.5, 2.3 * len(variables)), 2.5), layout="constrained")
     axes = figure.subplots(1, len(variables), sharey=True, squeeze=False)[0]
     for ax, (name, (values, scale)) in zip(axes, variables.items(), strict=True):
         x, y = equal_rows(**{name: values, "residual": residual})
@@ -69,7 +70,7 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
         ax.set(xscale=scale, yscale="log", xlabel=name)
         ax.xaxis.set_minor_formatter(NullFormatter())
     axes[0].set_ylabel(r"predicted $\xi$ / matched $\xi$ [-]")
-    figure.suptitle(title, fontsize=10)
+    titled(figure, title, 10)
     return figure
 
 

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, require_array, require_kind, require_within
 from ..result.response import Response
-from .bodies import require_masonry
+from .bodies import ends_of, require_masonry, window
 from .solids import Solids
-from .view import solids
+from .view import fill, solids
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
 
@@ -64,14 +64,33 @@ def blocks(
     at = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
     if masonry.in_space:
         solids(ax, Solids(masonry, np.zeros(1), at[None], magnified, camera), animated=False)(0)
+        fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
         return ax
     where = dict(zip(masonry.free, magnified * at, strict=True))
+    width = min(1.4, 14 / np.sqrt(len(masonry.blocks)))  # lines of many joints would hide the blocks
+    drawn: list[list[Array]] = [[], []]
     for i, block in enumerate(masonry.blocks):
         corners = block.corners if block.fixed else moved(block.corners, block.centroid, where[i])
+        drawn[block.fixed].append(corners)
         colour = STONE if block.fixed else BRICK
-        ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.6))
+        ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))
     for joint in masonry.joints if joints and pose is None else ():
-        ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=1.4, solid_capstyle="butt")
-    ax.autoscale_view()
-    ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
+        ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=width, solid_capstyle="butt")
+    _view(ax, masonry, drawn[False], drawn[True])
     return ax
+
+
+def _view(ax: Axes, masonry: Masonry, moving: list[Array], fixed: list[Array]) -> None:
+    """Limits and labels, true to scale, and how many blocks lie outside the picture."""
+    rest = np.concatenate([masonry.blocks[i].corners for i in masonry.free] or fixed)
+    placed = [ends_of(np.concatenate(some)) if some else ends_of(rest) for some in (moving, fixed)]
+    low, high = window(ends_of(rest), *placed)
+    sides = high - low
+    room = 0.05 * sides.max() + np.maximum(0.0, 0.5 * (0.3 * sides.max() - sides))  # labels need some width
+    low, high = low - room, high + room
+    ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    ax.locator_params(axis="both", nbins="auto" if sides.max() < 2 * sides.min() else 4)
+    outside = sum(bool((corners.max(axis=0) < low).any() or (corners.min(axis=0) > high).any()) for corners in moving)
+    if outside:
+        said = f"{outside} of {len(moving)} blocks lie outside"
+        ax.annotate(said, (0.02, 0.98), xycoords="axes fraction", fontsize=7, va="top")

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ..study.pushover import PushoverCurve
+from .style import folded
 
 LINES: tuple[dict[str, Any], ...] = (
     {"color": "0.15", "linestyle": "-", "linewidth": 1.2},
@@ -50,7 +51,7 @@ def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Close
 
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
     for (name, (x, y)), style in zip(lines.items(), cycle(LINES), strict=False):
-        ax.plot(x, y, label=name, **style)
+        ax.plot(x, y, label=folded(name), **style)
     for i, (name, (x, y)) in enumerate(points.items()):
         colour = LINES[list(lines).index(name) % len(LINES)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None

@@ -63,10 +63,10 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     ties, forces = case.each(Tie), case.each(Load) + case.each(Thrust)
     low, high = bodies.extent()
     behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
-    reach = (1.5 * ARROW if case.each(Thrust) else 0.08) * height
+    reach = (2.6 * ARROW if case.each(Thrust) else 0.08) * height
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)
-    ax.set_ylim(min(-0.07 * height, low[1]), max(high[1], height) + (1.35 * ARROW if forces else 0.05) * height)
+    ax.set_ylim(min(-0.07 * height, low[1]), max(high[1], height) + (1.7 * ARROW if forces else 0.05) * height)
     ax.add_patch(Rectangle((left, -height), right - left, height, facecolor=GROUND, edgecolor="none", zorder=0.5))
     ax.plot([left, right], [0, 0], color="0.15", linewidth=1.0, zorder=1)
     if case.stop_top is not None:
@@ -155,12 +155,14 @@ def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
 
 
 def tie_texts(ties: Sequence[Tie], left: float, height: float) -> list[str]:
-    """What stands at each tie: how many are there, at the first of them, and how far behind a hidden anchor is."""
+    """What stands at each tie: how many are there, at the first of them, and how far behind a hidden anchor is, at the
+    highest of those that are as long."""
     placed = [(round(tie.height / (0.03 * height)), tie.length, tie.rise) for tie in ties]
     texts = []
     for i, (tie, place) in enumerate(zip(ties, placed, strict=True)):
         number = f"{placed.count(place)} x " if placed.count(place) > 1 else ""
-        where = f"anchor {tie.length:g} m behind" if tie.length > -left else number and "tie"
+        highest = place[0] == max(other[0] for other in placed if other[1:] == place[1:])
+        where = f"anchor {tie.length:g} m behind" if tie.length > -left and highest else number and "tie"
         texts.append("" if place in placed[:i] else f"{number}{where}")
     return texts
 
@@ -173,16 +175,17 @@ def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Updat
     arrow = FancyArrowPatch((0, 0), (1, 0), arrowstyle="-|>", mutation_scale=12, color=FORCE, linewidth=1.6, zorder=6)
     arrow.set_animated(True)
     ax.add_patch(arrow)
-    place = "center" if loads else "right"
-    text = ax.text(
-        0, 0, f"{effect.force / 1e3:g} kN", fontsize=7, color=FORCE, ha=place, va="bottom", zorder=6, animated=True
-    )
+    outwards = along[0] >= 0
+    look = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
+    look |= {"ha": "center", "va": "bottom"} if loads else {"ha": "left" if outwards else "right", "va": "center"}
+    shift = (0, 2) if loads else (2 if outwards else -2, 0)
+    text = ax.annotate(f"{effect.force / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]
         tail, tip = (at - along, at) if loads else (at, at + along)
         arrow.set_positions(tuple(tail), tuple(tip))
-        text.set_position(tuple(tail if loads else np.maximum(tail, tip)))
+        text.xy = tuple(tail if loads else tip)
 
     return update
 

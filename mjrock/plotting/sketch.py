@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,16 +16,24 @@ from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import require_flag, require_kind, require_text
 from .bodies import Bodies
-from .section import STONE, blocks, surroundings
+from .section import GROUND, STONE, blocks, surroundings
+from .style import titled
 
-DIMENSION: dict[str, Any] = {"arrowstyle": "<->", "color": "0.3", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.8}
+Note = tuple[tuple[float, float], str]
+"""A place in the section, x and z [m], and what is there."""
+DIMENSION: dict[str, Any] = {"arrowstyle": "|-|,widthA=0.2,widthB=0.2", "color": "0.3", "shrinkA": 0, "shrinkB": 0}
 LEADER: dict[str, Any] = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
+TALLEST, WIDEST, LONGEST = 3.4, 2.6, 5.4
+"""Largest height of a drawing, and largest width of the section and of the elevation [inch]."""
+NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
+"""Width of the column of notes, room between the drawings and at the edges, and height of a line of text [inch]."""
 
 
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
-    Openings are drawn in the middle of the elevation: where they are along the wall plays no part.
+    Openings of one sill are drawn at equal distances: where they are along the wall plays no part. The elevation of a
+    long wall has a smaller scale than the section.
 
     Args:
         case: the wall and its effects.
@@ -34,71 +44,103 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     require_kind("case", case, Case)
     require_text("title", title)
     require_flag("arguments", arguments)
-    figure = Figure(figsize=(8.4, 4.2), layout="constrained")
-    section, elevation = figure.subplots(1, 2, width_ratios=(2.0, 1.0))
-    wall = case.wall
-    rests = np.array([[wall.centroid_offset, wall.centroid_height]])
-    bodies = Bodies(np.zeros(1), (wall.outline,), rests, np.zeros((1, 1, 3)))
-    blocks(section, bodies)
-    surroundings(section, case, bodies)(0)
-    for text in list(section.texts):
-        text.remove()  # the notes say it
-    for artist in section.get_children():
-        artist.set_animated(False)
-    section.axis("off")
-    for damper in case.each(Damper):
-        ends = [-case.block.b - min(damper.length, 0.5 * case.block.h), -case.block.b]
-        section.plot(ends, [damper.height] * 2, color="#3f8f5b", linestyle="-.", marker="|", zorder=4)
-    _dimensions(section, case)
-    _notes(section, case, arguments=arguments)
-    section.set_title("section; outwards is to the right", fontsize=9)
-    _elevation(elevation, case)
-    figure.suptitle(title, fontsize=11)
+    figure = Figure()
+    section, elevation = (figure.add_axes((0.0, 0.0, 1.0, 1.0), label=name) for name in ("section", "elevation"))
+    _section(section, case)
+    _elevation(elevation, case, section.get_ylim())
+    notes = sorted(_effects(case, arguments=arguments), key=lambda note: note[0][1])
+    _arrange(figure, title, _sizes(case), notes)
+    section.set_title("section; outwards is to the right", fontsize=9, loc="left")
+    elevation.set_title("elevation", fontsize=9)
     return figure
+
+
+def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequence[Note]) -> None:
+    """Size the figure, and place the title, the drawings on one level, and the notes between them.
+
+    Args:
+        figure: with its section and elevation, whose limits [m] are set.
+        title: what stands above.
+        openings: what stands below the elevation, line by line.
+        notes: on effects, from the lowest.
+    """
+    section, elevation = figure.axes
+    wide, tall, long = (
+        float(np.ptp(limits)) for limits in (section.get_xlim(), section.get_ylim(), elevation.get_xlim())
+    )
+    scale = min(TALLEST / tall, WIDEST / wide)  # [inch/m]
+    smaller = min(scale, LONGEST / long)
+    column = EDGE + scale * wide + EDGE
+    width = max(5.0, column + (NOTES if notes else 0.0) + APART + smaller * long + EDGE)
+    below, room = EDGE + LINE * len(openings), LINE * sum(2 + text.count("\n") for _, text in notes)
+    room = max(scale * tall, room)
+    figure.set_size_inches(width, 1.0)
+    height = below + room + 0.3 + titled(figure, title)
+    figure.set_size_inches(width, height)
+    for ax, one, left in ((section, scale, EDGE), (elevation, smaller, width - EDGE - smaller * long)):
+        (x0, x1), (low, high) = ax.get_xlim(), ax.get_ylim()
+        bottom = below + (one - scale) * low
+        ax.set_position((left / width, bottom / height, one * (x1 - x0) / width, one * (high - low) / height))
+        ax.axis("off")
+    said, place = "\n".join(openings), (0.0, 72 * below - 3)
+    coordinates = ("data", "figure points")
+    elevation.annotate(said, place, xycoords=coordinates, fontsize=6.5, ha="center", va="top", annotation_clip=False)
+    _notes(section, notes, column, (below, below + room))
 
 
 def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
     """A dimension with its text in the middle."""
-    ax.annotate("", start, end, arrowprops=DIMENSION)
+    ax.annotate("", start, end, arrowprops=DIMENSION | {"linewidth": 0.8})
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     level = start[1] == end[1]
     offset, turn = ((0, -3), 0) if level else ((-3, 0), 90)
-    note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=7, rotation=turn)
+    note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=7, rotation=turn, zorder=9)
     note.set(ha="center" if level else "right", va="top" if level else "center")
+    if not level:
+        note.set_bbox({"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5})
 
 
-def _dimensions(ax: Axes, case: Case) -> None:
-    """Thickness and height of the wall, the lever of the toe, and the height of the stop."""
-    wall, (left, right), (low, high) = case.block, ax.get_xlim(), ax.get_ylim()
-    height, room = 2 * wall.h, 0.05 * (high - low)
-    ax.set_ylim(low - 1.2 * room, high + 1.2 * room)
-    ax.set_xlim(left - 0.15 * height, right + 1.25 * height)
-    _across(ax, (-wall.b, -0.6 * room), (wall.b, -0.6 * room), f"{2 * wall.b:g} m")
-    edge = left - 0.04 * height
-    _across(ax, (edge, 0.0), (edge, height), f"{height:g} m")
+def _section(ax: Axes, case: Case) -> None:
+    """The wall and all that it meets and carries, its thickness, and the height of the stop."""
+    wall, height = case.wall, 2 * case.block.h
+    rests = np.array([[wall.centroid_offset, wall.centroid_height]])
+    bodies = Bodies(np.zeros(1), (wall.outline,), rests, np.zeros((1, 1, 3)))
+    blocks(ax, bodies)(0)
+    surroundings(ax, case, bodies)(0)
+    for text in list(ax.texts):
+        text.remove()  # the notes say it
+    for artist in ax.get_children():
+        artist.set_animated(False)
+    half = case.block.b
+    for damper in case.each(Damper):
+        ends = [-half - min(damper.length, case.block.h), -half]
+        ax.plot(ends, [damper.height] * 2, color="#3f8f5b", linestyle="-.", marker="|", zorder=4)
+    _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
     if case.stop_top is not None and case.stop_top < height:
-        at = -wall.b - 0.12 * height
+        at = -half - 0.12 * height
         _across(ax, (at, 0.0), (at, case.stop_top), f"stop {case.stop_top:g} m")
-    centroid = case.wall.centroid_offset, case.wall.centroid_height
-    ax.plot(*centroid, marker="+", color="0.15", markersize=7, zorder=7)
+    ax.plot(wall.centroid_offset, wall.centroid_height, marker="+", color="0.15", markersize=7, zorder=7)
 
 
-def _notes(ax: Axes, case: Case, *, arguments: bool) -> None:
-    """What each effect is and where, in a column beside the wall, each with a line to its place."""
-    notes = sorted(_effects(case, arguments=arguments), key=lambda note: note[0][1])
-    if not notes:
-        return
-    height, right = 2 * case.block.h, ax.get_xlim()[1]
-    apart, level, before = 0.04 * height, -np.inf, 0
-    for (x, z), text in notes:
-        lines = 1 + text.count("\n")
-        level, before = max(level + apart * (1 + before + lines), z), lines
-        ax.annotate(text, (x, z), (right - 1.2 * height, level), fontsize=6.5, va="center", arrowprops=LEADER, zorder=8)
-    low, high = ax.get_ylim()
-    ax.set_ylim(low, max(high, level + 2 * apart))
+def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, float]) -> None:
+    """What each effect is, in a column whose left end and lower and upper end are given [inch], with a line to it."""
+    figure: Any = ax.figure
+    inch = figure.dpi_scale_trans.inverted()
+    halves = [0.5 * LINE * (2 + text.count("\n")) for _, text in notes]
+    wanted = [float(inch.transform(ax.transData.transform(place))[1]) for place, _ in notes]
+    levels, low = [], ends[0]
+    for half, level in zip(halves, wanted, strict=True):
+        levels.append(max(level, low + half))
+        low = levels[-1] + half
+    high = ends[1]
+    for (place, text), half, level in reversed(list(zip(notes, halves, levels, strict=True))):
+        level = min(level, high - half)
+        high = level - half
+        at = (72 * column, 72 * level)
+        ax.annotate(text, place, at, textcoords="figure points", fontsize=6.5, va="center", arrowprops=LEADER, zorder=8)
 
 
-def _effects(case: Case, *, arguments: bool) -> list[tuple[tuple[float, float], str]]:
+def _effects(case: Case, *, arguments: bool) -> list[Note]:
     """Where each effect acts in the section, and what it is."""
     face, made, ties = -case.block.b, [], case.each(Tie)
     for i, tie in enumerate(ties):
@@ -130,23 +172,30 @@ def _effects(case: Case, *, arguments: bool) -> list[tuple[tuple[float, float], 
     return made
 
 
-def _elevation(ax: Axes, case: Case) -> None:
-    """The wall from outside, with its openings. Those of one sill are drawn at equal distances."""
+def _elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
+    """The wall from outside with its openings, between lower and upper ends [m]."""
     wall = case.block
     height, length = 2 * wall.h, wall.length
+    side = 0.08 * length + 0.08 * height
+    ax.add_patch(Rectangle((-0.5 * length - side, -height), length + 2 * side, height, facecolor=GROUND, zorder=0.5))
     ax.add_patch(Rectangle((-0.5 * length, 0.0), length, height, facecolor=STONE, edgecolor="0.15"))
     sills = [opening.sill for opening in wall.openings]
     for i, opening in enumerate(wall.openings):
         middle = length * ((sills[:i].count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5)
         place = middle - 0.5 * opening.width, opening.sill
         ax.add_patch(Rectangle(place, opening.width, opening.height, facecolor="white", edgecolor="0.35"))
-        size = f"{opening.width:.3g} x\n{opening.height:.3g}\nsill {opening.sill:.3g}"
-        ax.text(middle, opening.sill + 0.5 * opening.height, size, fontsize=6, ha="center", va="center")
-    below = -0.05 * height
-    _across(ax, (-0.5 * length, below), (0.5 * length, below), f"{length:g} m")
-    ax.plot([-0.62 * length, 0.62 * length], [0.0, 0.0], color="0.15", linewidth=1.0)
-    ax.set_xlim(-0.62 * length, 0.62 * length)
-    ax.set_ylim(-0.14 * height, 1.05 * height)
-    ax.set_aspect("equal")
-    ax.set_xlabel("$y$ [m]")
-    ax.set_title("elevation", fontsize=9)
+    edge = -0.5 * length - 0.5 * side
+    _across(ax, (edge, 0.0), (edge, height), f"{height:g} m")
+    _across(ax, (-0.5 * length, -0.02 * height), (0.5 * length, -0.02 * height), f"{length:g} m")
+    ax.plot([-0.5 * length - side, 0.5 * length + side], [0.0, 0.0], color="0.15", linewidth=1.0)
+    ax.set(xlim=(-0.5 * length - side, 0.5 * length + side), ylim=ends, title="elevation")
+
+
+def _sizes(case: Case) -> list[str]:
+    """The size of each kind of opening, and how many there are."""
+    made = []
+    for opening, count in Counter(case.block.openings).items():
+        number = f"{count} openings" if count > 1 else "opening"
+        sill = f"sill at {opening.sill:.3g} m" if opening.sill else "from the ground"
+        made.append(f"{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
+    return made

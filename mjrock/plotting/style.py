@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
     "MuJoCo": {"label": "MuJoCo", "color": "#f0a35e", "linestyle": "-", "linewidth": 2.6, "zorder": 1.5},
     "compliant": {"label": "contact law, SciPy", "color": "#12406b", "linestyle": ":", "linewidth": 1.5, "zorder": 3},
+    "explicit": {"label": "explicit steps", "color": "#3f8f5b", "linestyle": "--", "linewidth": 1.6, "zorder": 2.5},
 }
 """Lines that a black-and-white print still tells apart."""
 
@@ -38,12 +40,49 @@ def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None
     """The line style of each response: that of its solver, or with labels one of its own."""
     if labels is None:
         return [STYLES.get(response.solver, {"label": response.solver}) for response in responses]
-    return [OWN[i % len(OWN)] | {"label": label} for i, label in enumerate(labels)]
+    return [OWN[i % len(OWN)] | {"label": folded(label)} for i, label in enumerate(labels)]
+
+
+def folded(label: str) -> str:
+    """A label on as many lines as a legend needs for it."""
+    return wrapped(label, 3.2, 10)
+
+
+def short(label: str) -> str:
+    """A label that may be cut, where another legend has it in full."""
+    return textwrap.shorten(label, 24, placeholder=" ...")
 
 
 def below_figure(figure: Figure, ax: Axes, ncols: int = 3, **options: Any) -> None:
     """The legend of an Axes below its figure."""
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=ncols, frameon=False, **options)
+    legend_below(figure, *ax.get_legend_handles_labels(), ncols, **options)
+
+
+def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str], ncols: int, **options: Any) -> None:
+    """A legend below a figure, in at most `ncols` columns and no more than its width has room for.
+
+    A legend of many lines makes the figure higher.
+    """
+    for columns in range(max(1, min(ncols, len(labels))), 0, -1):
+        legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, **options)
+        box = legend.get_window_extent()
+        if columns == 1 or box.width <= 0.98 * figure.bbox.width:
+            break
+        legend.remove()
+    figure.set_figheight(figure.get_figheight() + max(0.0, box.height / figure.dpi - 0.8))
+
+
+def wrapped(text: str, wide: float, size: float) -> str:
+    """Text of a size [pt] on as many lines as a width [inch] needs."""
+    most = max(1, int(72 * wide / (0.55 * size)))
+    return "\n".join(line for row in text.splitlines() for line in textwrap.wrap(row, most))
+
+
+def titled(figure: Figure, text: str, size: float = 11.0) -> float:
+    """Write a title [pt] above a figure on as many lines as its width needs; the height that it takes [inch]."""
+    title = wrapped(text, figure.get_figwidth(), size)
+    figure.suptitle(title, fontsize=size)
+    return 1.3 * size * len(title.splitlines()) / 72
 
 
 def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure, Any]:
@@ -88,5 +127,5 @@ def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
     """Several drawings, each on an Axes of its own under its title."""
     figure, axes = several(len(drawings), columns, (4.4, 3.4))
     for ax, (title, draw) in zip(axes.flat, drawings, strict=False):
-        draw(ax).set_title(title, fontsize=10)
+        draw(ax).set_title(wrapped(title, 4.0, 10), fontsize=10)
     return figure

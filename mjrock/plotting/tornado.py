@@ -31,7 +31,7 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
         colour = "0.75" if name == "together" else "#f0a35e" if name == found.governs else "#12406b"
         ax.barh(i, high - low, left=low, color=colour, height=0.55)
         for end, x, side, shift in zip(ends, (low, high), ("right", "left"), (-4, 4), strict=True):
-            text = found.written(end)
+            text = found.written(end) if low == high else _apart(found, *ends)[end == ends[1]]
             ax.annotate(text, (x, i), (shift, 0), textcoords="offset points", ha=side, va="center", fontsize=8)
     if math.isfinite(found.base_value):
         ax.axvline(found.base_value, color="0.15", linewidth=1.0)
@@ -44,3 +44,12 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
     ax.set_xlabel(f"{found.measure}{f' [{found.unit}]' if found.unit else ''}")
     ax.set_title(found.sentence, fontsize=10)
     return ax
+
+
+def _apart(found: Sensitivity, low: float, high: float) -> tuple[str, str]:
+    """Two ends of a bar as text, with the digits that tell them apart."""
+    texts = found.written(low), found.written(high)
+    digits = 3
+    while texts[0] == texts[1] and digits < 9:
+        texts, digits = (f"{low:.{digits}g}", f"{high:.{digits}g}"), digits + 1
+    return texts

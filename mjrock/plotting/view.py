@@ -27,8 +27,10 @@ LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
 DARKEST = 0.62
 """Brightness of a face that is turned away from the light [-]."""
-ZOOM = 1.15
-"""Size of the picture, over that which leaves room for labels on every side [-]."""
+ZOOM = 1.0
+"""Size of a picture before it is enlarged [-]."""
+LABELS = np.array([1.0, 1.2])
+"""Width and height that labels need around a view [inch]."""
 
 
 class Faces(PolyCollection):
@@ -91,16 +93,17 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     return update
 
 
-def fill(ax: Axes) -> None:
-    """Enlarge a view until it fills 0.84 of the width or 0.74 of the height of its figure, which has been laid out."""
+def fill(ax: Axes, box: Any) -> None:
+    """Enlarge a view until it fills a box [pixel], such as that of its figure, but for room for its labels."""
     space = in_three(ax)
     figure: Any = ax.get_figure(root=True)
     limits = [getattr(space, f"get_{name}lim")() for name in "xyz"]
     corners = np.array(np.meshgrid(*limits)).reshape(3, -1)
     x, y, _ = proj_transform(*corners, space.get_proj())
-    spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0) / figure.bbox.size
-    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((np.array([0.84, 0.74]) / spans).min()))
-    figure.draw_without_rendering()
+    space.apply_aspect()
+    spans = np.ptp(space.transData.transform(np.column_stack([x, y])), axis=0)
+    room = np.maximum(np.array(box.size) - figure.dpi * LABELS, 0.4 * np.array(box.size))
+    space.set_box_aspect(np.ptp(limits, axis=1), zoom=ZOOM * float((room / spans).min()))
 
 
 def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
@@ -128,7 +131,7 @@ def _frame(ax: Axes3D, extent: tuple[Array, Array], bodies: Solids) -> None:
     size: Array = high - low
     for name, a, b in zip("xyz", low, high, strict=True):
         getattr(ax, f"set_{name}lim")(a, b)
-        getattr(ax, f"set_{name}label")(f"${name}$ [m]", fontsize=8)
+        getattr(ax, f"set_{name}label")(f"${name}$ [m]", fontsize=8, labelpad=-2.5)
         getattr(ax, f"{name}axis").set_major_locator(_locator(float(size.max())))
     ax.tick_params(labelsize=7, pad=0)
     ax.set_box_aspect(size, zoom=ZOOM)

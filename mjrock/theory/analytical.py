@@ -117,7 +117,7 @@ def _require_solvable(case: Case, e: Restitution) -> None:
             f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{low}"
         )
     if case.each(Damper):
-        raise ValueError("rocking theory has no dampers; simulate and solve_compliant do")
+        raise ValueError("rocking theory has no dampers; simulate, solve_explicit and solve_compliant do")
     if case.restoring.outer.P <= 0:
         raise ValueError(
             "the thrust tilts the wall until its ties hold it, and rocking theory knows no rest but upright; "

@@ -1,9 +1,9 @@
 """The reference wall in the codes that a user would pick instead: error of |e| against wall time, each at its best.
 
-Stock MuJoCo, PyBullet and OpenSeesPy run in processes of their own. One that is not installed is skipped. Errors are
-the worst of the first rebounds (four two-sided, two one-sided) over three releases. They are measured against the
-contact law with the same springs and dashpots, solved by SciPy, and against rocking theory. Times are the least of
-several runs, over the simulated time. Writes peers.csv, peers.png and peers.txt, and prints the table.
+Stock MuJoCo, PyBullet, OpenSeesPy and Siconos run in processes of their own. One that is not installed is skipped.
+Errors are the worst of the first rebounds (four two-sided, two one-sided) over three releases. They are measured
+against the contact law with the same springs and dashpots, solved by SciPy, and against rocking theory. Times are the
+least of several runs, over the simulated time. Writes peers.csv, peers.png and peers.txt, and prints the table.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import importlib.metadata
 import importlib.util
 import math
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -62,8 +63,13 @@ class Setup:
     law: bool
 
 
-MUJOCO, BULLET, OPENSEES = "stock_mujoco", "bullet", "opensees"
+MUJOCO, BULLET, OPENSEES, SICONOS = "stock_mujoco", "bullet", "opensees", "siconos_contacts"
 NEEDS = {MUJOCO: "mujoco", BULLET: "pybullet", OPENSEES: "openseespylinux" if sys.platform == "linux" else "openseespy"}
+NEEDS |= {SICONOS: "siconos"}
+DEBIAN = {SICONOS: "python3-siconos"}
+"""Peers that no package index has, and the packages of Debian that hold them."""
+PYTHON = "/usr/bin/python3"
+"""Runs the peers of Debian; the gaps of Siconos are compiled by `cc`."""
 SHORT = (2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)
 TICKS = (1 / 240, 1 / 1000, 1 / 2000, 1 / 5000, 1 / 10_000)
 SETUPS = (
@@ -79,6 +85,7 @@ SETUPS = (
     Setup("OpenSees, parallel dashpot", "k, c", OPENSEES, "parallel", SHORT[:5], True),
     Setup("OpenSees, ViscoelasticGap", "k, c", OPENSEES, "ViscoelasticGap", SHORT[:6], True),
     Setup("OpenSees, dashpot under a gap", "k, c", OPENSEES, "dashpot under a gap", SHORT[:6], True),
+    Setup("Siconos, restitution typed in", "|e| at the stop", SICONOS, "restitution", (5e-3, *SHORT), False),
 )
 
 
@@ -177,7 +184,10 @@ def theirs(problem: Problem, setup: Setup, h: float) -> Point:
     nothing = Point(problem.label, setup, h, math.nan, math.nan, math.nan, ())
     with tempfile.TemporaryDirectory() as folder:
         task = Task(setup.code, setup.variant, h, problem.questions(), str(Path(folder) / "answers.npz"))
-        command, text = [sys.executable, "-m", "scripts.peers.codes.worker"], task.text
+        command, text = (
+            [PYTHON if setup.code in DEBIAN else sys.executable, "-m", "scripts.peers.codes.worker"],
+            task.text,
+        )
         try:
             subprocess.run(
                 command, input=text, text=True, capture_output=True, check=True, timeout=LIMIT, env=env(setup.code)
@@ -196,6 +206,8 @@ def theirs(problem: Problem, setup: Setup, h: float) -> Point:
 def env(code: str) -> dict[str, str]:
     """The environment of a peer; that of OpenSees has the libraries that its wheel brings along and does not find."""
     made = dict(os.environ)
+    if code in DEBIAN:
+        return made | {"PYTHONPATH": str(ROOT)}
     paths, libraries = [str(ROOT), *filter(None, sys.path)], made.get("LD_LIBRARY_PATH", "")
     found = importlib.util.find_spec(NEEDS[code])
     for place in (found.submodule_search_locations or []) if found and code == OPENSEES else []:
@@ -206,8 +218,20 @@ def env(code: str) -> dict[str, str]:
 
 def missing() -> dict[str, str]:
     """The peers that are not installed, with the line that says so."""
-    absent = {code: name for code, name in NEEDS.items() if importlib.util.find_spec(name) is None}
-    return {code: f"{name} is not installed: skipped (pip install 'mjrock[peers]')" for code, name in absent.items()}
+    said = {}
+    for code, name in NEEDS.items():
+        if not (found_by_debian(name) if code in DEBIAN else importlib.util.find_spec(name) is not None):
+            how = f"apt-get install {DEBIAN[code]} gcc" if code in DEBIAN else "pip install 'mjrock[peers]'"
+            said[code] = f"{name} is not installed: skipped ({how})"
+    return said
+
+
+def found_by_debian(name: str) -> bool:
+    """Whether Python as Debian installs it finds a module, and there is a compiler."""
+    if shutil.which(PYTHON) is None or shutil.which("cc") is None:
+        return False
+    look = f"import importlib.util, sys; sys.exit(importlib.util.find_spec({name!r}) is None)"
+    return subprocess.run([PYTHON, "-c", look], check=False).returncode == 0
 
 
 def points(problems: Sequence[Problem], absent: dict[str, str], quick: bool) -> Iterator[Point]:
@@ -291,7 +315,15 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 def versions(absent: dict[str, str]) -> list[str]:
     """The versions of the peers that ran."""
-    return [f"{name} {importlib.metadata.version(name)}" for code, name in NEEDS.items() if code not in absent]
+    return [f"{name} {version(code)}" for code, name in NEEDS.items() if code not in absent]
+
+
+def version(code: str) -> str:
+    """The version of a peer."""
+    if code not in DEBIAN:
+        return importlib.metadata.version(NEEDS[code])
+    ask = ["dpkg-query", "-W", "-f", "${Version}", DEBIAN[code]]
+    return subprocess.run(ask, capture_output=True, text=True, check=True).stdout
 
 
 if __name__ == "__main__":

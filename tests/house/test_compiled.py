@@ -87,7 +87,8 @@ def test_without_numba_there_is_one_line_and_the_same_result(tmp_path):
     (tmp_path / "numba" / "__init__.py").write_text("raise ImportError('no wheel')")
     said = run(tmp_path / "without.npz", home=tmp_path)
     assert said.splitlines() == [
-        "mjrock: numba is not installed; the loops run as plain Python, some fifty times slower"
+        "mjrock: numba is not installed; "
+        "the loops run as plain Python, thirty times slower, thousands in explicit steps"
     ]
     run(tmp_path / "compiled.npz")
     same(tmp_path / "without.npz", tmp_path / "compiled.npz")

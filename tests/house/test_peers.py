@@ -55,3 +55,12 @@ def test_a_trembling_peak_counts_once_and_a_fallen_wall_does_not_rebound(two_sid
     assert len(smooth) == 6
     assert shaken == pytest.approx(smooth, abs=2e-3)
     assert two_sided.restitution(case, np.array([t, swing + 2, 0 * t])).size == 0
+
+
+@pytest.mark.skipif(peers.SICONOS in peers.missing(), reason=peers.missing().get(peers.SICONOS, ""))
+@pytest.mark.parametrize(("side_stop", "step", "error"), [(False, 1e-3, 6e-3), (True, 5e-4, 6e-3)])
+def test_siconos_rebounds_as_theory_does(side_stop, step, error):
+    problem = peers.Problem("wall", side_stop=side_stop, quick=True)
+    point = peers.theirs(problem, setup_of("Siconos, restitution typed in"), step)
+    assert point.note == ""
+    assert point.theory < error

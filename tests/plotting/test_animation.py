@@ -155,8 +155,8 @@ def test_any_bodies_can_be_drawn(tmp_path):
 
 def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     triangle, square = [[-1.0, 0.0], [1.0, 0.0], [0.0, 2.0]], [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
-    poses = np.random.default_rng(0).normal(size=(4, 2, 3))
-    ground = np.array([[-9.0, -2.0], [1.0, -2.0], [1.0, -1.0]])
+    poses = 0.1 * np.random.default_rng(0).normal(size=(4, 2, 3))
+    ground = np.array([[-2.0, -0.5], [1.0, -0.5], [1.0, -0.2]])
     bodies = Bodies(np.arange(4.0), (triangle, square), [[0.0, 0.5], [3.0, 1.5]], poses, 2.0, (ground,))
     each = [[bodies.placed(i, j, one) for j, one in enumerate(bodies.outlines)] for i in range(4)]
     for i, (three, four) in enumerate(each):
@@ -167,6 +167,17 @@ def test_bodies_of_many_shapes_are_placed_and_drawn_at_once():
     update(3)
     drawn = [path.vertices[:4] for path in figure.axes[0].collections[0].get_paths()]
     np.testing.assert_allclose(drawn, bodies.corners(3))
+
+
+def test_what_has_fallen_far_and_wide_ground_do_not_shrink_the_picture():
+    """Two unit squares side by side, of which one ends 100 m off and below: the picture goes one extent of both, 2 m,
+    to the side, and a quarter of it down and beyond on the ground."""
+    square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+    poses = np.zeros((2, 2, 3))
+    poses[1, 1, :2] = 100.0, -100.0
+    ground = np.array([[-50.0, -9.0], [50.0, -9.0], [50.0, 0.0], [-50.0, 0.0]])
+    bodies = Bodies(np.arange(2.0), (square, square), [[0.5, 0.5], [1.5, 0.5]], poses, 1.0, (ground,))
+    np.testing.assert_allclose(bodies.extent(), [[-0.5, -1.0], [4.5, 1.0]], atol=1e-12)
 
 
 @pytest.mark.parametrize("mass", [0.0, 500.0])

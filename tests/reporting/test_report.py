@@ -73,12 +73,12 @@ def test_the_same_report_is_the_same_bytes(tmp_path):
 
 def test_a_sketch_names_values_or_arguments():
     case = mr.Case(WALL, 0.0, 1.0, side_stop=mr.SideStop(3.0), effects=EFFECTS)
-    section = mr.plotting.sketch(case).axes[0]
-    texts = "\n".join(text.get_text() for text in section.texts)
+    figure = mr.plotting.sketch(case)
+    texts = "\n".join(text.get_text() for ax in figure.axes for text in ax.texts)
     for said in ("4.2 m", "0.6 m", "stop 3 m", "breaks at 2 mm", "0.5 kN outwards", "5 kN downwards", "200 kg"):
         assert said in texts
-    section = mr.plotting.sketch(case, arguments=True).axes[0]
-    texts = "\n".join(text.get_text() for text in section.texts)
+    figure = mr.plotting.sketch(case, arguments=True)
+    texts = "\n".join(text.get_text() for ax in figure.axes for text in ax.texts)
     for said in ("Tie(height", "Thrust(height, force)", "Load(", "AddedMass(", "SideStop(top)", "Damper("):
         assert said in texts
 

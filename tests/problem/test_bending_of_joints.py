@@ -1,0 +1,39 @@
+"""Stiffness of closed joints: k_n times the area along the normal, and more than k_n I in bending."""
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+
+def bending(masonry, joint=0):
+    """Rotational stiffness of a closed joint about its middle, over k_n I of a strip [-]."""
+    lines = masonry.lines
+    own = (lines.joint == joint) & (lines.body == masonry.joints[joint].above)
+    x, k = lines.at[own][:, 0], lines.k[own]
+    x = x - x.mean()
+    return float(k @ x**2) / (float(k.sum()) * np.ptp(x) ** 2 / 12)
+
+
+@pytest.mark.parametrize(("points", "over"), [(2, 3.0), (3, 1.5), (5, 1.125), (9, 1 + 2 / 64)])
+def test_a_closed_joint_of_few_lines_is_stiffer_in_bending_than_its_face(points, over):
+    """n lines with their tributary lengths give 1 + 2 / (n - 1)^2 times k_n I, in the plane and in space."""
+    plane = mr.Masonry.stack([mr.Block.from_size(thickness=0.6, height=1.0)] * 2, 1e9, points=points)
+    space = mr.Masonry.box((0.6, 0.9, 1.0), k_n=1e9, points=points)
+    assert over == 1 + 2 / (points - 1) ** 2
+    assert bending(plane) == pytest.approx(over)
+    assert bending(space) == pytest.approx(over)
+
+
+def test_a_triangle_on_its_three_corners_is_four_times_as_stiff():
+    masonry = mr.Masonry.column(0.6, 0.8, 1, sides=3, k_n=1e9)
+    lines = masonry.lines
+    own = lines.body == masonry.joints[0].above
+    at, k = lines.at[own][:, :2], lines.k[own]
+    at = at - at.mean(axis=0)
+    edges = np.roll(at, -1, axis=0) - at
+    side = float(np.linalg.norm(edges, axis=1).mean())
+    second_moment = side**4 * np.sqrt(3) / 96
+    assert k.sum() == pytest.approx(1e9 * side**2 * np.sqrt(3) / 4)
+    assert float(k @ at[:, 0] ** 2) == pytest.approx(4 * 1e9 * second_moment)
+    assert float(k @ at[:, 1] ** 2) == pytest.approx(4 * 1e9 * second_moment)
