@@ -20,6 +20,7 @@ from typing import Any, TypeVar
 
 COST = "about half a minute"
 """Time that compiling takes in the first run, on one core that has nothing else to do."""
+WITHOUT = "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
 NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -55,9 +56,7 @@ def _numba() -> Any:
         import numba.extending
         from numba.core import event
     except ImportError:
-        _notice(
-            "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
-        )
+        _notice(WITHOUT)
         return None
 
     class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]
