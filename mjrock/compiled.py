@@ -23,6 +23,7 @@ from .interrupts import interrupts_held_back
 
 COST = "about half a minute"
 """Time that compiling takes in the first run, on one core that has nothing else to do."""
+WITHOUT = "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
 NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
 
 IMPORT = re.compile(r"^from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
@@ -82,9 +83,7 @@ def _imported_numba() -> Any:
         import numba.extending
         from numba.core import event
     except ImportError:
-        _notice(
-            "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
-        )
+        _notice(WITHOUT)
         return None
 
     class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -110,11 +111,12 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
 def _legend_above(ax: Axes) -> None:
     """A legend above the lines of an Axes, in two columns where they are short enough."""
     labels = ax.get_legend_handles_labels()[1]
-    width = ax.bbox.width / ax.get_figure(root=True).dpi  # [inch]
+    figure: Any = ax.get_figure(root=True)
+    width = ax.bbox.width / figure.dpi  # [inch]
     columns = 2 if len(labels) > 2 and 2 * (0.05 * max(map(len, labels)) + 0.35) < width else 1
     rows = -(-len(labels) // columns)
     top = max(float(np.max(line.get_ydata(), initial=0.0)) for line in ax.get_lines()) or 1.0
-    share = min(0.7, (0.1 + 0.125 * rows) * ax.get_figure(root=True).dpi / ax.bbox.height)
+    share = min(0.7, (0.1 + 0.125 * rows) * figure.dpi / ax.bbox.height)
     ax.set_ylim(0.0, 1.08 * top / (1 - share))
     ax.legend(frameon=False, fontsize=6.5, loc="upper right", ncols=columns, labelspacing=0.3, columnspacing=1.0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -176,7 +177,7 @@ def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Updat
     arrow.set_animated(True)
     ax.add_patch(arrow)
     outwards = along[0] >= 0
-    look = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
+    look: dict[str, Any] = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
     look |= {"ha": "center", "va": "bottom"} if loads else {"ha": "left" if outwards else "right", "va": "center"}
     shift = (0, 2) if loads else (2 if outwards else -2, 0)
     text = ax.annotate(f"{effect.force / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
