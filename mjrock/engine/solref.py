@@ -23,7 +23,7 @@ from typing import Any, overload
 import numpy as np
 
 from ..compiled import jitable
-from ..quantities import Array, require_array, require_real, require_reals, require_within, shown
+from ..quantities import Array, require_real, require_reals, require_row, require_within, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
 """mjMINIMP and mjMAXIMP. MuJoCo clamps an impedance outside this range silently, and so changes the stiffness."""
@@ -218,12 +218,9 @@ def contact_stiffness(
             MuJoCo would clamp, or the weight is not positive.
     """
     for name, numbers in (("solref", solref), ("solimp", solimp)):
-        if not isinstance(numbers, tuple | list | np.ndarray) or np.ndim(numbers) != 1 or len(numbers) < 2:
+        if not isinstance(numbers, tuple | list | np.ndarray) or len(require_row(name, numbers, "number")) < 2:
             raise TypeError(f"{name} = {shown(numbers)} has to be at least two numbers")
-    direct, impedances = (
-        require_array(name, numbers, (len(numbers),)).tolist()
-        for name, numbers in (("solref", solref), ("solimp", solimp))
-    )
+    direct, impedances = (np.asarray(numbers, dtype=float).tolist() for numbers in (solref, solimp))
     inverse_weight = require_real("inverse_weight", inverse_weight)
     if not 0 < inverse_weight < math.inf:
         raise ValueError(f"inverse_weight = {inverse_weight:g} 1/kg is outside the valid range inverse_weight > 0")

@@ -75,7 +75,7 @@ def _listed(name: str, values: object) -> list[Any]:
     if not is_iterable(values) and not isinstance(values, str):
         raise TypeError(f"the axis {name} = {shown(values)} is no row of values")
     try:
-        listed = list(values)  # type: ignore[call-overload]
+        listed: list[Any] = list(values)  # type: ignore[call-overload]
     except MemoryError:
         raise ValueError(f"the axis {name} = {shown(values)} has more values than memory holds") from None
     if not listed:

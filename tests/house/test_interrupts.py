@@ -1,5 +1,6 @@
 """Ctrl-C while modules are imported: it is heard afterwards, and what follows works."""
 
+import importlib
 import signal
 import subprocess
 import sys
@@ -10,19 +11,24 @@ import pytest
 from mjrock.interrupts import interrupts_held_back
 
 
+def interrupted(then):
+    """Ctrl-C, and then something else, in two blocks that hold it back, one in the other."""
+    with interrupts_held_back(), interrupts_held_back():
+        signal.raise_signal(signal.SIGINT)
+        then()
+
+
 def test_ctrl_c_is_heard_when_the_block_has_ended():
     done = []
-    with pytest.raises(KeyboardInterrupt), interrupts_held_back(), interrupts_held_back():
-        signal.raise_signal(signal.SIGINT)
-        done.append(1)
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(lambda: done.append(1))
     assert done == [1]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_it_is_heard_too_where_the_block_fails():
-    with pytest.raises(KeyboardInterrupt) as caught, interrupts_held_back():
-        signal.raise_signal(signal.SIGINT)
-        raise ImportError
+    with pytest.raises(KeyboardInterrupt) as caught:
+        interrupted(lambda: importlib.import_module("no_such_module"))
     assert isinstance(caught.value.__context__, ImportError)
 
 

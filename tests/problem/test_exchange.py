@@ -202,7 +202,7 @@ def test_names_that_no_obj_file_holds(tmp_path, name):
     """They would come back as others, or as none, or tie two lines together. A COMPAS model holds them."""
     ground = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True)
     named = mr.Masonry([ground, mr.Polyhedron.box((1, 1, 1), (0, 0, 0.5), name=name)])
-    with pytest.raises(ValueError, match="the block .* has a # in its name, a backslash at its end or a blank"):
+    with pytest.raises(ValueError, match=r"the block .* has a # in its name, a backslash at its end or a blank"):
         named.to_obj(tmp_path / "a.obj")
     assert not list(tmp_path.iterdir())
     if name.strip() == name:

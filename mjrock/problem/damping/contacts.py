@@ -12,6 +12,7 @@ import numpy as np
 
 from ...quantities import (
     Implausible,
+    is_iterable,
     require_kind,
     require_real,
     require_stiffness,
@@ -36,7 +37,7 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
         given = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{asked}: {error}") from None
-    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str) or np.shape(given)[:1] != (2,):
+    if not isinstance(given, Sequence | np.ndarray) or not is_iterable(given) or len(given) != 2:
         raise TypeError(f"{asked}: it gives {shown(given)}")
     xi_base, xi_side = given
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)

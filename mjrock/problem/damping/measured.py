@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import GRAVITY, Array, require_row, require_within, shown
+from ...quantities import GRAVITY, Array, is_iterable, require_row, require_within, shown
 from .falling import MOST_PULL, falling_damping, falling_rebound
 from .rebound import rebound_damping
 
@@ -139,7 +139,7 @@ def _compliance(E: object, nu: object) -> float:
 
 def _ratios(heights: object) -> tuple[Array, float]:
     """e of every bounce [-], and the mean height of the releases [m]."""
-    nested = isinstance(heights, list | tuple) and any(np.ndim(row) > 0 for row in heights)
+    nested = isinstance(heights, list | tuple) and any(is_iterable(row) for row in heights)
     nested = nested or (isinstance(heights, np.ndarray) and heights.ndim > 1)
     several: Any = heights if nested else [heights]
     drops = [require_row("heights", row, "height") for row in several]

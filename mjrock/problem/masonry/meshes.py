@@ -53,8 +53,8 @@ def bodies_of(mesh: Mesh) -> list[Mesh]:
     touch are told apart where they are written one after the other. What is closed together and hangs together nowhere
     is divided.
     """
-    places, number = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
-    number = number.ravel().tolist()
+    places, inverse = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
+    number = inverse.ravel().tolist()
     faces = [tuple(number[i] for i in face) for face in mesh.faces]
     faces = [face for face in faces if len(set(face)) == len(face)]
     parts: list[int] = []  # of each face
