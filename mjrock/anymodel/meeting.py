@@ -11,13 +11,16 @@ import numpy as np
 
 from ..quantities import require_array, shown
 from .felt import Felt, Held, felt
+from .filters import makes
 from .geoms import FARTHEST, GeomPair
-from .landing import Ground, landing
+from .landing import DEPTH, Ground, Landing, landing
 from .springs import Springs
 from .state import keyframe_names, state_of
 
 FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
+LEVEL = 0.05
+"""Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
@@ -35,6 +38,13 @@ class Pose:
         self.model, self.data = model, state_of(model, keyframe, qpos)
         self.given = keyframe is not None or qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
+        self._landings: dict[tuple[int, int], Landing] = {}
+
+    def landing(self, pair: GeomPair) -> Landing:
+        """Where two geoms meet in the pose."""
+        if pair.geoms not in self._landings:
+            self._landings[pair.geoms] = landing(pair, self.data, self.ground if pair.makes_several_points else None)
+        return self._landings[pair.geoms]
 
     @cached_property
     def ground(self) -> Ground:
@@ -64,10 +74,14 @@ class Meeting:
     Args:
         points: contact points that share the mass.
         felt: what the contact feels.
+        together: other geoms of the two bodies that land together with these, and share the mass.
+        late: how much sooner or later than these they touch [m], where that is more than on a level face, else zero.
     """
 
     points: int
     felt: Felt
+    together: tuple[GeomPair, ...] = ()
+    late: float = 0.0
 
     @property
     def share(self) -> float:
@@ -81,6 +95,7 @@ def meeting(
     *,
     contacts: int | None = None,
     at: object = None,
+    alone: bool = False,
     friction: float = 0.0,
     frequency: float | None = None,
     k: float | None = None,
@@ -89,16 +104,20 @@ def meeting(
 
     Args:
         pair, pose: the geoms and the pose.
-        contacts: contact points that share the mass. None takes those of a trial landing.
+        contacts: contact points that share the mass. None takes those of a trial landing, with those of `together`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts` says.
+        alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
         friction, frequency, k: see `felt`.
     """
     if at is not None:
         point = require_array("at", at, (3,))
         if np.abs(point).max() > FARTHEST:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
-    away, first, second = landing(pair, pose.data, pose.ground if pair.makes_several_points else None)
+    here = pose.landing(pair)
+    others, late = ((), 0.0) if alone or contacts is not None or at is not None else together(pair, pose)
+    landings = [here, *(pose.landing(other) for other in others)]
+    first, second = (np.concatenate([getattr(each, side) for each in landings]) for side in ("first", "second"))
     count = len(first) if contacts is None else contacts
     if at is not None:
         places = point, point
@@ -107,7 +126,37 @@ def meeting(
     else:
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
-    return Meeting(count, felt(pair, pose.held, away, places, friction=friction, frequency=frequency, k=whole))
+    felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
+    return Meeting(count, felt_there, others, late)
+
+
+def together(pair: GeomPair, pose: Pose) -> tuple[tuple[GeomPair, ...], float]:
+    """The other geoms of the two bodies that land together with a pair, and the largest difference of their distances
+    to its own [m], zero if it is that of a level face.
+
+    They part along the same line, and their distances differ by less than LEVEL of what lies between their points.
+    """
+    model, place = pair.model, pose.data.geom_xpos
+    bodies = model.body_weldid[model.geom_bodyid]
+    ours, theirs = (np.flatnonzero(bodies == bodies[geom]) for geom in pair.geoms)
+    if len(ours) * len(theirs) == 1:
+        return (), 0.0
+    here, found, late = pose.landing(pair), [], 0.0
+    radius = np.where(model.geom_rbound > 0, (1 + LEVEL) * model.geom_rbound, np.inf)  # planes have none
+    reach = [radius[geoms] + LEVEL * np.linalg.norm(place[geoms] - place[geom], axis=1)
+             for geoms, geom in zip((ours, theirs), pair.geoms, strict=True)]  # fmt: skip
+    gaps = np.linalg.norm(place[ours][:, None] - place[theirs], axis=2) - reach[0][:, None] - reach[1]
+    for i, j in np.argwhere(gaps <= max(here.distance, 0.0) + LEVEL * radius[list(pair.geoms)].min()).tolist():
+        other = GeomPair(model, (int(ours[i]), int(theirs[j])))
+        if other.geoms == pair.geoms or not makes(other):
+            continue
+        there = pose.landing(other)
+        between = float(np.linalg.norm(there.first.mean(axis=0) - here.first.mean(axis=0)))
+        differs = abs(there.distance - here.distance)
+        if there.away @ here.away > 1 - LEVEL**2 and differs <= LEVEL * between:
+            found.append(other)
+            late = max(late, differs if differs > DEPTH * (between + other.thickness) else 0.0)
+    return tuple(found), late
 
 
 def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:
