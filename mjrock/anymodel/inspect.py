@@ -163,6 +163,8 @@ def _notes(
     yield from row.notes()
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
+    if met.company.level:
+        yield f"it lands together with {len(met.company.level)} other contacts of its bodies, and shares the mass"
     if pair.is_uneven:
         yield uneven(found.points)
     elif contacts == 1 and pair.makes_several_points:

@@ -18,7 +18,7 @@ from ..quantities import Array, named, require_whole, require_within, shown, spe
 from .contact import PairContact
 from .geoms import GeomPair, compiled
 from .holding import holding
-from .meeting import Meeting, Pose, elsewhere, meeting
+from .meeting import Company, Meeting, Pose, elsewhere, meeting
 from .mixing import Grip, unused
 from .notes import (
     RESOLVED,
@@ -105,7 +105,7 @@ def contact_for(
     whole = compiled(model)
     pair = GeomPair.named(whole, geom1, geom2)
     asked = Asked(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
-    contact = beside(contact_of(pair, Pose(whole, keyframe, qpos), asked), whole, {})
+    contact = beside(*contact_of(pair, Pose(whole, keyframe, qpos), asked), {})
     for sentence in (*spoilers(pair, contact), *contact.remarks):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
     return contact
@@ -128,8 +128,9 @@ class Asked:
     newmark_beta: Any = 0.25
 
 
-def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
-    """The contact of a pair in a pose; it says in `remarks` what in this pose keeps it from being what was asked."""
+def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> tuple[PairContact, Company]:
+    """The contact of a pair in a pose, which says in `remarks` what keeps it from being what was asked, and what lands
+    with it."""
     option = pair.model.opt
     k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
@@ -167,28 +168,33 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
         load=pair.weight / met.points,
-        together=tuple(other.geoms for other in met.together),
         remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
     soft = () if asked.k is not None else tuple(soft_spoilers(contact, Row(pair).k, pair.thickness))
-    return replace(contact, remarks=(*contact.remarks, *weighed, *soft))
+    return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
 
 
-def beside(contact: PairContact, model: mujoco.MjModel, made: Mapping[frozenset[int], PairContact]) -> PairContact:
-    """The contact, which says in `remarks` which of those that land together with it are not `made` the same."""
-    strangers = []
-    for ids in contact.together:
-        other = made.get(frozenset(ids))
-        if not (other and math.isclose(other.k, contact.k) and math.isclose(other.c, contact.c, rel_tol=1e-6)):
-            strangers.append(" on ".join(GeomPair(model, ids).labels))
-    if not strangers:
-        return contact
-    sentence = (
-        f"it lands together with {named(strangers)}, and shares the mass; give them the same contact, or contacts= to "
-        "this one for the mass at its own points"
-    )
-    return replace(contact, remarks=(*contact.remarks, sentence))
+def beside(contact: PairContact, company: Company, made: Mapping[frozenset[int], PairContact]) -> PairContact:
+    """The contact with `remarks` on what lands with it: what is not `made` the same, and what is not level."""
+    label = {pair: " on ".join(pair.labels) for pair in (*company.level, *company.apart)}
+    others = {pair: made.get(frozenset(pair.geoms)) for pair in label}
+    strangers = [label[pair] for pair in company.level if not (other := others[pair]) or not contact.is_like(other)]
+    apart = [label[pair] for pair in company.apart if others[pair]]
+    level = f"give the pose in which the bodies stand level, not {contact.pose}"
+    remarks = []
+    if strangers:
+        remarks.append(
+            f"it lands together with {named(strangers)}, and shares the mass; give them the same contact, or contacts= "
+            "to this one for the mass at its own points"
+        )
+    if company.late > 0:
+        remarks.append(
+            f"what is taken to land together with it touches up to {company.late:.2g} m sooner or later; {level}"
+        )
+    if apart:
+        remarks.append(f"it lands together with {named(apart)}, and shares the mass, only on a level; {level}")
+    return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
 def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:
@@ -252,11 +258,6 @@ def _remarks(pair: GeomPair, pose: Pose, asked: Asked, met: Meeting, k: float, c
         return ()
     xi = c / (2 * math.sqrt(k * met.share))
     found = list(holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0)))
-    if met.late > 0:
-        found.append(
-            f"{len(met.together)} other contacts of its bodies touch up to {met.late:.2g} m sooner or later at "
-            f"{pose.label}, and are counted as landing together with it; give the pose in which they stand level"
-        )
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
         found += elsewhere(pair, pose, met, contacts, mu)

@@ -122,8 +122,9 @@ def contacts_for(
             meant[frozenset(geoms)] = geoms, asked, any(map(_is_wild, key))
     if not meant:
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
-    made = {ids: contact_of(GeomPair.named(whole, *geoms), pose, asked) for ids, (geoms, asked, _) in meant.items()}
-    contacts = PairContacts(tuple(beside(contact, whole, made) for contact in made.values()))
+    found = [contact_of(GeomPair.named(whole, *geoms), pose, asked) for geoms, asked, _ in meant.values()]
+    made = {frozenset(contact.ids): contact for contact, _ in found}
+    contacts = PairContacts(tuple(beside(contact, company, made) for contact, company in found))
     sentences = [
         (contact, sentence)
         for contact in contacts

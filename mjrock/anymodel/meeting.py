@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -21,6 +22,8 @@ FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
 LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
+SLOPING = 0.3
+"""Slope within which they land one after the other, as those of a foot that is not level do [-]."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
@@ -67,6 +70,20 @@ class Pose:
         return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
 
 
+class Company(NamedTuple):
+    """The other geoms of two bodies that land about when a pair does.
+
+    Args:
+        level: those that land together with it, and share the mass.
+        late: how much sooner or later they touch [m], where that is more than on a level face, else zero.
+        apart: those that land before or after it.
+    """
+
+    level: tuple[GeomPair, ...] = ()
+    late: float = 0.0
+    apart: tuple[GeomPair, ...] = ()
+
+
 @dataclass(frozen=True)
 class Meeting:
     """The contact of two geoms in a pose.
@@ -74,14 +91,12 @@ class Meeting:
     Args:
         points: contact points that share the mass.
         felt: what the contact feels.
-        together: other geoms of the two bodies that land together with these, and share the mass.
-        late: how much sooner or later than these they touch [m], where that is more than on a level face, else zero.
+        company: the other geoms that land with these.
     """
 
     points: int
     felt: Felt
-    together: tuple[GeomPair, ...] = ()
-    late: float = 0.0
+    company: Company
 
     @property
     def share(self) -> float:
@@ -104,7 +119,7 @@ def meeting(
 
     Args:
         pair, pose: the geoms and the pose.
-        contacts: contact points that share the mass. None takes those of a trial landing, with those of `together`.
+        contacts: contact points that share the mass. None takes those of a trial landing, with those of its `company`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts` says.
         alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
@@ -115,8 +130,8 @@ def meeting(
         if np.abs(point).max() > FARTHEST:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
     here = pose.landing(pair)
-    others, late = ((), 0.0) if alone or contacts is not None or at is not None else together(pair, pose)
-    landings = [here, *(pose.landing(other) for other in others)]
+    others = Company() if alone or contacts is not None or at is not None else company(pair, pose)
+    landings = [here, *(pose.landing(other) for other in others.level)]
     first, second = (np.concatenate([getattr(each, side) for each in landings]) for side in ("first", "second"))
     count = len(first) if contacts is None else contacts
     if at is not None:
@@ -127,36 +142,44 @@ def meeting(
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
     felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
-    return Meeting(count, felt_there, others, late)
+    return Meeting(count, felt_there, others)
 
 
-def together(pair: GeomPair, pose: Pose) -> tuple[tuple[GeomPair, ...], float]:
-    """The other geoms of the two bodies that land together with a pair, and the largest difference of their distances
-    to its own [m], zero if it is that of a level face.
-
-    They part along the same line, and their distances differ by less than LEVEL of what lies between their points.
-    """
-    model, place = pair.model, pose.data.geom_xpos
-    bodies = model.body_weldid[model.geom_bodyid]
-    ours, theirs = (np.flatnonzero(bodies == bodies[geom]) for geom in pair.geoms)
-    if len(ours) * len(theirs) == 1:
-        return (), 0.0
-    here, found, late = pose.landing(pair), [], 0.0
-    radius = np.where(model.geom_rbound > 0, (1 + LEVEL) * model.geom_rbound, np.inf)  # planes have none
-    reach = [radius[geoms] + LEVEL * np.linalg.norm(place[geoms] - place[geom], axis=1)
-             for geoms, geom in zip((ours, theirs), pair.geoms, strict=True)]  # fmt: skip
-    gaps = np.linalg.norm(place[ours][:, None] - place[theirs], axis=2) - reach[0][:, None] - reach[1]
-    for i, j in np.argwhere(gaps <= max(here.distance, 0.0) + LEVEL * radius[list(pair.geoms)].min()).tolist():
-        other = GeomPair(model, (int(ours[i]), int(theirs[j])))
-        if other.geoms == pair.geoms or not makes(other):
-            continue
+def company(pair: GeomPair, pose: Pose) -> Company:
+    """The other geoms of the two bodies that land about when a pair does. They part along the same line, and their
+    distances differ by less than a share of what lies between them."""
+    here, late = pose.landing(pair), 0.0
+    level: list[GeomPair] = []
+    apart: list[GeomPair] = []
+    for other in _neighbours(pair, pose, here.distance):
         there = pose.landing(other)
         between = float(np.linalg.norm(there.first.mean(axis=0) - here.first.mean(axis=0)))
         differs = abs(there.distance - here.distance)
-        if there.away @ here.away > 1 - LEVEL**2 and differs <= LEVEL * between:
-            found.append(other)
-            late = max(late, differs if differs > DEPTH * (between + other.thickness) else 0.0)
-    return tuple(found), late
+        if there.away @ here.away < 1 - SLOPING**2 or differs > SLOPING * between:
+            continue
+        (level if differs <= LEVEL * between else apart).append(other)
+        if DEPTH * (between + other.thickness) < differs <= LEVEL * between:
+            late = max(late, differs)
+    return Company(tuple(level), late, tuple(apart))
+
+
+def _neighbours(pair: GeomPair, pose: Pose, distance: float) -> Iterator[GeomPair]:
+    """Other geoms of the two bodies that MuJoCo lets collide, and that can be about as near as the pair is [m] by the
+    spheres around them."""
+    model, place = pair.model, pose.data.geom_xpos
+    bodies = model.body_weldid[model.geom_bodyid]
+    ours, theirs = (np.flatnonzero(bodies == bodies[geom]) for geom in pair.geoms)
+    radius = np.where(model.geom_rbound > 0, (1 + SLOPING) * model.geom_rbound, np.inf)  # planes have none
+    first, second = (
+        radius[geoms] + SLOPING * np.linalg.norm(place[geoms] - place[geom], axis=1)
+        for geoms, geom in zip((ours, theirs), pair.geoms, strict=True)
+    )
+    apart = np.linalg.norm(place[ours][:, None] - place[theirs], axis=2) - first[:, None] - second
+    near = apart <= max(distance, 0.0) + SLOPING * radius[list(pair.geoms)].min()
+    for i, j in np.argwhere(near).tolist():
+        other = GeomPair(model, (int(ours[i]), int(theirs[j])))
+        if other.geoms != pair.geoms and makes(other):
+            yield other
 
 
 def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:

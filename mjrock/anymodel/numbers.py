@@ -28,7 +28,6 @@ class ContactNumbers:
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
         load: static load of each contact point [N], the weight of the lighter of the two trees of bodies, shared.
-        together: numbers of other geoms of the two bodies that land together with these, and share the mass.
         remarks: what in this pose keeps the contact from being what was asked, one sentence each.
     """
 
@@ -52,7 +51,6 @@ class ContactNumbers:
     gravity: float = 0.0
     pose: str = "qpos0"
     load: float = 0.0
-    together: tuple[tuple[int, int], ...] = ()
     remarks: tuple[str, ...] = ()
 
     @property
@@ -60,6 +58,10 @@ class ContactNumbers:
         """The names of the geoms, or their numbers in brackets."""
         names = zip((self.geom1, self.geom2), self.ids, strict=True)
         return " on ".join(name or f"[{number}]" for name, number in names)
+
+    def is_like(self, other: ContactNumbers) -> bool:
+        """Whether another contact has the same spring and dashpot."""
+        return math.isclose(self.k, other.k) and math.isclose(self.c, other.c, rel_tol=1e-6)
 
     @property
     def frequency(self) -> float:
