@@ -56,7 +56,10 @@ class CoulombFriction:
             raise ValueError("model has the integrator RK4, in whose stages the friction of a step is not known")
         self.model = model
         self.dimensions = np.array(model.pair_dim)
-        self._pair_of, self._order = np.unique(self._key(model.pair_geom1, model.pair_geom2), return_index=True)
+        self._pairs = {
+            frozenset((int(a), int(b))): i
+            for i, (a, b) in enumerate(zip(model.pair_geom1, model.pair_geom2, strict=True))
+        }
         self._now = self.dimensions
         self._data: mujoco.MjData | None = None
         self._given = np.zeros(model.nv)
@@ -83,8 +86,8 @@ class CoulombFriction:
             )
         if not np.array_equal(self.model.pair_dim, self._now):
             raise ValueError(
-                f"model has pair_dim {self.model.pair_dim.tolist()}, and this CoulombFriction left {self._now.tolist()}: "
-                "only one works on a model, and it is made anew where pair_dim changes"
+                f"model has pair_dim {self.model.pair_dim.tolist()}, and this one left {self._now.tolist()}: "
+                "only one CoulombFriction works on a model, and it is made anew where pair_dim changes"
             )
         self.release(data)
         self._data = data
@@ -108,22 +111,16 @@ class CoulombFriction:
             self._given[:] = data.qfrc_applied
             self._left[:] = data.qfrc_applied
 
-    def _pressing(self, data: mujoco.MjData) -> Integers:
-        """The contacts that press: numbers of contacts, of their pairs and of their normal rows, shape (3, n)."""
-        if not data.ncon:
-            return np.zeros((3, 0), dtype=np.int64)
-        contact, forces = data.contact, data.efc_force
-        address, keys = contact.efc_address, self._key(contact.geom[:, 0], contact.geom[:, 1])
-        place = np.minimum(np.searchsorted(self._pair_of, keys), len(self._pair_of) - 1)
-        pairs = self._order[place]
-        rubs = (self._pair_of[place] == keys) & (self.dimensions[pairs] > 1) & (address >= 0)
-        number = np.flatnonzero(rubs)
-        number = number[forces[address[number]] > 0]
-        return np.stack([number, pairs[number], address[number]])
-
-    def _key(self, first: Integers, second: Integers) -> Integers:
-        """One number for two geoms in either order."""
-        return np.minimum(first, second).astype(np.int64) * self.model.ngeom + np.maximum(first, second)
+    def _pressing(self, data: mujoco.MjData) -> tuple[Integers, Integers, Integers]:
+        """The contacts that press: their numbers, those of their pairs, and those of their normal rows."""
+        pressing, forces = [], data.efc_force
+        addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
+        for i, (address, both) in enumerate(zip(addresses, geoms, strict=True)):
+            pair = self._pairs.get(frozenset(both), -1)
+            if pair >= 0 and self.dimensions[pair] > 1 and address >= 0 and forces[address] > 0:
+                pressing.append((i, pair, address))
+        number, pairs, rows = np.reshape(np.array(pressing, dtype=np.int64), (-1, 3)).T
+        return number, pairs, rows
 
     def _find(self, data: mujoco.MjData) -> set[int]:
         """The pairs of which every contact that presses slides through the step."""

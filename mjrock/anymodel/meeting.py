@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +11,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..quantities import require_array, shown
+from ..quantities import Array, Integers, require_array, shown
 from .felt import Felt, Held, felt
 from .filters import makes
 from .geoms import FARTHEST, GeomPair
@@ -42,12 +43,20 @@ class Pose:
         self.given = keyframe is not None or qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
         self._landings: dict[tuple[int, int], Landing] = {}
+        self._groups: dict[tuple[int, ...], Group] = {}
 
     def landing(self, pair: GeomPair) -> Landing:
         """Where two geoms meet in the pose."""
         if pair.geoms not in self._landings:
             self._landings[pair.geoms] = landing(pair, self.data, self.ground if pair.makes_several_points else None)
         return self._landings[pair.geoms]
+
+    def group(self, pair: GeomPair) -> Group:
+        """The geoms of the two bodies of a pair."""
+        bodies = tuple(int(self.model.body_weldid[body]) for body in pair.bodies)
+        if bodies not in self._groups:
+            self._groups[bodies] = Group(pair, self)
+        return self._groups[bodies]
 
     @cached_property
     def ground(self) -> Ground:
@@ -145,41 +154,50 @@ def meeting(
     return Meeting(count, felt_there, others)
 
 
+class Group:
+    """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land once they are asked for.
+
+    Attributes:
+        pairs: the geoms, those of the first body first.
+        geoms: their numbers, shape (2, n).
+    """
+
+    def __init__(self, pair: GeomPair, pose: Pose) -> None:
+        model, self.pose = pair.model, pose
+        bodies = model.body_weldid[model.geom_bodyid]
+        ours, theirs = (np.flatnonzero(bodies == bodies[geom]).tolist() for geom in pair.geoms)
+        every = (GeomPair(model, geoms) for geoms in itertools.product(ours, theirs))
+        self.pairs = [made for made in every if makes(made)]
+        self.geoms = np.reshape([made.geoms for made in self.pairs], (-1, 2)).T
+        self._landed = np.full((len(self.pairs), 7), np.nan)
+
+    def landed(self, chosen: Integers) -> tuple[Array, Array, Array]:
+        """Distances [m] of some pairs, shape (n,), directions in which they part, and middles of their points [m]."""
+        for i in chosen[np.isnan(self._landed[chosen, 0])].tolist():
+            there = self.pose.landing(self.pairs[i])
+            self._landed[i] = there.distance, *there.away, *there.first.mean(axis=0)
+        return self._landed[chosen, 0], self._landed[chosen, 1:4], self._landed[chosen, 4:]
+
+
 def company(pair: GeomPair, pose: Pose) -> Company:
     """The other geoms of the two bodies that land about when a pair does. They part along the same line, and their
     distances differ by less than a share of what lies between them."""
-    here, late = pose.landing(pair), 0.0
-    level: list[GeomPair] = []
-    apart: list[GeomPair] = []
-    for other in _neighbours(pair, pose, here.distance):
-        there = pose.landing(other)
-        between = float(np.linalg.norm(there.first.mean(axis=0) - here.first.mean(axis=0)))
-        differs = abs(there.distance - here.distance)
-        if there.away @ here.away < 1 - SLOPING**2 or differs > SLOPING * between:
-            continue
-        (level if differs <= LEVEL * between else apart).append(other)
-        if DEPTH * (between + other.thickness) < differs <= LEVEL * between:
-            late = max(late, differs)
-    return Company(tuple(level), late, tuple(apart))
-
-
-def _neighbours(pair: GeomPair, pose: Pose, distance: float) -> Iterator[GeomPair]:
-    """Other geoms of the two bodies that MuJoCo lets collide, and that can be about as near as the pair is [m] by the
-    spheres around them."""
-    model, place = pair.model, pose.data.geom_xpos
-    bodies = model.body_weldid[model.geom_bodyid]
-    ours, theirs = (np.flatnonzero(bodies == bodies[geom]) for geom in pair.geoms)
-    radius = np.where(model.geom_rbound > 0, (1 + SLOPING) * model.geom_rbound, np.inf)  # planes have none
-    first, second = (
-        radius[geoms] + SLOPING * np.linalg.norm(place[geoms] - place[geom], axis=1)
-        for geoms, geom in zip((ours, theirs), pair.geoms, strict=True)
+    group, here, place = pose.group(pair), pose.landing(pair), pose.data.geom_xpos
+    radius = np.where(pair.model.geom_rbound > 0, pair.model.geom_rbound, np.inf)  # planes have none
+    ends, reach, own = place[group.geoms], radius[group.geoms], np.array(pair.geoms)[:, None]
+    between = reach + np.linalg.norm(ends - place[own], axis=2) + radius[own]
+    least = np.linalg.norm(ends[0] - ends[1], axis=1) - (reach + SLOPING * between).sum(axis=0)
+    near = np.flatnonzero((least <= max(here.distance, 0.0)) & (group.geoms != own).any(axis=0))
+    distance, away, middle = group.landed(near)
+    between, differs = np.linalg.norm(middle - here.first.mean(axis=0), axis=1), np.abs(distance - here.distance)
+    along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
+    level = along & (differs <= LEVEL * between)
+    late = level & (differs > DEPTH * (between + pair.thickness))
+    return Company(
+        tuple(group.pairs[i] for i in near[level]),
+        float(differs[late].max(initial=0.0)),
+        tuple(group.pairs[i] for i in near[along & ~level]),
     )
-    apart = np.linalg.norm(place[ours][:, None] - place[theirs], axis=2) - first[:, None] - second
-    near = apart <= max(distance, 0.0) + SLOPING * radius[list(pair.geoms)].min()
-    for i, j in np.argwhere(near).tolist():
-        other = GeomPair(model, (int(ours[i]), int(theirs[j])))
-        if other.geoms != pair.geoms and makes(other):
-            yield other
 
 
 def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:

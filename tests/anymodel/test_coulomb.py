@@ -122,7 +122,7 @@ def test_a_model_is_stepped_with_one_data():
         mujoco.mj_step(model, first)
     with pytest.raises(ValueError, match=r"data is another MjData .*copy\.copy\(model\)"):
         friction(second)
-    with pytest.raises(ValueError, match=r"pair_dim \[1\], and this CoulombFriction left \[3\]"):
+    with pytest.raises(ValueError, match=r"pair_dim \[1\], and this one left \[3\]"):
         other(second)
     own = copy.copy(model)
     own.pair_dim[:] = 3
