@@ -153,6 +153,16 @@ def relative(bodies: Rows, point: Row, supports: Supports, meet: Meeting) -> Vec
 
 
 @inlined
+def slip_halfway(bodies: Rows, point: Row, meet: Meeting, velocity: Vector, rate: float) -> Vector:
+    """Velocity of a point along its face halfway into the overlap, where friction rubs, from that at the point [m/s]."""
+    spin = spin_of(bodies[point.body])
+    if point.face >= 0:
+        spin = minus(spin, spin_of(bodies[point.face]))
+    slip = minus(velocity, scaled(rate, meet.normal))
+    return plus(slip, spun(spin, scaled(-0.5 * min(meet.gap, 0.0), meet.normal)))
+
+
+@inlined
 def carried(point: Row, supports: Supports, way: Vector) -> float:
     """Velocity of the support of a point along a vector, zero where none moves it."""
     if point.support < 0:
@@ -214,7 +224,7 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
                 continue
         velocity = relative(bodies, point, supports, meet)
         rate = dot(meet.normal, velocity)
-        slip = minus(velocity, scaled(rate, meet.normal))
+        slip = slip_halfway(bodies, point, meet, velocity, rate)
         sprung = -point.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - point.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[point.group] -= 0.5 * h * (point.pressed + push - sprung) * rate
