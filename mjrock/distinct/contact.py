@@ -174,18 +174,19 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
         books.friction[1] += 0.5 * h * (line.push + push) * carried(line, supports, meet.nx, meet.nz)
         line.push, line.pressed = push, push - sprung
-        middle, drag = -0.5 * min(meet.gap, 0.0), 0.0  # friction rubs halfway into the overlap
+        middle = -0.5 * min(meet.gap, 0.0)  # friction rubs halfway into the overlap
+        last, drag = line.dragged if line.k_s < math.inf else 0.0, 0.0
         if push == 0:
             line.grip = 0.0
         elif line.k_s < math.inf:
             drag = sprung_friction(line, push, slip, h)
-            books.friction[0] -= 0.5 * h * (line.dragged + drag) * slip
-            books.friction[1] += 0.5 * h * (line.dragged + drag) * carried(line, supports, meet.nz, -meet.nx)
         elif line.friction > 0:
             books.active[active] = p
             active += 1
             list_rigid(bodies, line, meet, kick * line.friction * push)
         line.dragged = drag
+        books.friction[0] -= 0.5 * h * (last + drag) * slip
+        books.friction[1] += 0.5 * h * (last + drag) * carried(line, supports, meet.nz, -meet.nx)
         fx, fz, turning = push * meet.nx + drag * meet.nz, push * meet.nz - drag * meet.nx, middle * drag
         add_force(bodies[line.body], meet.rx, meet.rz, fx, fz)
         bodies[line.body].moment += turning

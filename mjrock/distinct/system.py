@@ -54,6 +54,8 @@ LINE = np.dtype(
     ]
 )
 """A contact line: a point of a body above the face of another body or of a fixed block."""
+THROUGH = 2
+"""`corner` of a line whose corner has come through an edge or a face, in the plane and in space."""
 
 LINK = np.dtype(
     [

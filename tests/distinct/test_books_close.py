@@ -17,6 +17,31 @@ def cube_on_ground(in_space, **options):
     return mr.Masonry([ground, mr.Polygon([(-0.5, 0), (0.5, 0), (0.5, 1), (-0.5, 1)])], **options)
 
 
+def cube_beside_a_table(in_space, **options):
+    """A table whose end is at x = 0, and 4.5 m beyond it a cube on the ground."""
+    if in_space:
+        box = mr.Polyhedron.box
+        table = box((2, 3, 1), (-1, 0, 0.5), fixed=True, name="table")
+        blocks = [box((20, 20, 1), (0, 0, -0.5), fixed=True), table, box((1, 1, 1), (5.0, 0, 0.5))]
+    else:
+        corners = ((-10, -1), (10, -1), (10, 0), (-10, 0)), ((-2, 0), (0, 0), (0, 1), (-2, 1))
+        blocks = [mr.Polygon(places, fixed=True) for places in corners]
+        blocks.append(mr.Polygon([(4.5, 0), (5.5, 0), (5.5, 1), (4.5, 1)]))
+    return mr.Masonry(blocks, **options)
+
+
+def thrown(masonry, in_space, place, turn, speed, duration=0.45, timestep=4e-4):
+    """The cube starts with its centroid displaced, turned by an angle [rad], with a speed upwards [m/s]."""
+    x, z = place
+    if in_space:
+        start = [[x, 0, z, np.cos(turn / 2), 0, np.sin(turn / 2), 0]], [[0, 0, speed, 0, 0, 0]]
+    else:
+        start = [[x, z, turn]], [[0, speed, 0]]
+    pose, velocity = (np.array(part, dtype=float) for part in start)
+    case = mr.MasonryCase(masonry, duration)
+    return mr.solve_explicit(case, timestep=timestep, ledger=True, start=(pose, velocity))
+
+
 def unaccounted(run):
     """Largest residual over the largest kinetic energy [-]."""
     return np.abs(run.energy_residual).max() / run.ledger.kinetic.max()
@@ -30,3 +55,18 @@ def test_friction_of_springs_turns_the_blocks_that_overlap(in_space):
     run = mr.solve_explicit(mr.MasonryCase(masonry, 0.5, velocity=velocity), timestep=5e-4, ledger=True)
     assert run.sliding.max() > 0.3
     assert unaccounted(run) < 5e-5
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("inset", [0.02, 0.3])
+def test_a_corner_that_has_come_through_an_edge_keeps_pressing_on_it(in_space, inset):
+    """A cube falls on its corner near the end of a table, which it enters deeper than the end is far: it is thrown back
+    to where it came from."""
+    masonry = cube_beside_a_table(in_space, k_n=1e6, friction=0.0, xi=0.0)
+    over = np.sqrt(0.5) - 0.5 + 0.1  # the centroid over that of the cube on the table
+    run = thrown(masonry, in_space, (-5.0 - inset, 1.0 + over), np.pi / 4, -2.0)
+    up, speed = run.pose[:, 0, 2 if in_space else 1], run.velocity[:, 0, 2 if in_space else 1]
+    assert up.min() < 1.0 + over - 0.1 - 0.15
+    assert speed[-1] ** 2 + 2 * mr.GRAVITY * (up[-1] - up[0]) == pytest.approx(4.0, rel=1e-4)
+    assert speed[-1] > 0
+    assert unaccounted(run) < 1e-5

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from ...compiled import inlined, jitable
 from ...geometry.vectors import Vector, dot, minus, plus, scaled, spun
 from ..contact import OPEN
-from ..system import Books, Row, Rows, Supports
+from ..system import THROUGH, Books, Row, Rows, Supports
 from .friction import list_rigid
 from .system import (
     System,
@@ -39,8 +39,8 @@ from .system import (
 )
 from .turning import in_body, in_world, swung
 
-NEAR, THROUGH, BESIDE = 1, 2, 3
-"""A corner outside a face, one that has come through it, and one that is behind it and passed beside its outline."""
+NEAR, BESIDE = 1, 3
+"""A corner outside a face, and one that is behind it and passed beside its outline. Between them it is THROUGH."""
 TURNED_OVER = 2 * OPEN
 """Gap of a point whose block has turned over [m]. The contact is gone for good."""
 ROUNDS = 3
