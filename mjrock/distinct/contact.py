@@ -37,6 +37,7 @@ class Meeting(NamedTuple):
         nx, nz: normal out of the face.
         rx, rz: from the centroid of the body to the line [m].
         sx, sz: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
+        past: whether the point is past the end of the face.
     """
 
     gap: float
@@ -46,6 +47,7 @@ class Meeting(NamedTuple):
     rz: float
     sx: float
     sz: float
+    past: bool
 
 
 @inlined
@@ -68,10 +70,11 @@ def meeting(bodies: Rows, line: Row, supports: Supports) -> Meeting:
         sx, sz = (body.x0 - face.x0) + (body.x - face.x), (body.z0 - face.z0) + (body.z - face.z)
     elif line.support >= 0:
         dx, dz = dx - supports.moved[line.support, 0], dz - supports.moved[line.support, 1]
-    gap = nx * dx + nz * dz
+    gap, past = nx * dx + nz * dz, False
     if gap < 0:
         place = nz * dx - nx * dz
-        if place < line.low or place > line.high:
+        past = place < line.low or place > line.high
+        if past:
             end = line.low if place < line.low else line.high
             dx, dz = dx - end * nz, dz + end * nx
             mx = line.normal_x + line.normal_z * body.sine - line.normal_x * body.versine
@@ -85,7 +88,7 @@ def meeting(bodies: Rows, line: Row, supports: Supports) -> Meeting:
             nx, nz = nx / size, nz / size
     if line.face >= 0:
         sx, sz = sx + rx, sz + rz
-    return Meeting(gap, nx, nz, rx, rz, sx, sz)
+    return Meeting(gap, nx, nz, rx, rz, sx, sz, past)
 
 
 @inlined
@@ -103,7 +106,7 @@ def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> tupl
 
 @inlined
 def slip_halfway(bodies: Rows, line: Row, meet: Meeting, ux: float, uz: float) -> float:
-    """Velocity of a point along its face halfway into the overlap, where friction rubs, from that at the point [m/s]."""
+    """Velocity along its face halfway into the overlap, where friction rubs, from that at the point [m/s]."""
     spin = bodies[line.body].w
     if line.face >= 0:
         spin -= bodies[line.face].w
@@ -118,6 +121,28 @@ def carried(line: Row, supports: Supports, x: float, z: float) -> float:
         return 0.0
     velocity: float = x * supports.moving[line.support, 0] + z * supports.moving[line.support, 1]
     return velocity
+
+
+@inlined
+def closed_share(line: Row, gap: float, opened: float) -> float:
+    """Share of the last step in which a line was closed [-], whose gap has grown by some length in it [m]."""
+    before, now = line.push > line.pressed, gap < 0
+    if before and now:
+        return 1.0
+    depth = (line.push - line.pressed) / line.k if before else -min(gap, 0.0)
+    share: float = depth / abs(opened) if depth < abs(opened) else 1.0
+    return share
+
+
+@inlined
+def lost_at_the_end(line: Row, gap: float, past: bool, opened: float) -> float:
+    """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
+    its spring held less, and has not done as work while the gap grew by some length [m]."""
+    before, now = line.push - line.pressed, -line.k * min(gap, 0.0)
+    if not (past or line.past == 1) or before <= 0 or 0 <= gap < OPEN:
+        return 0.0
+    lost: float = 0.5 * (before + now) * ((before - now) / line.k - opened)
+    return lost
 
 
 @inlined
@@ -172,8 +197,9 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         sprung = -line.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - line.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
-        books.friction[1] += 0.5 * h * (line.push + push) * carried(line, supports, meet.nx, meet.nz)
-        line.push, line.pressed = push, push - sprung
+        books.ends[min(line.corner, 1)] += lost_at_the_end(line, meet.gap, meet.past, h * rate)
+        closed, pushed = closed_share(line, meet.gap, h * rate), line.push + push
+        line.push, line.pressed, line.past = push, push - sprung, meet.past
         middle = -0.5 * min(meet.gap, 0.0)  # friction rubs halfway into the overlap
         last, drag = line.dragged if line.k_s < math.inf else 0.0, 0.0
         if push == 0:
@@ -186,7 +212,8 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
             list_rigid(bodies, line, meet, kick * line.friction * push)
         line.dragged = drag
         books.friction[0] -= 0.5 * h * (last + drag) * slip
-        books.friction[1] += 0.5 * h * (last + drag) * carried(line, supports, meet.nz, -meet.nx)
+        along, across = carried(line, supports, meet.nx, meet.nz), carried(line, supports, meet.nz, -meet.nx)
+        books.friction[1] += 0.5 * h * closed * (pushed * along + (last + drag) * across)
         fx, fz, turning = push * meet.nx + drag * meet.nz, push * meet.nz - drag * meet.nx, middle * drag
         add_force(bodies[line.body], meet.rx, meet.rz, fx, fz)
         bodies[line.body].moment += turning
