@@ -37,6 +37,7 @@ class Meeting(NamedTuple):
         nx, nz: normal out of the face.
         rx, rz: from the centroid of the body to the line [m].
         sx, sz: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
+        past: whether the point is past the end of the face.
     """
 
     gap: float
@@ -46,6 +47,7 @@ class Meeting(NamedTuple):
     rz: float
     sx: float
     sz: float
+    past: bool
 
 
 @inlined
@@ -68,10 +70,11 @@ def meeting(bodies: Rows, line: Row, supports: Supports) -> Meeting:
         sx, sz = (body.x0 - face.x0) + (body.x - face.x), (body.z0 - face.z0) + (body.z - face.z)
     elif line.support >= 0:
         dx, dz = dx - supports.moved[line.support, 0], dz - supports.moved[line.support, 1]
-    gap = nx * dx + nz * dz
+    gap, past = nx * dx + nz * dz, False
     if gap < 0:
         place = nz * dx - nx * dz
-        if place < line.low or place > line.high:
+        past = place < line.low or place > line.high
+        if past:
             end = line.low if place < line.low else line.high
             dx, dz = dx - end * nz, dz + end * nx
             mx = line.normal_x + line.normal_z * body.sine - line.normal_x * body.versine
@@ -85,7 +88,7 @@ def meeting(bodies: Rows, line: Row, supports: Supports) -> Meeting:
             nx, nz = nx / size, nz / size
     if line.face >= 0:
         sx, sz = sx + rx, sz + rz
-    return Meeting(gap, nx, nz, rx, rz, sx, sz)
+    return Meeting(gap, nx, nz, rx, rz, sx, sz, past)
 
 
 @inlined
@@ -102,12 +105,44 @@ def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> tupl
 
 
 @inlined
+def slip_halfway(bodies: Rows, line: Row, meet: Meeting, ux: float, uz: float) -> float:
+    """Velocity along its face halfway into the overlap, where friction rubs, from that at the point [m/s]."""
+    spin = bodies[line.body].w
+    if line.face >= 0:
+        spin -= bodies[line.face].w
+    slip: float = meet.nz * ux - meet.nx * uz - 0.5 * min(meet.gap, 0.0) * spin
+    return slip
+
+
+@inlined
 def carried(line: Row, supports: Supports, x: float, z: float) -> float:
     """Velocity of the support of a line in a direction, zero where none moves it [m/s]."""
     if line.support < 0:
         return 0.0
     velocity: float = x * supports.moving[line.support, 0] + z * supports.moving[line.support, 1]
     return velocity
+
+
+@inlined
+def closed_share(line: Row, gap: float, opened: float) -> float:
+    """Share of the last step in which a line was closed [-], whose gap has grown by some length in it [m]."""
+    before, now = line.push > line.pressed, gap < 0
+    if before and now:
+        return 1.0
+    depth = (line.push - line.pressed) / line.k if before else -min(gap, 0.0)
+    share: float = depth / abs(opened) if depth < abs(opened) else 1.0
+    return share
+
+
+@inlined
+def lost_at_the_end(line: Row, gap: float, past: bool, opened: float) -> float:
+    """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
+    its spring held less, and has not done as work while the gap grew by some length [m]."""
+    before, now = line.push - line.pressed, -line.k * min(gap, 0.0)
+    if not (past or line.past == 1) or before <= 0 or 0 <= gap < OPEN:
+        return 0.0
+    lost: float = 0.5 * (before + now) * ((before - now) / line.k - opened)
+    return lost
 
 
 @inlined
@@ -154,7 +189,7 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
                 line.grip, line.corner = 0.0, min(line.corner, 1)
                 continue
         ux, uz = relative(bodies, line, supports, meet)
-        rate, slip = meet.nx * ux + meet.nz * uz, meet.nz * ux - meet.nx * uz
+        rate, slip = meet.nx * ux + meet.nz * uz, slip_halfway(bodies, line, meet, ux, uz)
         if line.corner == 1:
             if meet.gap < -ENTERED * h * abs(rate):
                 continue  # it did not come through this edge
@@ -162,20 +197,23 @@ def press_lines(system: System, books: Books, h: float, kick: float) -> int:
         sprung = -line.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - line.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
-        books.friction[1] += 0.5 * h * (line.push + push) * carried(line, supports, meet.nx, meet.nz)
-        line.push, line.pressed = push, push - sprung
-        middle, drag = -0.5 * min(meet.gap, 0.0), 0.0  # friction rubs halfway into the overlap
+        books.ends[min(line.corner, 1)] += lost_at_the_end(line, meet.gap, meet.past, h * rate)
+        closed, pushed = closed_share(line, meet.gap, h * rate), line.push + push
+        line.push, line.pressed, line.past = push, push - sprung, meet.past
+        middle = -0.5 * min(meet.gap, 0.0)  # friction rubs halfway into the overlap
+        last, drag = line.dragged if line.k_s < math.inf else 0.0, 0.0
         if push == 0:
             line.grip = 0.0
         elif line.k_s < math.inf:
             drag = sprung_friction(line, push, slip, h)
-            books.friction[0] -= 0.5 * h * (line.dragged + drag) * slip
-            books.friction[1] += 0.5 * h * (line.dragged + drag) * carried(line, supports, meet.nz, -meet.nx)
         elif line.friction > 0:
             books.active[active] = p
             active += 1
             list_rigid(bodies, line, meet, kick * line.friction * push)
         line.dragged = drag
+        books.friction[0] -= 0.5 * h * (last + drag) * slip
+        along, across = carried(line, supports, meet.nx, meet.nz), carried(line, supports, meet.nz, -meet.nx)
+        books.friction[1] += 0.5 * h * closed * (pushed * along + (last + drag) * across)
         fx, fz, turning = push * meet.nx + drag * meet.nz, push * meet.nz - drag * meet.nx, middle * drag
         add_force(bodies[line.body], meet.rx, meet.rz, fx, fz)
         bodies[line.body].moment += turning

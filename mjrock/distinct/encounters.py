@@ -1,10 +1,10 @@
 """Encounters: blocks that have left their joints meet others, corner against edge.
 
 From time to time the blocks that have moved by more than the width of a joint are looked at. Where a corner of one
-comes near an edge of another that it has no closed joint with, a contact line appears there, and it lasts until the
-next look. It has the stiffness, damping and friction of the softest line of the block that carries the corner. Two
-blocks that overlap when their line appears push each other apart only where they come nearer. The corners of fixed
-blocks meet no edge.
+comes near an edge of another that it has no closed joint with, a contact line appears there. It lasts until the next
+look, or longer, as long as the corner presses on the edge that it has come through. It has the stiffness, damping and
+friction of the softest line of the block that carries the corner. Two blocks that overlap when their line appears push
+each other apart only where they come nearer. The corners of fixed blocks meet no edge.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
 from ..result.joints import joint_numbers
-from .system import LINE, Rows, System, rows
+from .system import LINE, THROUGH, Rows, System, rows
 
 NEAR = 2.0
 """Distance up to which a corner is near an edge, over the way that a block makes until the next look [-]."""
@@ -30,8 +30,6 @@ MOST = 16
 """Encounters for which there is room, over the number of blocks [-]."""
 CORNERS = 1024
 """More than the corners and than the faces of any block."""
-KEPT = ("corner", "grip", "push", "pressed", "dragged")
-"""What a line remembers of its last step."""
 
 
 class Look(NamedTuple):
@@ -101,7 +99,7 @@ class Looking:
         lines = system.lines[: len(self.joints)]
         free = np.append(loose, False)
         either = free[lines["body"]] | free[lines["face"]]
-        touches, pairs = lines["push"] > 0, self.pairs
+        touches, pairs = lines["push"] > lines["pressed"], self.pairs  # also where the dashpot pulls
         closed = np.unique(pairs[touches | ~either])
         gone = either & ~np.isin(pairs, closed)
         for name in ("k", "c", "friction"):
@@ -112,13 +110,20 @@ class Looking:
         """The system with the lines of its joints and those of the encounters."""
         return system._replace(lines=np.concatenate([system.lines[: len(self.joints)], lines]).view(np.recarray))
 
-    def _remembered(self, keys: Integers, gaps: Array) -> tuple[Array, Integers, Integers]:
-        """Overlaps that count as none [m], and which of these encounters are which of those of the last look."""
-        _, new, old = np.intersect1d(keys, self.keys, return_indices=True)
-        overlaps = np.minimum(gaps, 0.0)
-        overlaps[new] = np.maximum(self.overlaps[old], overlaps[new])
-        self.keys, self.overlaps = keys, overlaps
-        return overlaps, new, old
+    def _new(self, keys: Integers, gaps: Array, last: Rows) -> tuple[Rows, Flags, Array]:
+        """Lines of the last look that stay, which of these encounters get a new line, and their overlaps that count as
+        none [m].
+
+        A corner that has come through keeps its line, and comes through nothing else of the same block.
+        """
+        stay = last["corner"] == THROUGH
+        new = ~np.isin(keys // CORNERS, self.keys[stay] // CORNERS)
+        new &= np.cumsum(new) <= self.most - np.count_nonzero(stay)
+        keys, overlaps = keys[new], np.minimum(gaps[new], 0.0)
+        _, now, then = np.intersect1d(keys, self.keys, return_indices=True)
+        overlaps[now] = np.maximum(self.overlaps[then], overlaps[now])
+        self.keys, self.overlaps = np.append(self.keys[stay], keys), np.append(self.overlaps[stay], overlaps)
+        return last[stay], new, overlaps
 
 
 class Encounters(Looking):
@@ -168,7 +173,8 @@ class Encounters(Looking):
         """Lines of encounters, the numbers of two blocks with a corner of one and an edge of the other, (count, 4)."""
         a, corner, b, edge = numbers.T
         keys = ((a * CORNERS + corner) * len(self.body) + b) * CORNERS + edge
-        overlaps, new, old = self._remembered(keys, gaps)
+        kept, new, overlaps = self._new(keys, gaps, last)
+        a, corner, b, edge = numbers[new].T
         body, face = self.body[a], self.body[b]
         at = self.corners[self.first[a] + corner]
         start, end = (self.corners[self.first[b] + (edge + i) % np.diff(self.first)[b]] for i in (0, 1))
@@ -176,14 +182,12 @@ class Encounters(Looking):
         normal = np.column_stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]]) / length[:, None]
         start = start + overlaps[:, None] * normal  # the edge is taken to lie where the corner is
         between = (self.origin[a] + at) - (self.origin[b] + start)
-        lines = rows(LINE, len(numbers), body=body, face=face, support=-1, group=self.group, corner=1, low=-length)
+        lines = rows(LINE, len(a), body=body, face=face, support=-1, group=self.group, corner=1, low=-length)
         for name, values in (("at", at), ("origin", start), ("normal", normal), ("between", between)):
             lines[f"{name}_x"], lines[f"{name}_z"] = values.T
         for name in ("k", "c", "k_s", "c_s", "friction"):
             lines[name] = self.softest[name][body]
-        for name in KEPT:
-            lines[name][new] = last[name][old]
-        return lines
+        return np.concatenate([kept, lines]).view(np.recarray)
 
 
 def narrowest(masonry: Masonry) -> Array:

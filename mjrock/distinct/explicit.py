@@ -82,7 +82,7 @@ def solve_explicit(
     count = steps.rows
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
     groups = tuple(dict.fromkeys(scene.group))
-    columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 1 if ledger else 0)
+    columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 3 if ledger else 0)
     if ledger:
         require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
     books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else setup.encounters.most)

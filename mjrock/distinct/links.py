@@ -30,6 +30,29 @@ def pull(link: Row, body: Row) -> Pull:
     return Pull(length, dx / length, dz / length, link.at_x + swung_x, link.at_z + swung_z)
 
 
+@inlined
+def lengthening(now: Pull, body: Row) -> float:
+    """Rate of the length of a tie or a damper [m/s]."""
+    rate: float = now.nx * (body.vx + body.w * now.rz) + now.nz * (body.vz - body.w * now.rx)
+    return rate
+
+
+@inlined
+def since_broken(over: float, rate: float, h: float) -> float:
+    """How long before the pose a tie broke that is longer than it can be by `over` [s], within the step of length h."""
+    return min(over / rate, h) if rate > 0 else 0.0
+
+
+@inlined
+def pulled_until_broken(tie: Row, since: float, h: float) -> float:
+    """Force at the pose after a tie broke, in place of none [N].
+
+    That of the pose before acts on the velocity up to the middle of the step. What the tie pulled after the middle and
+    before it broke is still to act, and what it pulled in the middle after it had broken is to be taken back.
+    """
+    return tie.strength * (0.5 - since / h) if h > 0 else 0.0
+
+
 @jitable
 def pull_links(system: System, books: Books, t: float, h: float) -> None:
     """Add the forces of ties, dampers and constant forces at time t, and book what the last step of length h took."""
@@ -45,8 +68,10 @@ def pull_links(system: System, books: Books, t: float, h: float) -> None:
             tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
             books.ties[i] += tie.strength * min(beyond, left)
             if beyond >= left:
-                tie.broken = t
-                books.broken[i] = 0.5 * tie.strength**2 / tie.k
+                since = since_broken(beyond - left, lengthening(now, body), h)
+                tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
+                last = pulled_until_broken(tie, since, h)
+                add_force(body, now.rx, now.rz, -last * now.nx, -last * now.nz)
                 continue
         force = -tie.k * max(0.0, now.length - tie.reach)
         add_force(body, now.rx, now.rz, force * now.nx, force * now.nz)
@@ -54,7 +79,7 @@ def pull_links(system: System, books: Books, t: float, h: float) -> None:
         damper = system.dampers[i]
         body = system.bodies[damper.body]
         now = pull(damper, body)
-        rate = now.nx * (body.vx + body.w * now.rz) + now.nz * (body.vz - body.w * now.rx)
+        rate = lengthening(now, body)
         force = -damper.c * rate
         books.dampers[i] -= 0.5 * h * (force + damper.pulled) * rate
         damper.pulled = force

@@ -104,9 +104,9 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
 
 @jitable
 def keep_work(books: Books, work: Array) -> None:
-    """Keep the accounts of dampers, ties, broken ties and dashpots."""
+    """Keep the accounts of dampers, ties, broken ties, dashpots and ends of faces."""
     column = 2
-    for account in (books.dampers, books.ties, books.broken, books.dashpots):
+    for account in (books.dampers, books.ties, books.broken, books.dashpots, books.ends):
         for i in range(len(account)):
             work[column] = account[i]
             column += 1

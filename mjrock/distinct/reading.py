@@ -144,7 +144,8 @@ def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     work = run.samples.work[: max(count, 1), 1]
     own = run.energy[: len(work)] - work
-    scale = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    given = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    scale = max(given, float(run.samples.energy[: len(work), 0].max()))  # what falls below its rest has more
     gain = from_nowhere(own, scale)
     if gain is not None:
         raise RuntimeError(f"{gain[1]} by t = {run.t[gain[0]]:.4g} s; {advice(stats)}")
@@ -174,7 +175,7 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     breaking, groups = (yielding + i * len(scene.tie_names) for i in (1, 2))
     may_break = np.isfinite(scene.tie_ultimate)
     dashpots = dict(zip(scene.damper_names, work[:yielding], strict=True))
-    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:], strict=False))
+    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:-2], strict=True))
     kinetic, potential, elastic = samples.energy[kept].T
     return Ledger(
         t=run.t[kept],
@@ -190,4 +191,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
             for name, account, breaks in zip(scene.tie_names, work[breaking:groups], may_break, strict=True)
             if breaks
         },
+        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), work[-2:], strict=True)),
     )

@@ -49,11 +49,14 @@ LINE = np.dtype(
         ("grip", float),  # stretch of the shear spring [m]; where it is rigid, friction of the last step [N]
         *((name, float) for name in ("push", "pressed", "dragged")),  # force, dashpot and friction of the last step [N]
         ("widest", float),  # largest gap so far [m]
+        ("past", np.int64),  # 1 for a point past the end of its face at the last pose
         *((name, float) for name in ("way_x", "way_z", "lever", "other")),  # friction of a unit impulse: see `friction`
         *((name, float) for name in ("most", "light", "sliding")),
     ]
 )
 """A contact line: a point of a body above the face of another body or of a fixed block."""
+THROUGH = 2
+"""`corner` of a line whose corner has come through an edge or a face, in the plane and in space."""
 
 LINK = np.dtype(
     [
@@ -127,6 +130,7 @@ class Books(NamedTuple):
     Args:
         dashpots: by group, shape (g,).
         ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
+        ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         friction: friction, what is in the shear springs included; then the work of ground and supports; then the
             accelerations of the ground in the last step, x, z and y [m/s2], shape (5,).
         active: room for the numbers of the lines that stick rigidly, shape (m,).
@@ -136,15 +140,17 @@ class Books(NamedTuple):
     ties: Array
     broken: Array
     dampers: Array
+    ends: Array
     friction: Array
     active: Integers
 
     @classmethod
     def of(cls, system: Any, groups: int, further: int = 0) -> Books:
         """Empty books of a system in the plane or in space, with room for some further lines."""
-        sizes = (groups, len(system.ties), len(system.ties), len(system.dampers), 5)
-        dashpots, ties, broken, dampers, friction = (np.zeros(size) for size in sizes)
-        return cls(dashpots, ties, broken, dampers, friction, np.zeros(len(system.lines) + further, dtype=np.int64))
+        sizes = (groups, len(system.ties), len(system.ties), len(system.dampers), 2, 5)
+        dashpots, ties, broken, dampers, ends, friction = (np.zeros(size) for size in sizes)
+        active = np.zeros(len(system.lines) + further, dtype=np.int64)
+        return cls(dashpots, ties, broken, dampers, ends, friction, active)
 
 
 class Samples(NamedTuple):
@@ -153,8 +159,8 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shape (samples, n, 3); in space (samples, n, 7) and (samples, n, 6).
         energy: kinetic, potential and elastic [J], shape (samples, 3).
-        work: friction and ground, then dampers, ties, broken ties and dashpots by group [J], shape (samples, columns).
-            Without a ledger it is the first two alone, and friction is that of shear springs.
+        work: friction and ground, then dampers, ties, broken ties, dashpots by group and ends of faces [J], shape
+            (samples, columns). Without a ledger it is the first two alone, and friction is that of shear springs.
     """
 
     pose: Array

@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 from ...compiled import inlined, jitable
 from ...geometry.vectors import Vector, dot, minus, plus, scaled, spun
-from ..contact import OPEN
-from ..system import Books, Row, Rows, Supports
+from ..contact import OPEN, closed_share, lost_at_the_end
+from ..system import THROUGH, Books, Row, Rows, Supports
 from .friction import list_rigid
 from .system import (
     System,
@@ -39,8 +39,8 @@ from .system import (
 )
 from .turning import in_body, in_world, swung
 
-NEAR, THROUGH, BESIDE = 1, 2, 3
-"""A corner outside a face, one that has come through it, and one that is behind it and passed beside its outline."""
+NEAR, BESIDE = 1, 3
+"""A corner outside a face, and one that is behind it and passed beside its outline. Between them it is THROUGH."""
 TURNED_OVER = 2 * OPEN
 """Gap of a point whose block has turned over [m]. The contact is gone for good."""
 ROUNDS = 3
@@ -55,12 +55,14 @@ class Meeting(NamedTuple):
         normal: out of the face.
         arm: from the centroid of the body to the point [m].
         face_arm: from the centroid of the body of the face to the point [m]; of a fixed block no arm is taken.
+        past: whether the point is past the outline of the face.
     """
 
     gap: float
     normal: Vector
     arm: Vector
     face_arm: Vector
+    past: bool
 
 
 @inlined
@@ -80,13 +82,13 @@ def meeting(system: System, point: Row) -> Meeting:
         across = minus(across, displaced_support(system.supports, point.support))
     gap = dot(normal, across)
     if point.corner > 0:
-        return cornered(system, point, across, Meeting(gap, normal, arm, face_arm))
+        return cornered(system, point, across, Meeting(gap, normal, arm, face_arm, False))
     if gap < 0:
         if dot(normal, in_world(body, normal_of(point))) < 0:
-            return Meeting(TURNED_OVER, normal, arm, face_arm)
+            return Meeting(TURNED_OVER, normal, arm, face_arm, True)
         if dot(across, across) - gap * gap > point.margin:
-            return at_the_end(system, point, across, Meeting(gap, normal, arm, face_arm))
-    return Meeting(gap, normal, arm, face_arm)
+            return at_the_end(system, point, across, Meeting(gap, normal, arm, face_arm, False))
+    return Meeting(gap, normal, arm, face_arm, False)
 
 
 @jitable
@@ -118,7 +120,7 @@ def at_the_end(system: System, point: Row, across: Vector, meet: Meeting) -> Mee
             gap = OPEN
     normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
     normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
-    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along))
+    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
 
 
 @jitable
@@ -135,7 +137,7 @@ def cornered(system: System, point: Row, across: Vector, meet: Meeting) -> Meeti
             if dot(way_of(edge), reached) > edge.reach:
                 point.corner = BESIDE
     if point.corner == BESIDE:
-        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm)
+        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm, True)
     return meet
 
 
@@ -150,6 +152,16 @@ def relative(bodies: Rows, point: Row, supports: Supports, meet: Meeting) -> Vec
     elif point.support >= 0:
         velocity = minus(velocity, moving_support(supports, point.support))
     return velocity
+
+
+@inlined
+def slip_halfway(bodies: Rows, point: Row, meet: Meeting, velocity: Vector, rate: float) -> Vector:
+    """Velocity along its face halfway into the overlap, where friction rubs, from that at the point [m/s]."""
+    spin = spin_of(bodies[point.body])
+    if point.face >= 0:
+        spin = minus(spin, spin_of(bodies[point.face]))
+    slip = minus(velocity, scaled(rate, meet.normal))
+    return plus(slip, spun(spin, scaled(-0.5 * min(meet.gap, 0.0), meet.normal)))
 
 
 @inlined
@@ -205,23 +217,24 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
     for p in range(len(lines)):
         point = lines[p]
         meet = meeting(system, point)
-        if meet.gap == TURNED_OVER:
-            point.k = point.c = point.friction = 0.0
-        elif meet.gap >= 0:
+        if 0 <= meet.gap < TURNED_OVER:
             point.widest = max(point.widest, meet.gap)
             if point.push == 0 and point.pressed == 0:  # nor was there friction
                 keep_grip(point, (0.0, 0.0, 0.0))
                 continue
         velocity = relative(bodies, point, supports, meet)
         rate = dot(meet.normal, velocity)
-        slip = minus(velocity, scaled(rate, meet.normal))
+        slip = slip_halfway(bodies, point, meet, velocity, rate)
         sprung = -point.k * min(meet.gap, 0.0)
         push = max(0.0, sprung - point.c * rate) if meet.gap < 0 else 0.0
         books.dashpots[point.group] -= 0.5 * h * (point.pressed + push - sprung) * rate
-        put_in += 0.5 * h * (point.push + push) * carried(point, supports, meet.normal)
+        books.ends[min(point.corner, 1)] += lost_at_the_end(point, meet.gap, meet.past, h * rate)
+        closed, pushed = closed_share(point, meet.gap, h * rate), point.push + push
         last: Vector = (point.dragged_x, point.dragged_y, point.dragged_z)
         drag: Vector = (0.0, 0.0, 0.0)
-        point.push, point.pressed = push, push - sprung
+        point.push, point.pressed, point.past = push, push - sprung, meet.past
+        if meet.gap == TURNED_OVER:
+            point.k = point.c = point.friction = 0.0
         if push == 0:
             keep_grip(point, (0.0, 0.0, 0.0))
         elif point.k_s < math.inf:
@@ -232,7 +245,7 @@ def press_points(system: System, books: Books, h: float, kick: float) -> int:
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))
         rubbed -= dot(mean, slip)
-        put_in += carried(point, supports, mean)
+        put_in += closed * carried(point, supports, plus(mean, scaled(0.5 * h * pushed, meet.normal)))
         point.dragged_x, point.dragged_y, point.dragged_z = drag
         force = plus(scaled(push, meet.normal), drag)
         # friction rubs halfway into the overlap

@@ -17,7 +17,7 @@ from ..encounters import CORNERS, Looking, pair_number
 from ..system import Rows, rows, stacked
 from .assembly import edges_of_face
 from .columns import PLACE, QUATERNION, REST, named_vectors, turns
-from .contact import NEAR, THROUGH
+from .contact import NEAR
 from .system import POINT, WAY, System
 
 
@@ -98,12 +98,8 @@ class EncountersInSpace(Looking):
         """
         a, corner, b, face = numbers.T
         keys = ((a * CORNERS + corner) * len(self.body) + b) * CORNERS + face
-        pressing = last["corner"] == THROUGH
-        kept, kept_keys, kept_overlaps = last[pressing], self.keys[pressing], self.overlaps[pressing]
-        free = ~np.isin(keys // CORNERS, kept_keys // CORNERS)
-        free &= np.cumsum(free) <= self.most - len(kept)
-        (a, corner, b, face), within, gaps = numbers[free].T, within[free], gaps[free]
-        overlaps, _, _ = self._remembered(keys[free], gaps)
+        kept, new, overlaps = self._new(keys, gaps, last)
+        (a, corner, b, face), within, gaps = numbers[new].T, within[new], gaps[new]
         at, normal, ends = self.corners[a, corner], self.normals[b, face], self.ends[b, face]
         origin = within + (overlaps - gaps)[:, None] * normal  # the face is taken to lie where the corner is
         points = rows(
@@ -119,5 +115,4 @@ class EncountersInSpace(Looking):
             first=ends[:, 0],
             last=ends[:, 1],
         )
-        self.keys, self.overlaps = np.append(kept_keys, self.keys), np.append(kept_overlaps, self.overlaps)
         return np.concatenate([kept, points]).view(np.recarray)

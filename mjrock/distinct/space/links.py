@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ...compiled import inlined, jitable
 from ...geometry.vectors import Vector, dot, minus, plus, scaled, spun
+from ..links import pulled_until_broken, since_broken
 from ..system import Books, Row, Rows
 from .system import System, add_force, at_of, between_of, origin_of, place_of, spin_of, velocity_of
 from .turning import swung
@@ -71,8 +72,9 @@ def pull_links(system: System, books: Books, t: float, h: float) -> None:
             tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
             books.ties[i] += tie.strength * min(beyond, left)
             if beyond >= left:
-                tie.broken = t
-                books.broken[i] = 0.5 * tie.strength**2 / tie.k
+                since = since_broken(beyond - left, lengthening(tie, bodies, now), h)
+                tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
+                act(tie, bodies, now, -pulled_until_broken(tie, since, h))
                 continue
         act(tie, bodies, now, -tie.k * max(0.0, now.length - tie.reach))
     for i in range(len(system.dampers)):

@@ -64,6 +64,7 @@ POINT = np.dtype(
         *numbers("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
         *three("dragged"),  # friction of the last step [N]
         ("widest", float),  # largest gap so far [m]
+        ("past", np.int64),  # 1 for a point past the outline of its face at the last pose
     ]
 )
 """A contact point: a point of a body on the face of another body or of a fixed block."""
