@@ -13,6 +13,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import require_flag, require_kind, require_text
+from .arguments import picture
 from .bodies import Bodies
 from .section import STONE, blocks, surroundings
 
@@ -20,6 +21,7 @@ DIMENSION: dict[str, Any] = {"arrowstyle": "<->", "color": "0.3", "shrinkA": 0, 
 LEADER: dict[str, Any] = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
 
 
+@picture()
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
