@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from ..study.fragility import Fragility
+from .arguments import mapping, picture, row, table
 from .style import STYLES, folded, legend_below
 
 MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
@@ -20,8 +21,12 @@ MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns w
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
+@picture(frequency=row, amplitude=row, mode=table)
 def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: ArrayLike) -> Axes:
     """Overturning spectrum of a pulse: `mode` (an index into MODES) over frequency and amplitude, shape (n_a, n_f)."""
+    shape = len(amplitude), len(frequency)  # type: ignore[arg-type]
+    if np.shape(mode) != shape:
+        raise ValueError(f"mode has the shape {np.shape(mode)}; {shape} is needed, amplitudes by frequencies")
     colours = ListedColormap(list(MODES.values()))
     ax.pcolormesh(frequency, amplitude, mode, cmap=colours, vmin=-0.5, vmax=len(MODES) - 0.5, rasterized=True)
     ax.set(xlabel=r"frequency $\omega_p/p$ [-]", ylabel=r"amplitude $a_p/(g\,\tan\alpha)$ [-]")
@@ -34,6 +39,7 @@ def mode_legend(figure: Figure) -> None:
     legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
 
 
+@picture()
 def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, top: float | None = None) -> Axes:
     """Incremental dynamic analysis: peak rotation against intensity, a line a motion, with its 16, 50, 84 % fractiles.
 
@@ -41,6 +47,10 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     is 1.2, or above the largest peak of a wall that stands: one on ties may stand beyond alpha.
     """
     levels, values = np.asarray(intensity, dtype=float), np.asarray(peaks, dtype=float)
+    if values.shape[1] != len(levels):
+        raise ValueError(
+            f"peaks has the shape {values.shape}; a column for each of {len(levels)} intensities is needed"
+        )
     if top is None:
         top = max(1.2, 1.15 * float(values[np.isfinite(values)].max(initial=0.0)))
     shown = np.minimum(values, top)
@@ -59,6 +69,7 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
     return ax
 
 
+@picture()
 def fragility(
     ax: Axes, fit: Fragility, levels: ArrayLike, shares: ArrayLike, solver: str, marker: str = "o", unit: str = "g"
 ) -> Axes:
@@ -87,6 +98,7 @@ def fragility(
     return ax
 
 
+@picture(samples=mapping(row))
 def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-3, most: float = 1.0) -> Axes:
     """Share of runs whose peak rotation stays below a value, a line a solver; overturned runs lie beyond `most`."""
     for solver, values in samples.items():
@@ -97,12 +109,15 @@ def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-
     return ax
 
 
+@picture()
 def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[float, float]) -> Axes:
     """Peak rotations of the same cases in two ways, on logarithmic axes; what falls lies on the upper edge.
 
     `values` are multiples of alpha, shape (n, 2).
     """
     low, high = limits
+    if np.shape(values)[1] != 2:
+        raise ValueError(f"values has the shape {np.shape(values)}; two columns are needed")
     a, b = np.clip(np.asarray(values, dtype=float), low, high).T
     ax.plot([low, high], [low, high], color="0.6", linewidth=0.8)
     ax.loglog(a, b, linestyle="", marker="o", markersize=3.5, markeredgewidth=0, alpha=0.55, color="#12406b")

@@ -13,6 +13,7 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
 from ..result.response import Response
+from .arguments import kind, listed, picture
 from .style import below_figure, several, short, styles_of, wrapped
 
 TIME = "time $t$ [s]"
@@ -20,6 +21,7 @@ MOST = 6
 """Entries of a legend of ties."""
 
 
+@picture()
 def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Rotation in multiples of alpha against time.
 
@@ -64,6 +66,7 @@ def overturned_at(response: Response) -> float | None:
     return float(response.t[min(returns[-1] + 1, len(response.t) - 1) if returns.size else 0])
 
 
+@picture()
 def acceleration(ax: Axes, case: Case, until: float) -> Axes:
     """Acceleration of the ground against time [m/s2], horizontal and, where there is one, vertical."""
     for motion, label, color in ((case.motion, "horizontal", "0.25"), (case.vertical, "vertical", "#f0a35e")):
@@ -77,6 +80,7 @@ def acceleration(ax: Axes, case: Case, until: float) -> Axes:
     return ax
 
 
+@picture()
 def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
     """Force of the ties against time [kN], a cross where one broke, and how far each was drawn out.
 
@@ -192,6 +196,7 @@ def required_labels(responses: Sequence[Response], labels: object) -> list[str] 
     return [require_text(f"labels[{i}]", label) for i, label in enumerate(labels)]
 
 
+@picture(responses=listed(kind(Response)))
 def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
     """Energy above the wall at rest against time."""
     for response, style in zip(responses, styles_of(responses), strict=True):
@@ -201,6 +206,7 @@ def energy(ax: Axes, responses: Sequence[Response]) -> Axes:
     return ax
 
 
+@picture()
 def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     """Rotation above, energy below, in the manner of the paper's Figure 3."""
     figure = Figure(figsize=(6.3, 5.0), layout="constrained")
@@ -213,6 +219,7 @@ def comparison(responses: Sequence[Response], title: str = "") -> Figure:
     return figure
 
 
+@picture()
 def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top: float | None = None) -> Figure:
     """Rotation histories of several cases, one panel each, in the manner of the paper's Figure 4.
 

@@ -11,24 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, require_reals
+from .arguments import anything, equal_rows, mapping, pair, picture
 from .style import titled
 
 ASKED = "restitution asked for $|e|$ [-]"
-
-
-def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
-    """Rows of real numbers that are drawn against each other, as arrays.
-
-    Raises:
-        TypeError, ValueError: with their names, unless they are rows of one length, of at least one number.
-    """
-    checked = {name: require_reals(name, row, "a row of real numbers") for name, row in rows.items()}
-    shapes = {name: row.shape for name, row in checked.items()}
-    if len(set(shapes.values())) > 1 or any(row.ndim != 1 or not row.size for row in checked.values()):
-        given = ", ".join(f"{name} has the shape {shape}" for name, shape in shapes.items())
-        raise ValueError(f"{given}; rows of one length are needed")
-    return tuple(checked.values())
 
 
 def damping_curves(
@@ -49,6 +35,7 @@ def damping_curves(
     return ax
 
 
+@picture()
 def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike) -> Axes:
     """Predicted against matched damping ratios, on logarithmic axes, coloured by the softness of the base."""
     x, y, softness = equal_rows(matched=matched, predicted=predicted, color=color)
@@ -74,6 +61,7 @@ def residuals(title: str, residual: ArrayLike, variables: Mapping[str, tuple[Arr
     return figure
 
 
+@picture(curves=mapping(pair(anything, anything)))
 def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Axes:
     """Damping ratio, over its mean, as each parameter goes through its range; a line a parameter."""
     for (name, (shares, ratios)), marker in zip(curves.items(), "os^vD<>p", strict=False):
@@ -84,6 +72,7 @@ def sensitivity(ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> 
     return ax
 
 
+@picture(samples=mapping(pair(anything, anything)))
 def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Axes:
     """Restitution obtained against the one asked for; samples are (asked for, obtained) by law. NaN is not drawn."""
     rows = [equal_rows(asked=asked, obtained=given) for asked, given in samples.values()]

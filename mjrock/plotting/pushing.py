@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ..study.pushover import PushoverCurve
+from .arguments import equal_rows, kind, mapping, picture
 from .style import folded
 
 LINES: tuple[dict[str, Any], ...] = (
@@ -25,6 +26,7 @@ Closed = Mapping[str, tuple[ArrayLike, ArrayLike]]
 """Rotations [rad] and the values of a closed form at them, by the name of its curve."""
 
 
+@picture(curves=mapping(kind(PushoverCurve)))
 def pushover(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
     """Multiplier against rotation, a line a curve, with closed forms as points; no legend."""
     _drawn(ax, {name: (curve.rotation, curve.multiplier) for name, curve in curves.items()}, closed or {})
@@ -32,6 +34,7 @@ def pushover(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | Non
     return ax
 
 
+@picture(curves=mapping(kind(PushoverCurve)))
 def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
     """Restoring moment against rotation, as in Figure 1(c) of the paper; closed forms [N m] as points; no legend.
 
@@ -52,7 +55,8 @@ def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Close
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
     for (name, (x, y)), style in zip(lines.items(), cycle(LINES), strict=False):
         ax.plot(x, y, label=folded(name), **style)
-    for i, (name, (x, y)) in enumerate(points.items()):
+    for i, (name, at) in enumerate(points.items()):
+        x, y = equal_rows(rotation=at[0], values=at[1])
         colour = LINES[list(lines).index(name) % len(LINES)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)

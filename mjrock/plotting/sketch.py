@@ -15,6 +15,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.damper import Damper
 from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import require_flag, require_kind, require_text
+from .arguments import picture
 from .bodies import Bodies
 from .section import GROUND, STONE, blocks, surroundings
 from .style import titled
@@ -29,6 +30,7 @@ NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
 """Width of the column of notes, room between the drawings and at the edges, and height of a line of text [inch]."""
 
 
+@picture()
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 

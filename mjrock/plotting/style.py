@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from ..files import replacing
 from ..quantities import require_kind, require_path
 from ..result.response import Response
+from .arguments import picture
 
 STYLES: dict[str, dict[str, Any]] = {
     "analytical": {"label": "rocking theory", "color": "0.15", "linestyle": "-", "linewidth": 1.1},
@@ -40,6 +41,8 @@ def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None
     """The line style of each response: that of its solver, or with labels one of its own."""
     if labels is None:
         return [STYLES.get(response.solver, {"label": response.solver}) for response in responses]
+    if len(labels) != len(responses):
+        raise ValueError(f"labels has {len(labels)} texts for {len(responses)} responses; one for each is needed")
     return [OWN[i % len(OWN)] | {"label": folded(label)} for i, label in enumerate(labels)]
 
 
@@ -116,6 +119,7 @@ def save(figure: Figure, path: str | Path) -> Path:
     return path
 
 
+@picture()
 def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
     """A figure with one Axes, drawn by `draw`."""
     figure = Figure(figsize=size, layout="constrained")
@@ -123,6 +127,7 @@ def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
     return figure
 
 
+@picture()
 def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
     """Several drawings, each on an Axes of its own under its title."""
     figure, axes = several(len(drawings), columns, (4.4, 3.4))

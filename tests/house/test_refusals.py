@@ -195,6 +195,18 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
             lambda: mr.sensitivity(lambda k: 0.01 * k, {"k": np.datetime64("2020-01-01")}, {"k": [0.5]}),
             r"build fails at k = .*datetime64\('2020-01-01'\) of type datetime64: \w+: ufunc",
         ),
+        (lambda: plotting.rotation(2, [ANSWER]), "ax = 2 of type int is not a Axes"),
+        (lambda: drawn(plotting.rotation, 3), "responses = 3 of type int is no sequence of at least one"),
+        (lambda: drawn(plotting.energy, [ANSWER, 3]), r"responses\[1\] = 3 of type int is not a Response"),
+        (lambda: drawn(plotting.ties, [ANSWER], ["a", "b"]), "labels has 2 texts for 1 responses"),
+        (lambda: drawn(plotting.acceleration, CASE, math.nan), "until = nan is outside the valid range"),
+        (lambda: drawn(plotting.pushover, {"a": 1}), r"curves\['a'\] = 1 of type int is not a PushoverCurve"),
+        (lambda: drawn(plotting.pairs, [[1.0, 2.0]], ("a", "b"), (0.0, 1.0)), "limits = .* two positive numbers"),
+        (lambda: drawn(plotting.incremental, [1.0], [[1.0, 2.0]], "a"), r"peaks has the shape \(1, 2\)"),
+        (lambda: drawn(plotting.convergence, [1.0], {"a": [1.0, 2.0]}, 2), r"errors has the shape \(2,\)"),
+        (lambda: plotting.panels([]), r"drawings = \[\] of type list is no sequence of at least one"),
+        (lambda: plotting.panels([("a", 3)]), r"drawings\[0\]\[1\] = 3 of type int is no function that draws"),
+        (lambda: plotting.grid([("a", [ANSWER])], 0), "columns = 0 is outside the valid range 1 to 50"),
         *((lambda name=name: mr.Polygon(SQUARE, name=name), "name = .* the end of a line") for name in LINES),
     ],
 )
@@ -207,6 +219,10 @@ def test_what_cannot_be_is_named(call, complaint, tmp_path, monkeypatch):
 
 def contacts(**options):
     return mr.Contacts.from_law(WALL, E, 5e8, 5e8, **options)
+
+
+def drawn(draw, *given):
+    return draw(plotting.single(lambda ax: ax).axes[0], *given)
 
 
 def filmed(**given):

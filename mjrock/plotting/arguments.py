@@ -1,0 +1,209 @@
+"""Checks of the arguments of pictures, which go by their names: `ax` is an Axes in each of them, `title` a text."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar, cast
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from ..problem.wall.case import Case
+from ..quantities import (
+    Array,
+    require_array,
+    require_flag,
+    require_kind,
+    require_real,
+    require_reals,
+    require_text,
+    require_whole,
+    require_within,
+    shown,
+)
+from ..result.response import Response
+from ..study.fragility import Fragility
+
+Picture = TypeVar("Picture", bound=Callable[..., Any])
+Check = Callable[[str, Any], object]
+"""Raises a TypeError or ValueError with the name and the value of an argument that cannot be."""
+MOST_COLUMNS = 50
+"""Most panels beside each other."""
+
+
+def kind(*kinds: type) -> Check:
+    """A check for one of these types."""
+    return lambda name, value: require_kind(name, value, *kinds)
+
+
+def row(name: str, value: Any) -> None:
+    """A row of at least one real number."""
+    given = require_reals(name, value, "a row of at least one real number")
+    if given.ndim != 1 or not given.size:
+        raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
+
+
+def table(name: str, value: Any) -> None:
+    """Real numbers in rows and columns."""
+    given = require_reals(name, value, "real numbers in rows and columns")
+    if given.ndim != 2 or not given.size:
+        raise ValueError(f"{name} has the shape {given.shape}; rows and columns of real numbers are needed")
+
+
+def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
+    """Rows of real numbers that are drawn against each other, as arrays.
+
+    Raises:
+        TypeError, ValueError: with their names, unless they are rows of one length, of at least one number.
+    """
+    checked = {name: require_reals(name, row, "a row of real numbers") for name, row in rows.items()}
+    shapes = {name: row.shape for name, row in checked.items()}
+    if len(set(shapes.values())) > 1 or any(row.ndim != 1 or not row.size for row in checked.values()):
+        given = ", ".join(f"{name} has the shape {shape}" for name, shape in shapes.items())
+        raise ValueError(f"{given}; rows of one length are needed")
+    return tuple(checked.values())
+
+
+def two_texts(name: str, value: Any) -> None:
+    """Two texts."""
+    if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
+        raise TypeError(f"{name} = {shown(value)} are not two texts")
+    for text in value:
+        require_text(name, text)
+
+
+def two_numbers(name: str, value: Any) -> None:
+    """Two positive numbers that increase, such as limits of a logarithmic axis."""
+    low, high = require_array(name, value, (2,))
+    if not 0 < low < high:
+        raise ValueError(f"{name} = {shown(value)} are not two positive numbers that increase")
+
+
+def size(name: str, value: Any) -> None:
+    """Width and height of a figure [inch]."""
+    for extent in require_array(name, value, (2,)):
+        require_within(name, extent, 0.1, 200.0, "inch")
+
+
+def anything(name: str, value: Any) -> None:
+    """What is checked elsewhere."""
+
+
+def mapping(check: Check, least: int = 1) -> Check:
+    """A check for so many values by texts at least, each with a check of its own."""
+
+    def checked(name: str, value: Any) -> None:
+        if not isinstance(value, Mapping) or len(value) < least:
+            raise TypeError(f"{name} = {shown(value)} is no mapping of names, at least {least}")
+        for key, one in value.items():
+            require_text(f"a name of {name}", key)
+            check(f"{name}[{key!r}]", one)
+
+    return checked
+
+
+def listed(check: Check) -> Check:
+    """A check for a sequence of at least one, each with a check of its own."""
+
+    def checked(name: str, value: Any) -> None:
+        if isinstance(value, str) or not isinstance(value, Sequence) or not len(value):
+            raise TypeError(f"{name} = {shown(value)} is no sequence of at least one")
+        for i, one in enumerate(value):
+            check(f"{name}[{i}]", one)
+
+    return checked
+
+
+def pair(first: Check, second: Check) -> Check:
+    """A check for a pair."""
+
+    def checked(name: str, value: Any) -> None:
+        if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
+            raise TypeError(f"{name} = {shown(value)} is no pair")
+        first(f"{name}[0]", value[0])
+        second(f"{name}[1]", value[1])
+
+    return checked
+
+
+def of_wall(name: str, value: Any) -> None:
+    """A response of a wall."""
+    require_kind(name, value, Response)
+    if not isinstance(value.case, Case):
+        raise TypeError(f"{name} is that of masonry; the picture is of walls")
+
+
+def drawing(name: str, value: Any) -> None:
+    """A function that draws on an Axes."""
+    if not callable(value):
+        raise TypeError(f"{name} = {shown(value)} is no function that draws on an Axes")
+
+
+def number(name: str, value: Any) -> None:
+    """A finite number."""
+    require_within(name, value, -1e9, 1e9)
+
+
+def positive(name: str, value: Any) -> None:
+    """A positive finite number."""
+    if not 0 < require_real(name, value) < math.inf:
+        raise ValueError(f"{name} = {shown(value)} is outside the valid range, which is above 0")
+
+
+CHECKS: dict[str, Check] = {
+    "arguments": require_flag,
+    "ax": kind(Axes),
+    "case": kind(Case),
+    "closed": mapping(pair(anything, anything), least=0),
+    "columns": lambda name, value: require_whole(name, value, 1, MOST_COLUMNS),
+    "draw": drawing,
+    "drawings": listed(pair(require_text, drawing)),
+    "errors": mapping(row),
+    "figure": kind(Figure),
+    "fit": kind(Fragility),
+    "intensity": row,
+    "labels": listed(require_text),
+    "least": positive,
+    "levels": row,
+    "limits": two_numbers,
+    "marker": require_text,
+    "most": positive,
+    "names": two_texts,
+    "order": lambda name, value: require_within(name, value, -20.0, 20.0),
+    "panels": listed(pair(require_text, listed(of_wall))),
+    "peaks": table,
+    "responses": listed(of_wall),
+    "shares": row,
+    "size": size,
+    "solver": require_text,
+    "steps": row,
+    "title": require_text,
+    "top": positive,
+    "unit": require_text,
+    "until": number,
+    "values": table,
+}
+"""The check of each argument that means the same in every picture."""
+
+
+def picture(**own: Check) -> Callable[[Picture], Picture]:
+    """Check the arguments of a function that draws, by `CHECKS` and by those of its own, before anything is drawn."""
+
+    def decorated(draw: Picture) -> Picture:
+        signature = inspect.signature(draw)
+
+        @functools.wraps(draw)
+        def checked(*given: Any, **options: Any) -> Any:
+            for name, value in signature.bind(*given, **options).arguments.items():
+                check = own.get(name) or CHECKS.get(name)
+                if check is not None and not (value is None and signature.parameters[name].default is None):
+                    check(name, value)
+            return draw(*given, **options)
+
+        return cast(Picture, checked)
+
+    return decorated
