@@ -105,7 +105,9 @@ def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-
         style = {k: v for k, v in STYLES.get(solver, {"label": folded(solver)}).items() if k != "linestyle"}
         ordered = np.sort(np.clip(np.asarray(values, dtype=float), least, 10 * most))
         ax.step(ordered, np.arange(1, len(ordered) + 1) / len(ordered), where="post", **style)
-    ax.set(xscale="log", xlim=(least, most), ylim=(0, 1), xlabel=PEAK, ylabel="share of runs below it [-]")
+    ax.set(
+        xscale="log", xlim=(float(least), float(most)), ylim=(0, 1), xlabel=PEAK, ylabel="share of runs below it [-]"
+    )
     return ax
 
 

@@ -229,7 +229,7 @@ def grid(panels: Sequence[tuple[str, Sequence[Response]]], columns: int = 2, top
     for ax, (title, responses) in zip(axes.flat, panels, strict=False):
         rotation(ax, responses).set_title(wrapped(title, 2.7, 9), fontsize=9)
         if top is not None:
-            ax.set_ylim(-0.1 * top, top)
+            ax.set_ylim(-0.1 * top, float(top))
     for ax in axes[:-1].flat:
         ax.set_xlabel("")
     for ax in axes[:, 1:].flat:
