@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .anymodel.inspect import InspectedContact, inspect_contacts
     from .anymodel.make import contact_for
     from .anymodel.many import PairContacts, contacts_for
+    from .anymodel.notes import ContactWarning
     from .distinct.explicit import solve_explicit
     from .engine.model import SimulationError
     from .engine.simulation import automatic_timestep, simulate
@@ -82,14 +83,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
-    "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "Contacts", "CoulombFriction", "Damper",
-    "DampingLaw", "Fragility", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
-    "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse",
-    "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact", "PairContacts",
-    "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum", "Restitution",
-    "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint",
-    "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate",
-    "campaign", "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness",
+    "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction",
+    "Damper", "DampingLaw", "Fragility", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact",
+    "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
+    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
+    "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum",
+    "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError",
+    "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep",
+    "calibrate", "campaign", "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness",
     "contacts_for", "crushed_inset", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
     "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
     "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity",
@@ -104,6 +105,7 @@ HOMES = {
     "anymodel.inspect": "InspectedContact inspect_contacts",
     "anymodel.make": "contact_for",
     "anymodel.many": "PairContacts contacts_for",
+    "anymodel.notes": "ContactWarning",
     "distinct.explicit": "solve_explicit",
     "engine.solref": "ContactParameters ManyContactParameters contact_parameters contact_stiffness",
     "engine.model": "SimulationError",

@@ -11,7 +11,7 @@ import mujoco
 from ..files import write_text
 from ..result.table import csv_text
 from .inspect import inspect_contacts
-from .table import HEADER, is_of, report, values, worst_first
+from .table import HEADER, is_of, report, require_known, values, worst_first
 
 PAGE = 40
 """Rows that fill a page."""
@@ -43,10 +43,12 @@ def answer(argv: Sequence[str]) -> str:
     args = parser().parse_args(argv)
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is no file")
-    load = mujoco.MjModel.from_binary_path if args.model.suffix == ".mjb" else mujoco.MjModel.from_xml_path
+    read = mujoco.MjModel.from_binary_path if args.model.suffix == ".mjb" else mujoco.MjModel.from_xml_path
     keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
+    model = read(str(args.model))
+    require_known(model, [*args.geom, *args.body, *(args.pair or ())])
     found = inspect_contacts(
-        load(str(args.model)), candidates=not args.pairs, contacts=args.contacts, keyframe=keyframe, load=args.load
+        model, candidates=not args.pairs, contacts=args.contacts, keyframe=keyframe, load=args.load
     )
     chosen = worst_first([contact for contact in found if is_of(contact, args.geom, args.body, args.pair)])
     if args.csv is not None:

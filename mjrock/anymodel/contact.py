@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import mujoco
 
-from ..quantities import require_flag
+from ..quantities import require_flag, require_text
 from .geoms import GeomPair, compiled
-from .notes import missing, spoilers
+from .notes import ContactWarning, missing, spoilers
 from .numbers import ContactNumbers
+from .others import Changed, Others, sentence
 
 
 @dataclass(frozen=True)
@@ -35,24 +38,34 @@ class PairContact(ContactNumbers):
         """
         return document([self])
 
-    def apply(self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False) -> None:
+    def apply(
+        self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False, keep_others: bool = False
+    ) -> None:
         """Write the contact into a model, with the options that it needs.
 
         A compiled model has to have an explicit `<pair>` of the two geoms, which takes the numbers. A specification
         that has none is given one. The time step is set, and for a contact with friction the elliptic cone and
-        impratio, which keeps its value if that is larger.
+        impratio, which keeps its value if that is larger. `MjSpec.attach` brings the pair into another specification
+        and leaves these options behind: attach first, and make and apply the contact on the whole.
 
         Args:
             model: the model for which the contact was made, or another with the same geoms and bodies. It is changed.
             on_geoms: whether the two geoms of a compiled model without such a pair take the numbers. An approach
                 without sliding is then the same. Geoms have no solreffriction, so that sliding changes the normal
                 force, and every other contact of these geoms mixes the numbers too.
+            keep_others: whether other contacts that the options change are kept as stiff as they were. Named geoms of a
+                specification get explicit pairs, which their own parameters and filters do not change any more, and
+                existing pairs get other numbers.
 
         Raises:
             ValueError: if a compiled model has no such pair, a geom has no name where a name is needed, or the bodies
                 have another inverse weight.
+
+        Warns:
+            ContactWarning: of other contacts that are stiffer or softer now, with k before and after. The elliptic cone
+                makes contacts with friction mu softer by 2 impratio / (mu^2 (1 + mu^2)), or stiffer for mu above 1.
         """
-        write([self], model, on_geoms)
+        write([self], model, on_geoms, keep_others)
 
     def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
@@ -72,19 +85,24 @@ class PairContact(ContactNumbers):
             )
 
     @property
-    def pair_xml(self) -> str:
-        """The explicit pair alone, as text; ValueError if one of the geoms has no name."""
+    def attributes(self) -> dict[str, Any]:
+        """The attributes of the explicit pair by name, for tools that make MJCF; see `options` for those of `<option>`.
+
+        Raises:
+            ValueError: if one of the geoms has no name.
+        """
         self._require_names()
-        numbers = {"solref": self.solref, "solimp": self.solimp}
-        if self.condim > 1:
-            numbers |= {"solreffriction": self.solreffriction, "friction": self.friction}
-        attributes = " ".join(f"{name}={_text(*values)}" for name, values in numbers.items())
-        geoms = f"geom1={quoteattr(self.geom1)} geom2={quoteattr(self.geom2)}"
-        return f'<pair {geoms} condim="{self.condim}" {attributes}/>'
+        found = {"geom1": self.geom1, "geom2": self.geom2, "condim": self.condim}
+        found |= {"solref": self.solref, "solimp": self.solimp}
+        return found | ({"solreffriction": self.solreffriction, "friction": self.friction} if self.condim > 1 else {})
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The attributes of `<option>` that the contact needs, by name."""
+        return options_of([self])
 
     def _write_spec(self, spec: mujoco.MjSpec, geoms: GeomPair) -> None:
-        named = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {*geoms.names})
-        pair = next(named, None) or spec.add_pair(geomname1=self.geom1, geomname2=self.geom2)
+        pair = _spec_pair(spec, geoms)
         pair.condim, pair.friction = self.condim, self.friction
         pair.solref, pair.solimp, pair.solreffriction = self.solref, self.solimp, self.solreffriction
 
@@ -100,16 +118,31 @@ class PairContact(ContactNumbers):
         model.geom_condim[geoms], model.geom_friction[geoms] = self.condim, self.friction[1:4]
         model.geom_priority[geoms] = model.geom_priority[geoms].max()
 
-    def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
+    def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """What in a model keeps the contact from being what it says, one sentence each; empty if nothing does.
 
-        The model is one with the contact, from `apply` or from the text of `xml`.
+        Args:
+            model: a model with the contact, from `apply` or from the text of `xml`.
+            prefix: what the names of the geoms have in front, where `MjSpec.attach` brought them into the model.
 
         Raises:
             ValueError: if the geoms are not in the model, or the bodies have another inverse weight.
         """
+        if require_text("prefix", prefix):
+            self._require_names()
+            return replace(self, geom1=prefix + self.geom1, geom2=prefix + self.geom2).caveats(model)
         pair = self._pair_in(compiled(model))
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
+
+    def __str__(self) -> str:
+        """Its numbers as one line that is read."""
+        with_gravity = "" if self.speed is None else f" at {self.speed:g} m/s with gravity"
+        grip = f"; friction {self.friction[0]:g}, impratio {self.impratio:.2g}" if self.condim > 1 else ""
+        return (
+            f"{self.label}: k = {self.k:.4g} N/m, c = {self.c:.4g} N s/m at {self.contacts} "
+            f"point{'s' * (self.contacts > 1)} of {self.mass:.4g} kg; e = {self.restitution:.3g}{with_gravity}, "
+            f"xi = {self.xi:.3g}; depth {self.depth:.3g} m under the weight{grip}; timestep {self.timestep:g} s"
+        )
 
     def _pair_in(self, model: mujoco.MjModel) -> GeomPair:
         """The pair in a model, which has to be the same two bodies."""
@@ -129,26 +162,79 @@ class PairContact(ContactNumbers):
             )
 
 
-def _text(*values: float) -> str:
-    return f'"{" ".join(repr(float(value)) for value in values)}"'
+def _text(value: Any) -> str:
+    """The value of an attribute, numbers with all of their digits."""
+    if isinstance(value, tuple):
+        return " ".join(repr(float(number)) for number in value)
+    return value if isinstance(value, str) else repr(value)
 
 
-def write(contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool) -> None:
-    """Write contacts of one time step into a model or a specification."""
+def _element(name: str, attributes: dict[str, Any]) -> str:
+    return f"<{name} {' '.join(f'{key}={quoteattr(_text(value))}' for key, value in attributes.items())}/>"
+
+
+def _spec_pair(spec: mujoco.MjSpec, geoms: GeomPair) -> Any:
+    """The explicit pair of two geoms in a specification, made where there is none."""
+    first, second = geoms.names
+    listed = (pair for pair in spec.pairs if {pair.geomname1, pair.geomname2} == {first, second})
+    return next(listed, None) or spec.add_pair(geomname1=first, geomname2=second)
+
+
+def write(
+    contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool, keep_others: bool
+) -> None:
+    """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
     whole, on_geoms = compiled(model), require_flag("on_geoms", on_geoms)
+    require_flag("keep_others", keep_others)
+    option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
+    rubs = any(contact.condim > 1 for contact in contacts)
+    switches = rubs and option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC
+    others = None
+    if switches or on_geoms or option.timestep != contacts[0].timestep:
+        others = Others(whole, {frozenset(contact._pair_in(whole).geoms) for contact in contacts})
     for contact in contacts:
         contact.put_into(model, whole, on_geoms)
-    option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
-    option.timestep = contacts[0].timestep
+    for each in (option, whole.opt):
+        each.timestep = contacts[0].timestep
+        if rubs:
+            each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+            each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
+    changed = [] if others is None else list(others.changed())
+    if keep_others:
+        changed = [each for each in changed if not _keep(model, each)]
+    if changed:
+        warnings.warn(sentence(changed), ContactWarning, stacklevel=3)
+
+
+def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
+    """Write the numbers with which a contact is kept; whether that can be."""
+    geoms, numbers = changed.pair, changed.kept
+    if numbers is None or len(geoms.listed) > 1:
+        return False
+    if isinstance(model, mujoco.MjModel):
+        if geoms.explicit >= 0:
+            model.pair_solref[geoms.explicit], model.pair_solimp[geoms.explicit] = numbers.solref, numbers.solimp
+        return geoms.explicit >= 0
+    if not all(geoms.names):
+        return False
+    pair = _spec_pair(model, geoms)
+    pair.solref, pair.solimp = numbers.solref, numbers.solimp
+    if geoms.explicit < 0:
+        pair.condim, pair.friction = numbers.condim, numbers.friction
+        pair.margin, pair.adhesion = numbers.margin, numbers.adhesion
+        pair.gap = float(geoms.model.geom_gap[list(geoms.geoms)].sum())
+    return True
+
+
+def options_of(contacts: Sequence[PairContact]) -> dict[str, Any]:
+    """The attributes of `<option>` that contacts of one time step need together."""
+    found: dict[str, Any] = {"timestep": contacts[0].timestep}
     if any(contact.condim > 1 for contact in contacts):
-        option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-        option.impratio = max([float(option.impratio), *(contact.impratio for contact in contacts)])
+        found |= {"cone": "elliptic", "impratio": max(contact.impratio for contact in contacts)}
+    return found
 
 
 def document(contacts: Sequence[PairContact]) -> str:
     """The options that contacts of one time step need together, and their explicit pairs."""
-    pairs = "".join(f"  {contact.pair_xml}\n" for contact in contacts)
-    options = [f"timestep={_text(contacts[0].timestep)}"]
-    if any(contact.condim > 1 for contact in contacts):
-        options += ['cone="elliptic"', f"impratio={_text(max(contact.impratio for contact in contacts))}"]
-    return f"<option {' '.join(options)}/>\n<contact>\n{pairs}</contact>\n"
+    pairs = "".join(f"  {_element('pair', contact.attributes)}\n" for contact in contacts)
+    return f"{_element('option', options_of(contacts))}\n<contact>\n{pairs}</contact>\n"

@@ -34,7 +34,9 @@ class CoulombFriction:
 
     It is for explicit pairs with friction, as `contact_for` makes them, with the elliptic cone. A pair of which one
     point sticks while others slide keeps its rows. It changes `pair_dim` of the model from step to step, and
-    `release` gives it back. Forces of the user in `qfrc_applied` remain, and may be set anew before each call.
+    `release` gives it back. So a model is stepped with one `MjData` at a time: each of several, and each thread, has a
+    copy of the model and a `CoulombFriction` of its own. Forces of the user in `qfrc_applied` remain, and may be set
+    anew before each call.
 
     Args:
         model: the model that is stepped, which is changed.
@@ -58,6 +60,8 @@ class CoulombFriction:
             frozenset((int(a), int(b))): i
             for i, (a, b) in enumerate(zip(model.pair_geom1, model.pair_geom2, strict=True))
         }
+        self._now = self.dimensions
+        self._data: mujoco.MjData | None = None
         self._given = np.zeros(model.nv)
         self._left = np.zeros(model.nv)
         self.sliding: tuple[int, ...] = ()
@@ -70,21 +74,37 @@ class CoulombFriction:
 
         Returns:
             The numbers of the explicit pairs that slide in the step, also as `.sliding`.
+
+        Raises:
+            ValueError: for another `MjData` than that of the calls since `release`, or if something else has changed
+                `pair_dim` of the model since.
         """
+        if self._data is not None and data is not self._data:
+            raise ValueError(
+                "data is another MjData than that of the calls before, and the model holds what slides in that one; "
+                "give it a copy of the model, copy.copy(model), and a CoulombFriction of its own, or call release()"
+            )
+        if not np.array_equal(self.model.pair_dim, self._now):
+            raise ValueError(
+                f"model has pair_dim {self.model.pair_dim.tolist()}, and this one left {self._now.tolist()}: "
+                "only one CoulombFriction works on a model, and it is made anew where pair_dim changes"
+            )
         self.release(data)
+        self._data = data
         mujoco.mj_forward(self.model, data)
         pairs = self._find(data)
         while pairs and (stopped := self._settle(data, pairs)):
             pairs -= stopped
             self.model.pair_dim[:] = self.dimensions
             data.qfrc_applied[:] = self._left[:] = self._given
-        self.sliding = tuple(sorted(pairs))
+        self.sliding, self._now = tuple(sorted(pairs)), np.array(self.model.pair_dim)
         return self.sliding
 
     def release(self, data: mujoco.MjData | None = None) -> None:
-        """Give every contact its friction row back, and clear the friction of the last step from `qfrc_applied`."""
+        """Give every contact its friction row back, and clear the friction of the last step from `qfrc_applied` of its
+        `MjData`, if that is given. The next call may then have another."""
         self.model.pair_dim[:] = self.dimensions
-        self.sliding = ()
+        self.sliding, self._data, self._now = (), None, self.dimensions
         if data is not None:
             if np.array_equal(data.qfrc_applied, self._left):
                 data.qfrc_applied[:] = self._given

@@ -50,6 +50,11 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
         if number >= 0:
             return int(number)
         body = mujoco.mj_name2id(model, BODY, value)
+        if body < 0 and mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_FLEX, value) >= 0:
+            raise ValueError(
+                f"{argument} = {value!r} is a flex, which no explicit pair covers; its contacts take solref and solimp "
+                "from the flex and the other geom"
+            )
         if body < 0:
             geoms, bodies = (", ".join(filter(None, names_of(model, kind))) or "none" for kind in (GEOM, BODY))
             raise ValueError(
@@ -70,6 +75,12 @@ def names_of(model: mujoco.MjModel, kind: mujoco.mjtObj) -> list[str]:
     """The names of all geoms or bodies; one without a name has an empty one."""
     count = model.ngeom if kind == GEOM else model.nbody
     return [mujoco.mj_id2name(model, kind, number) or "" for number in range(count)]
+
+
+def label_of(model: mujoco.MjModel, geom: int) -> str:
+    """The name of a geom; one without a name has that of its body, with its own number in brackets."""
+    body = mujoco.mj_id2name(model, BODY, model.geom_bodyid[geom]) or ""
+    return mujoco.mj_id2name(model, GEOM, geom) or f"{body}[{geom}]"
 
 
 @dataclass(frozen=True)
@@ -107,11 +118,8 @@ class GeomPair:
 
     @property
     def labels(self) -> tuple[str, str]:
-        """The names; a geom without a name has that of its body, with its own number in brackets."""
-        first, second = (
-            name or f"{body if not body.startswith('[') else ''}[{geom}]"
-            for name, body, geom in zip(self.names, self.body_names, self.geoms, strict=True)
-        )
+        """The labels of both, see `label_of`."""
+        first, second = (label_of(self.model, geom) for geom in self.geoms)
         return first, second
 
     @property
@@ -148,6 +156,16 @@ class GeomPair:
         """Mass of each tree of bodies that moves with one of the two, to its root [kg]."""
         roots = {int(self.model.body_rootid[body]) for body in self.bodies if self.model.body_weldid[body] != 0}
         return [float(self.model.body_subtreemass[root]) for root in roots]
+
+    @property
+    def load(self) -> float:
+        """Weight of the lighter tree [N], or next to nothing where there is none."""
+        return max(1e-9, min(self.trees, default=0.0) * float(np.linalg.norm(self.model.opt.gravity)))
+
+    @property
+    def thickness(self) -> float:
+        """The smallest half extent of the two geoms along their axes [m]."""
+        return float(self.model.geom_aabb[list(self.geoms), 3:].min())
 
     @property
     def makes_several_points(self) -> bool:

@@ -31,14 +31,17 @@ def holding(pose: Pose, felt: Felt, k: float, xi: float, mass: float, speed: flo
             "the joints let the point approach only while it slides, so that friction takes part in the blow and the "
             "restitution depends on it; with friction=0 it is what was asked for"
         )
-    for number in felt.yielding:
+    if felt.yielding:
+        names = [_name(model, CONSTRAINT, number) for number in felt.yielding]
+        many, one = ("s", "") if len(names) > 1 else ("", "s")
         yield (
-            f"the equality constraint {_name(model, CONSTRAINT, number)} yields in a contact, so that its bodies move "
-            "neither as one nor apart, and the restitution is another; shorten the time of its solref"
+            f"equality constraint{many} {named(names)} yield{one} in a contact, so that bodies move neither as one nor "
+            "apart, and the restitution is another; shorten the time of solref there"
         )
     if felt.limits:
         rows = {_name(model, *_owner(data, row)) for row in felt.limits}
-        yield f"{named(sorted(rows))} is at its limit in this pose, which holds the contact too; give mass"
+        be = "is at its limit" if len(rows) == 1 else "are at their limits"
+        yield f"{named(sorted(rows))} {be} in this pose, which holds the contact too; give mass"
     yield from _beside(pose, felt.motion, k, xi, mass, speed)
 
 
@@ -55,7 +58,7 @@ def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: 
     added = float(stiffness.sum())
     if added > STIFF * k:
         yield (
-            f"{_names(pose, stiffness)} adds {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
+            f"{_names(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
             "approach, which changes its restitution"
         )
     omega = math.sqrt(k / mass)
@@ -67,20 +70,21 @@ def _beside(pose: Pose, motion: Array, k: float, xi: float, mass: float, speed: 
     least = SHIFTS if damped + rubbed <= SHIFTS else 0.25 * SHIFTS
     if damped > least:
         yield (
-            f"{_names(pose, damping)} adds a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
+            f"{_names(pose, damping)} a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
             "along the approach, which lowers its restitution"
         )
     if rubbed > least:
         yield (
-            f"{_names(pose, friction)} adds a dry friction of {friction.sum():.3g} N along the approach, which "
+            f"{_names(pose, friction)} a dry friction of {friction.sum():.3g} N along the approach, which "
             f"lowers e = {e:.3g} by up to {rubbed:.2g} at {speed:g} m/s, and by more at a lower speed"
         )
 
 
 def _names(pose: Pose, shares: Array) -> str:
-    """Those that add nearly all of it, the largest first."""
+    """Those that add nearly all of it, the largest first, and the verb."""
     order = np.argsort(-shares, kind="stable")
-    return named([_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]])
+    most = [_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]]
+    return f"{named(most)} add{'s' * (len(most) == 1)}"
 
 
 def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:

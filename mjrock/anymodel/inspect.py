@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
-import numpy as np
 
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within
+from .filters import every_pair
 from .geoms import GeomPair, compiled
 from .holding import holding
 from .meeting import Meeting, Pose, elsewhere, meeting
@@ -130,40 +130,14 @@ def inspect_contacts(
     force = None if load is None else require_within("load", load, 1e-12, 1e15, "N")
     whole = compiled(model)
     pose = Pose(whole, keyframe, qpos)
-    ends = zip(whole.pair_geom1, whole.pair_geom2, strict=True)
-    pairs = [GeomPair(whole, (int(a), int(b)), chosen) for chosen, (a, b) in enumerate(ends)]
-    listed = {frozenset(pair.geoms) for pair in pairs}
-    if candidates:
-        pairs += [pair for pair in _candidates(whole) if frozenset(pair.geoms) not in listed]
-    return tuple(_inspected(pair, pose, points, force) for pair in pairs if pair.inverse_weight > 0)
-
-
-def _candidates(model: mujoco.MjModel) -> Iterator[GeomPair]:
-    """Geoms that MuJoCo lets collide without an explicit pair."""
-    excluded = {(int(sign) >> 16, int(sign) & 0xFFFF) for sign in model.exclude_signature}
-    filters_parents = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
-    static = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
-    for first in range(model.ngeom):
-        for second in range(first + 1, model.ngeom):
-            pair = GeomPair(model, (first, second))
-            a, b = pair.bodies
-            weld_a, weld_b = int(model.body_weldid[a]), int(model.body_weldid[b])
-            parents = (int(model.body_weldid[model.body_parentid[weld]]) for weld in (weld_a, weld_b))
-            related = filters_parents and weld_a and weld_b and bool({weld_a, weld_b} & {*parents})
-            met = (model.geom_contype[first] & model.geom_conaffinity[second]) | (
-                model.geom_contype[second] & model.geom_conaffinity[first]
-            )
-            both_static = all(model.geom_type[geom] in static for geom in (first, second))
-            if met and weld_a != weld_b and not related and not both_static and (min(a, b), max(a, b)) not in excluded:
-                yield pair
+    return tuple(_inspected(pair, pose, points, force) for pair in every_pair(whole, candidates=candidates))
 
 
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
     row = Row(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
-    weight = min(pair.trees, default=0.0) * float(np.linalg.norm(pair.model.opt.gravity))  # of the lighter tree
-    force = load if load is not None else max(weight, 1e-9) / met.points
+    force = load if load is not None else pair.load / met.points
     contact = InspectedContact(
         *pair.labels,
         explicit=pair.explicit >= 0,
@@ -189,6 +163,8 @@ def _notes(
     yield from row.notes()
     yield from _step_notes(found, float(pair.model.opt.timestep))
     yield from model_spoilers(pair.model)
+    if met.company.level:
+        yield f"it lands together with {len(met.company.level)} other contacts of its bodies, and shares the mass"
     if pair.is_uneven:
         yield uneven(found.points)
     elif contacts == 1 and pair.makes_several_points:

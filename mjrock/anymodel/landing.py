@@ -7,6 +7,7 @@ three, a capsule that lies in two.
 from __future__ import annotations
 
 import copy
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -63,22 +64,34 @@ class Ground:
         self.model.body_contype[bodies] = self.model.body_conaffinity[bodies] = value
 
 
-def landing(pair: GeomPair, data: mujoco.MjData, ground: Ground | None) -> tuple[Array, Array, Array]:
+class Landing(NamedTuple):
+    """Where two geoms meet.
+
+    Args:
+        away: unit vector along which the first geom parts from the second, shape (3,).
+        distance: their distance [m].
+        first, second: the points of the contact on each of them where it is now, in the world's frame [m], shape
+            (n, 3). They are the same points once the geoms have met.
+    """
+
+    away: Array
+    distance: float
+    first: Array
+    second: Array
+
+
+def landing(pair: GeomPair, data: mujoco.MjData, ground: Ground | None) -> Landing:
     """Where two geoms meet.
 
     Args:
         pair: the geoms.
         data: the pose, see `state_of`.
         ground: a copy of the model in this pose; None for geoms that meet in a single point.
-
-    Returns:
-        The unit vector along which the first geom parts from the second, and the points of the contact on each of them
-        where it is now, in the world's frame [m], shape (n, 3). They are the same points once the geoms have met.
     """
     away, distance, ends = pair.apart(data)
     if ground is not None:
         points = ground.points(pair, away, distance)
         if len(points):
-            return away, points, points - distance * away
+            return Landing(away, distance, points, points - distance * away)
     first, second = [pair.centre(data, body) for body in pair.bodies] if ends is None else ends
-    return away, first[None, :], second[None, :]
+    return Landing(away, distance, first[None, :], second[None, :])

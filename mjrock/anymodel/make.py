@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 
@@ -14,20 +14,27 @@ from ..engine.solref import WITHIN, inertia_of, longest_represented_step, pair_v
 from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
-from ..quantities import Array, require_whole, require_within, shown, spelt
+from ..quantities import Array, named, require_whole, require_within, shown, spelt
 from .contact import PairContact
 from .geoms import GeomPair, compiled
 from .holding import holding
-from .meeting import Meeting, Pose, elsewhere, meeting
-from .mixing import Mixed
-from .notes import RESOLVED, UNSOUND, resolving_step, rounded_down, spoilers, stiffest, weight_spoilers
+from .meeting import Company, Meeting, Pose, elsewhere, meeting
+from .mixing import Grip, unused
+from .notes import (
+    RESOLVED,
+    UNSOUND,
+    ContactWarning,
+    resolving_step,
+    rounded_down,
+    soft_spoilers,
+    spoilers,
+    stiffest,
+    weight_spoilers,
+)
+from .row_of_model import Row
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
-SPINNING = (0.005, 1e-4, 1e-4)
-"""MuJoCo's own coefficients of torsional and rolling friction [m]."""
-HOLD = 1e7
-"""Rate with which friction holds [1/s]: a load F creeps at F / (HOLD m), a body on a slope at less than 1e-6 m/s."""
 
 
 def contact_for(
@@ -39,7 +46,7 @@ def contact_for(
     c: float | None = None,
     restitution: float | None = None,
     xi: float | None = None,
-    friction: float | None = None,
+    friction: float | Sequence[float] | None = None,
     mass: float | None = None,
     at: Sequence[float] | Array | None = None,
     contacts: int | None = None,
@@ -67,12 +74,16 @@ def contact_for(
         restitution: e of an approach along the normal, within [0, 1] [-]. e below 0.001 is taken as 0.001, because an
             infinite dashpot would be needed for 0. Without `speed` it leaves out gravity.
         xi: damping ratio c / (2 sqrt(k m)) [-], not negative.
-        friction: coefficient of sliding friction [-]; 0 makes the contact frictionless. None keeps what the model has.
+        friction: coefficient of sliding friction [-], in place of the two that the contact has in the model. Its
+            torsional and rolling friction and its condim remain, but condim 1 becomes 3, and 0 makes the contact
+            frictionless. Or all five of a `<pair>`: two sliding [-], one torsional and two rolling [m]. None keeps what
+            the model has.
         mass: effective mass of the whole contact [kg], positive. None takes it from the model.
         at: contact point that meets first, in the world's frame and in the pose [m], shape (3,). None is the middle of
             the points that meet. It is not given together with `mass`.
         contacts: contact points that share the mass, 1 to 50: 4 for a box that lands flat on a plane. None counts
-            them. Another number than is counted refers to the centres of mass, unless `at` is given.
+            them, with those of other geoms of the two bodies that land together with these: the four balls of a foot
+            share its mass. Another number than is counted refers to the centres of mass, unless `at` is given.
         keyframe: name or number of the keyframe in which the geoms meet.
         qpos: positions of the joints in which they meet, shape (nq,). It is not given together with `keyframe`.
         speed: speed of the approach for which `restitution` holds with gravity [m/s], positive.
@@ -80,22 +91,23 @@ def contact_for(
         newmark_beta: Newmark's beta of the contact row [-], not negative; 1/4 is average acceleration.
 
     Returns:
-        The contact, with ``.solref .solimp .solreffriction .friction .xml`` and `.apply(model)`.
+        The contact, with ``.solref .solimp .solreffriction .friction .depth .xml`` and `.apply(model)`.
 
     Raises:
         TypeError, ValueError: for a value outside its range, geoms that the model does not have or that cannot meet,
             and stiffness or damping that MuJoCo cannot represent at this step.
 
     Warns:
-        UserWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what else
-            holds the bodies, and of a keyframe in which the contact stops another mass.
+        ContactWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what
+            else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
+            which the contact stops another mass, and without k of a contact that is soft.
     """
     whole = compiled(model)
     pair = GeomPair.named(whole, geom1, geom2)
     asked = Asked(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
-    contact = contact_of(pair, Pose(whole, keyframe, qpos), asked)
+    contact = beside(*contact_of(pair, Pose(whole, keyframe, qpos), asked), {})
     for sentence in (*spoilers(pair, contact), *contact.remarks):
-        warnings.warn(sentence, stacklevel=2)
+        warnings.warn(sentence, ContactWarning, stacklevel=2)
     return contact
 
 
@@ -116,8 +128,9 @@ class Asked:
     newmark_beta: Any = 0.25
 
 
-def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
-    """The contact of a pair in a pose; it says in `remarks` what in this pose keeps it from being what was asked."""
+def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> tuple[PairContact, Company]:
+    """The contact of a pair in a pose, which says in `remarks` what keeps it from being what was asked, and what lands
+    with it."""
     option = pair.model.opt
     k = None if asked.k is None else require_within("stiffness k", asked.k, 1e-30, 1e30, "N/m")
     h = require_within("timestep", option.timestep if asked.timestep is None else asked.timestep, 1e-12, 1e3, "s")
@@ -126,9 +139,10 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
     speed = None if asked.speed is None else require_within("speed", asked.speed, 1e-9, 1e6, "m/s")
     if asked.mass is not None and asked.at is not None:
         raise ValueError(f"mass = {shown(asked.mass)} and at = {shown(asked.at)} are both given; give one of them")
-    grip = _friction(pair, asked.friction)
+    grip = Grip.of(pair, asked.friction)
     rate = None if k is not None else RESOLVED / h
-    met = meeting(pair, pose, contacts=points, at=asked.at, friction=grip.sliding, frequency=rate, k=k)
+    alone = asked.mass is not None
+    met = meeting(pair, pose, contacts=points, at=asked.at, alone=alone, friction=grip.sliding, frequency=rate, k=k)
     share = _mass(pair, pose, asked.mass, met)
     _require_one_loss(asked)
     if k is None:
@@ -153,10 +167,34 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> PairContact:
         speed=speed,
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
-        remarks=_remarks(pair, pose, asked, met, k, c, grip.sliding),
+        load=pair.load / met.points,
+        remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
-    return replace(contact, remarks=(*contact.remarks, *weighed))
+    soft = () if asked.k is not None else tuple(soft_spoilers(contact, Row(pair).loaded(contact.load), pair.thickness))
+    return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
+
+
+def beside(contact: PairContact, company: Company, made: Mapping[frozenset[int], PairContact]) -> PairContact:
+    """The contact with `remarks` on what lands with it: what is not `made` the same, and what is not level."""
+    label = {pair: " on ".join(pair.labels) for pair in (*company.level, *company.apart)}
+    others = {pair: made.get(frozenset(pair.geoms)) for pair in label}
+    strangers = [label[pair] for pair in company.level if not (other := others[pair]) or not contact.is_like(other)]
+    apart = [label[pair] for pair in company.apart if others[pair]]
+    level = f"give the pose in which the bodies stand level, not {contact.pose}"
+    remarks = []
+    if strangers:
+        remarks.append(
+            f"it lands together with {named(strangers)}, and shares the mass; give them the same contact, or contacts= "
+            "to this one for the mass at its own points"
+        )
+    if company.late > 0:
+        remarks.append(
+            f"what is taken to land together with it touches up to {company.late:.2g} m sooner or later; {level}"
+        )
+    if apart:
+        remarks.append(f"it lands together with {named(apart)}, and shares the mass, only on a level; {level}")
+    return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
 def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:
@@ -254,34 +292,3 @@ def _row(
     if inertia > inertia_of(WITHIN[1], inverse_weight):
         raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
-
-
-class Grip(NamedTuple):
-    """What a `PairContact` has for friction."""
-
-    friction: tuple[float, float, float, float, float]
-    condim: int
-    solreffriction: tuple[float, float] = (0.0, 0.0)
-    impratio: float = 1.0
-
-    @property
-    def sliding(self) -> float:
-        """Coefficient of sliding friction [-]."""
-        return self.friction[0] if self.condim > 1 else 0.0
-
-    def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
-        """The same with what stops slip: at a rate [1/s], omega at most, as the page on contacts says, for the mass of
-        the contact point [kg] and impedance and inertia of its normal row [-, kg]."""
-        if self.condim == 1:
-            return self
-        impratio = max(1.0, HOLD / rate * mass / inertia)
-        return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
-
-
-def _friction(pair: GeomPair, friction: float | None) -> Grip:
-    """Friction of the model, or the coefficient that is given."""
-    if friction is None:
-        mixed = Mixed.of(pair)
-        return Grip(mixed.friction, mixed.condim)
-    sliding = require_within("friction", friction, 0.0, 1e6)
-    return Grip((sliding, sliding, *SPINNING), 3 if sliding > 0 else 1)

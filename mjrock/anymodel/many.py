@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from fnmatch import fnmatchcase
 from typing import Any
@@ -11,11 +12,12 @@ from typing import Any
 import mujoco
 
 from ..quantities import Array, named, shown
-from .contact import PairContact, document, write
+from .contact import PairContact, document, options_of, write
+from .filters import makes
 from .geoms import BODY, GEOM, GeomPair, compiled, geom_id, names_of
-from .make import Asked, contact_of
+from .make import Asked, beside, contact_of
 from .meeting import Pose
-from .notes import spoilers
+from .notes import VARIES, ContactWarning, spoilers
 
 TAKES = tuple(field.name for field in fields(Asked) if field.name != "timestep")
 """What can be asked of each contact."""
@@ -52,14 +54,26 @@ class PairContacts:
         """
         return document(self.contacts)
 
-    def apply(self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False) -> None:
-        """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
-        write(self.contacts, model, on_geoms)
+    @property
+    def options(self) -> dict[str, Any]:
+        """The attributes of `<option>` that the contacts need together, by name; see `PairContact.attributes`."""
+        return options_of(self.contacts)
 
-    def caveats(self, model: mujoco.MjModel | mujoco.MjSpec) -> tuple[str, ...]:
-        """What in a model keeps the contacts from being what they say, one sentence each with the geoms it is about."""
+    def apply(
+        self, model: mujoco.MjModel | mujoco.MjSpec, *, on_geoms: bool = False, keep_others: bool = False
+    ) -> None:
+        """Write the contacts into a model, with the options that they need; see `PairContact.apply`."""
+        write(self.contacts, model, on_geoms, keep_others)
+
+    def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
+        """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they
+        are about; see `PairContact.caveats`."""
         whole = compiled(model)
-        return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats(whole)))
+        return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats(whole, prefix)))
+
+    def __str__(self) -> str:
+        """A line for each contact."""
+        return "\n".join(str(contact) for contact in self)
 
 
 def contacts_for(
@@ -76,7 +90,9 @@ def contacts_for(
         model: a compiled model or a specification; it is not changed.
         pairs: what is asked of the contacts of two geoms, by their names or numbers: arguments of `contact_for` by
             name, such as `{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}`. Names may have the wildcards `*`, `?`
-            and `[...]`. They are looked for among the geoms, and where none has it among the bodies with one geom.
+            and `[...]`. They are looked for among the geoms, and where none has it among the bodies with one geom. They
+            name what MuJoCo lets collide, by contype and conaffinity, `<exclude>`, and parent and child, or by an
+            explicit pair. Names without wildcards override that. A later entry replaces what wildcards named before.
         keyframe, qpos: the pose in which all of them meet; see `contact_for`.
         timestep: MuJoCo's step [s], positive. None takes the model's.
 
@@ -84,10 +100,11 @@ def contacts_for(
         The contacts, with ``.xml``, `.apply(model)` and `.caveats(model)` of them all.
 
     Raises:
-        TypeError, ValueError: as `contact_for` does, and for names that nothing has, or two geoms named twice.
+        TypeError, ValueError: as `contact_for` does, and for names that nothing has, wildcards of which MuJoCo lets
+            none collide, or two geoms named twice without wildcards.
 
     Warns:
-        UserWarning: as `contact_for` does, each sentence once, with the geoms that it is about.
+        ContactWarning: as `contact_for` does, sentences that are alike once, with the geoms that they are about.
     """
     whole = compiled(model)
     if not isinstance(pairs, Mapping):
@@ -96,23 +113,26 @@ def contacts_for(
             '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
         )
     pose = Pose(whole, keyframe, qpos)
-    contacts: dict[frozenset[int], PairContact] = {}
+    meant: dict[frozenset[int], tuple[tuple[int, int], Asked, bool]] = {}
     for key, values in pairs.items():
         asked = _asked(key, values, timestep)
         for geoms in _meant(whole, key):
-            if frozenset(geoms) in contacts:
+            if not meant.get(frozenset(geoms), (geoms, asked, True))[2]:
                 raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
-            contacts[frozenset(geoms)] = contact_of(GeomPair.named(whole, *geoms), pose, asked)
-    if not contacts:
+            meant[frozenset(geoms)] = geoms, asked, any(map(_is_wild, key))
+    if not meant:
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
+    found = [contact_of(GeomPair.named(whole, *geoms), pose, asked) for geoms, asked, _ in meant.values()]
+    made = {frozenset(contact.ids): contact for contact, _ in found}
+    contacts = PairContacts(tuple(beside(contact, company, made) for contact, company in found))
     sentences = [
         (contact, sentence)
-        for contact in contacts.values()
+        for contact in contacts
         for sentence in (*spoilers(GeomPair(whole, contact.ids), contact), *contact.remarks)
     ]
     for sentence in _merged(sentences):
-        warnings.warn(sentence, stacklevel=2)
-    return PairContacts(tuple(contacts.values()))
+        warnings.warn(sentence, ContactWarning, stacklevel=2)
+    return contacts
 
 
 def _asked(key: object, values: object, timestep: object) -> Asked:
@@ -127,25 +147,33 @@ def _asked(key: object, values: object, timestep: object) -> Asked:
 
 
 def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:
-    """The numbers of the geoms that a key names. Geoms of wildcards that cannot meet are left out."""
+    """The numbers of the geoms that a key names. Of wildcards they are those that MuJoCo lets collide."""
     firsts, seconds = (
         _matching(model, argument, value) for argument, value in zip(("geom1", "geom2"), key, strict=True)
     )
-    seen = set()
-    for first in firsts:
-        for second in seconds:
-            pair = GeomPair(model, (first, second))
-            several = len(firsts) + len(seconds) > 2
-            if several and (first == second or pair.bodies[0] == pair.bodies[1] or not pair.inverse_weight > 0):
-                continue
-            if frozenset((first, second)) not in seen:
-                seen.add(frozenset((first, second)))
-                yield first, second
+    if not any(map(_is_wild, key)):
+        yield firsts[0], seconds[0]
+        return
+    found: dict[frozenset[int], tuple[int, int]] = {}
+    for geoms in itertools.product(firsts, seconds):
+        if frozenset(geoms) not in found and makes(GeomPair(model, geoms)):
+            found[frozenset(geoms)] = geoms
+    if not found:
+        raise ValueError(
+            f"pairs of {shown(key)} are geoms that MuJoCo keeps apart, by contype and conaffinity, <exclude>, or as "
+            "one body or parent and child; names without wildcards override that"
+        )
+    yield from found.values()
+
+
+def _is_wild(name: object) -> bool:
+    """Whether a name has wildcards."""
+    return isinstance(name, str) and any(mark in name for mark in "*?[")
 
 
 def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
     """The numbers of the geoms that a name with wildcards means."""
-    if not isinstance(value, str) or not any(mark in value for mark in "*?["):
+    if not isinstance(value, str) or not _is_wild(value):
         return [geom_id(model, argument, value)]
     geoms = names_of(model, GEOM)
     found = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
@@ -160,13 +188,12 @@ def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
     return found
 
 
-def _merged(sentences: Any) -> Iterator[str]:
-    """Each sentence once, behind the geoms that it is about."""
-    about: dict[str, list[str]] = {}
+def _merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
+    """Sentences that are alike once, with the geoms that they are about. The first of several with other numbers or
+    names is given in full."""
+    alike: dict[str, dict[str, list[str]]] = {}
     for contact, sentence in sentences:
-        first, second = (
-            name or f"[{number}]" for name, number in zip((contact.geom1, contact.geom2), contact.ids, strict=True)
-        )
-        about.setdefault(sentence, []).append(f"{first} on {second}")
-    for sentence, pairs in about.items():
-        yield f"{named(pairs)}: {sentence}"
+        alike.setdefault(VARIES.sub("#", sentence), {}).setdefault(sentence, []).append(contact.label)
+    for (sentence, about), *others in (each.items() for each in alike.values()):
+        rest = list(dict.fromkeys(label for _, labels in others for label in labels))
+        yield f"{named(about)}: {sentence}" + (f" [and alike for {named(rest)}]" if rest else "")

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
-from ..quantities import require_array, shown
+from ..quantities import Array, Integers, require_array, shown
 from .felt import Felt, Held, felt
+from .filters import makes
 from .geoms import FARTHEST, GeomPair
-from .landing import Ground, landing
+from .landing import DEPTH, Ground, Landing, landing
 from .springs import Springs
 from .state import keyframe_names, state_of
 
 FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
+LEVEL = 0.05
+"""Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
+SLOPING = 0.3
+"""Slope within which they land one after the other, as those of a foot that is not level do [-]."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
@@ -35,6 +42,21 @@ class Pose:
         self.model, self.data = model, state_of(model, keyframe, qpos)
         self.given = keyframe is not None or qpos is not None
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
+        self._landings: dict[tuple[int, int], Landing] = {}
+        self._groups: dict[tuple[int, ...], Group] = {}
+
+    def landing(self, pair: GeomPair) -> Landing:
+        """Where two geoms meet in the pose."""
+        if pair.geoms not in self._landings:
+            self._landings[pair.geoms] = landing(pair, self.data, self.ground if pair.makes_several_points else None)
+        return self._landings[pair.geoms]
+
+    def group(self, pair: GeomPair) -> Group:
+        """The geoms of the two bodies of a pair."""
+        bodies = tuple(int(self.model.body_weldid[body]) for body in pair.bodies)
+        if bodies not in self._groups:
+            self._groups[bodies] = Group(pair, self)
+        return self._groups[bodies]
 
     @cached_property
     def ground(self) -> Ground:
@@ -57,6 +79,20 @@ class Pose:
         return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
 
 
+class Company(NamedTuple):
+    """The other geoms of two bodies that land about when a pair does.
+
+    Args:
+        level: those that land together with it, and share the mass.
+        late: how much sooner or later they touch [m], where that is more than on a level face, else zero.
+        apart: those that land before or after it.
+    """
+
+    level: tuple[GeomPair, ...] = ()
+    late: float = 0.0
+    apart: tuple[GeomPair, ...] = ()
+
+
 @dataclass(frozen=True)
 class Meeting:
     """The contact of two geoms in a pose.
@@ -64,10 +100,12 @@ class Meeting:
     Args:
         points: contact points that share the mass.
         felt: what the contact feels.
+        company: the other geoms that land with these.
     """
 
     points: int
     felt: Felt
+    company: Company
 
     @property
     def share(self) -> float:
@@ -81,6 +119,7 @@ def meeting(
     *,
     contacts: int | None = None,
     at: object = None,
+    alone: bool = False,
     friction: float = 0.0,
     frequency: float | None = None,
     k: float | None = None,
@@ -89,16 +128,20 @@ def meeting(
 
     Args:
         pair, pose: the geoms and the pose.
-        contacts: contact points that share the mass. None takes those of a trial landing.
+        contacts: contact points that share the mass. None takes those of a trial landing, with those of its `company`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts` says.
+        alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
         friction, frequency, k: see `felt`.
     """
     if at is not None:
         point = require_array("at", at, (3,))
         if np.abs(point).max() > FARTHEST:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST:g} m")
-    away, first, second = landing(pair, pose.data, pose.ground if pair.makes_several_points else None)
+    here = pose.landing(pair)
+    others = Company() if alone or contacts is not None or at is not None else company(pair, pose)
+    landings = [here, *(pose.landing(other) for other in others.level)]
+    first, second = (np.concatenate([getattr(each, side) for each in landings]) for side in ("first", "second"))
     count = len(first) if contacts is None else contacts
     if at is not None:
         places = point, point
@@ -107,7 +150,54 @@ def meeting(
     else:
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
-    return Meeting(count, felt(pair, pose.held, away, places, friction=friction, frequency=frequency, k=whole))
+    felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
+    return Meeting(count, felt_there, others)
+
+
+class Group:
+    """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land once they are asked for.
+
+    Attributes:
+        pairs: the geoms, those of the first body first.
+        geoms: their numbers, shape (2, n).
+    """
+
+    def __init__(self, pair: GeomPair, pose: Pose) -> None:
+        model, self.pose = pair.model, pose
+        bodies = model.body_weldid[model.geom_bodyid]
+        ours, theirs = (np.flatnonzero(bodies == bodies[geom]).tolist() for geom in pair.geoms)
+        every = (GeomPair(model, geoms) for geoms in itertools.product(ours, theirs))
+        self.pairs = [made for made in every if makes(made)]
+        self.geoms = np.reshape([made.geoms for made in self.pairs], (-1, 2)).T
+        self._landed = np.full((len(self.pairs), 7), np.nan)
+
+    def landed(self, chosen: Integers) -> tuple[Array, Array, Array]:
+        """Distances [m] of some pairs, shape (n,), directions in which they part, and middles of their points [m]."""
+        for i in chosen[np.isnan(self._landed[chosen, 0])].tolist():
+            there = self.pose.landing(self.pairs[i])
+            self._landed[i] = there.distance, *there.away, *there.first.mean(axis=0)
+        return self._landed[chosen, 0], self._landed[chosen, 1:4], self._landed[chosen, 4:]
+
+
+def company(pair: GeomPair, pose: Pose) -> Company:
+    """The other geoms of the two bodies that land about when a pair does. They part along the same line, and their
+    distances differ by less than a share of what lies between them."""
+    group, here, place = pose.group(pair), pose.landing(pair), pose.data.geom_xpos
+    radius = np.where(pair.model.geom_rbound > 0, pair.model.geom_rbound, np.inf)  # planes have none
+    ends, reach, own = place[group.geoms], radius[group.geoms], np.array(pair.geoms)[:, None]
+    between = reach + np.linalg.norm(ends - place[own], axis=2) + radius[own]
+    least = np.linalg.norm(ends[0] - ends[1], axis=1) - (reach + SLOPING * between).sum(axis=0)
+    near = np.flatnonzero((least <= max(here.distance, 0.0)) & (group.geoms != own).any(axis=0))
+    distance, away, middle = group.landed(near)
+    between, differs = np.linalg.norm(middle - here.first.mean(axis=0), axis=1), np.abs(distance - here.distance)
+    along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
+    level = along & (differs <= LEVEL * between)
+    late = level & (differs > DEPTH * (between + pair.thickness))
+    return Company(
+        tuple(group.pairs[i] for i in near[level]),
+        float(differs[late].max(initial=0.0)),
+        tuple(group.pairs[i] for i in near[along & ~level]),
+    )
 
 
 def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 
+from ..quantities import is_iterable, require_within, shown
 from .geoms import GeomPair
+
+HOLD = 1e7
+"""Rate with which friction holds [1/s]: a load F creeps at F / (HOLD m), a body on a slope at less than 1e-6 m/s."""
 
 
 @dataclass(frozen=True)
@@ -85,3 +91,53 @@ class Mixed:
         """
         mu = max(self.friction[0], mujoco.mjMINMU)
         return (self.condim - 1) * impratio / (mu**2 * (1 + mu**2))
+
+
+class Grip(NamedTuple):
+    """What a `PairContact` has for friction."""
+
+    friction: tuple[float, float, float, float, float]
+    condim: int
+    solreffriction: tuple[float, float] = (0.0, 0.0)
+    impratio: float = 1.0
+
+    @classmethod
+    def of(cls, pair: GeomPair, friction: Any = None) -> Grip:
+        """Friction of the model, in which one coefficient replaces the two of sliding, and five replace all.
+
+        A contact without friction gets condim 3, and one whose sliding friction is zero gets condim 1.
+        """
+        mixed = Mixed.of(pair)
+        if friction is None:
+            return cls(mixed.friction, mixed.condim)
+        numbers = list(friction) if is_iterable(friction) else [friction, friction, *mixed.friction[2:]]
+        if len(numbers) != 5:
+            raise ValueError(
+                f"friction = {shown(friction)} has {len(numbers)} numbers; one of sliding is needed, or five: two of "
+                "sliding, one of torsion, two of rolling"
+            )
+        first, second, torsion, *rolling = (require_within("friction", number, 0.0, 1e6) for number in numbers)
+        condim = max(3, mixed.condim) if max(first, second) > 0 else 1
+        return cls((first, second, torsion, rolling[0], rolling[1]), condim)
+
+    @property
+    def sliding(self) -> float:
+        """Coefficient of sliding friction [-]."""
+        return self.friction[0] if self.condim > 1 else 0.0
+
+    def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
+        """The same with what stops slip: at a rate [1/s], omega at most, as the page on contacts says, for the mass of
+        the contact point [kg] and impedance and inertia of its normal row [-, kg]."""
+        if self.condim == 1:
+            return self
+        impratio = max(1.0, HOLD / rate * mass / inertia)
+        return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
+
+
+def unused(given: object, grip: Grip) -> Iterator[str]:
+    """Torsional and rolling friction that is given, and that the condim of the model leaves out."""
+    if is_iterable(given) and any(grip.friction[max(2, grip.condim - 1) :]):
+        yield (
+            f"friction = {tuple(f'{mu:g}' for mu in grip.friction)} has torsional or rolling friction that condim "
+            f"{grip.condim} leaves out; give the geoms condim 4 for torsional, 6 for both"
+        )

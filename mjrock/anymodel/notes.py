@@ -6,6 +6,7 @@ Each function gives sentences: `spoilers` of what `PairContact.apply` leaves as 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from decimal import ROUND_DOWN, Context
 
@@ -14,10 +15,13 @@ import numpy as np
 
 from ..engine.solref import inertia_of
 from ..problem.damping.rebound import rebound_restitution
+from .filters import kept_apart
 from .geoms import GeomPair
 from .mixing import Mixed
 from .numbers import ContactNumbers
 
+DEEP = 0.01
+"""Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
 SCATTER = 0.02
 """Scatter of the restitution from step to step that is worth a warning [-]."""
 RESOLVED = 0.3
@@ -43,6 +47,17 @@ DISABLED = {
     mujoco.mjtDisableBit.mjDSBL_CONSTRAINT: "constraints are disabled, and contacts with them",
 }
 
+VARIES = re.compile(
+    r"((joint|tendon|actuator) \S+?(, | (?=adds? |is |are |and \d)))+(and \d+ more )?(adds?|is at its|are at their)"
+    r" (limits?)?|equality constraints? .*? yields?|(?<=lands together with ).*(?=, and shares)"
+    r"|keyframe=?\s?'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?"
+)
+"""What differs in sentences that are alike."""
+
+
+class ContactWarning(UserWarning):
+    """What keeps a contact in N/m from being what was asked, or what it does to the rest of the model."""
+
 
 def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
     """What the options of a model do to every contact."""
@@ -61,6 +76,8 @@ def spoilers(pair: GeomPair, contact: ContactNumbers) -> Iterator[str]:
     model = pair.model
     yield from model_spoilers(model)
     yield from duplicates(pair)
+    if pair.explicit < 0 and (reason := kept_apart(pair)):
+        yield f"MuJoCo keeps these geoms apart, since {reason}; an explicit <pair> overrides that and lets them collide"
     if pair.explicit >= 0:
         mixed = Mixed.of(pair)
         if mixed.margin != 0:
@@ -122,6 +139,25 @@ def weight_spoilers(contact: ContactNumbers) -> Iterator[str]:
         f"gravity lowers so small a restitution: e = {e:.3g} becomes {contact.restitution_at(1.0):.2g} at 1 m/s, and "
         f"less than half of it below {slow:.2g} m/s; give speed, that of the approach"
     )
+
+
+def soft_spoilers(contact: ContactNumbers, model_k: float, thickness: float) -> Iterator[str]:
+    """Where the stiffest contact that the step resolves is soft under the weight: against that of the model [N/m], and
+    against the smallest half extent of the geoms [m]."""
+    h, k = contact.timestep, contact.k
+    if k < (1 - SCATTER) * model_k:
+        yield (
+            f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the contact that "
+            f"the model had, {model_k:.3g} N/m under the weight; "
+            f"{rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
+        )
+    if contact.depth > DEEP * thickness:
+        resolving = h * math.sqrt(DEEP * thickness / contact.depth)
+        yield (
+            f"the weight presses the geoms into each other by {contact.depth:.2g} m with the stiffest contact that a "
+            f"step of {h:g} s resolves, {contact.depth / thickness:.0%} of their smallest half extent; "
+            f"{rounded_down(resolving)} s resolves a hundredth of it"
+        )
 
 
 def rounded_down(value: float, digits: int = 2) -> str:

@@ -27,6 +27,7 @@ class ContactNumbers:
         speed: speed of approach for which the contact was made [m/s], or None where it leaves out gravity.
         gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
         pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
+        load: static load of each contact point [N], the weight of the lighter of the two trees of bodies, shared.
         remarks: what in this pose keeps the contact from being what was asked, one sentence each.
     """
 
@@ -49,7 +50,18 @@ class ContactNumbers:
     speed: float | None = None
     gravity: float = 0.0
     pose: str = "qpos0"
+    load: float = 0.0
     remarks: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """The names of the geoms, or their numbers in brackets."""
+        names = zip((self.geom1, self.geom2), self.ids, strict=True)
+        return " on ".join(name or f"[{number}]" for name, number in names)
+
+    def is_like(self, other: ContactNumbers) -> bool:
+        """Whether another contact has the same spring and dashpot."""
+        return math.isclose(self.k, other.k) and math.isclose(self.c, other.c, rel_tol=1e-6)
 
     @property
     def frequency(self) -> float:
@@ -60,6 +72,11 @@ class ContactNumbers:
     def xi(self) -> float:
         """Damping ratio [-]."""
         return self.c / (2 * math.sqrt(self.k * self.mass))
+
+    @property
+    def depth(self) -> float:
+        """How deep the static load presses the geoms into each other [m], load / k."""
+        return self.load / self.k
 
     @property
     def restitution(self) -> float:

@@ -34,15 +34,15 @@ class Row:
         inertia: inertia that the row adds, beyond what the Euler step takes [kg].
         impedance: d at zero penetration [-].
         constant: whether d is the same at every penetration.
-        spring: K [1/s2].
+        spring, dashpot: K [1/s2] and B [1/s].
         scale: what 1 / W is multiplied by for the cone, over W [kg].
         solimp: impedances at zero and full width [-], width [m], midpoint and power [-].
         impratio: of the model [-].
         elliptic: whether the model has the elliptic cone.
     """
 
-    def __init__(self, pair: GeomPair) -> None:
-        mixed, option = Mixed.of(pair), pair.model.opt
+    def __init__(self, pair: GeomPair, mixed: Mixed | None = None) -> None:
+        mixed, option = mixed or Mixed.of(pair), pair.model.opt
         if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_OVERRIDE):
             solref, solimp = option.o_solref, option.o_solimp
         else:
@@ -57,7 +57,7 @@ class Row:
         self.mixed, self.impratio, self.impedance = mixed, float(option.impratio), d
         self.elliptic = option.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         cone = mixed.pyramid(self.impratio) if mixed.condim > 1 and not self.elliptic else 1.0
-        self.spring, self.scale = spring, cone / pair.inverse_weight
+        self.spring, self.dashpot, self.scale = spring, dashpot, cone / pair.inverse_weight
         moved = self.scale * d / (1 - d)
         self.k, self.c = moved * d * spring, moved * dashpot
         staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4

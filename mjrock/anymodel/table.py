@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 
-from ..quantities import require_within
+import mujoco
+
+from ..quantities import named, require_within
+from .geoms import BODY, label_of, names_of
 from .inspect import InspectedContact
+from .notes import VARIES
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
 GAINS, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is infinite", "hardly move")
 """Parts of notes by which a contact is worse than others, or of no account."""
-VARIES = re.compile(
-    r"((joint|tendon|actuator|equality constraint) \S+?(, | (?=adds|is|yields)| (?=and \d+ more)))+(and \d+ more )?"
-    r"|keyframe=?\s?'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?"
-)
-"""What differs in notes that are alike."""
 
 
 def is_of(contact: InspectedContact, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
@@ -36,6 +34,15 @@ def is_of(contact: InspectedContact, geoms: Sequence[str], bodies: Sequence[str]
     return pair is None or any(
         all(_like(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
     )
+
+
+def require_known(model: mujoco.MjModel, patterns: Sequence[str]) -> None:
+    """Raise a ValueError with those names and patterns that no geom and no body of a model has."""
+    geoms = [label_of(model, geom) for geom in range(model.ngeom)]
+    names = [*geoms, *(name or f"[{body}]" for body, name in enumerate(names_of(model, BODY)))]
+    unknown = [pattern for pattern in patterns if not _like(names, [pattern])]
+    if unknown:
+        raise ValueError(f"the model has no geom or body {named(unknown)}; geoms are: {named(geoms)}")
 
 
 def worst_first(found: Sequence[InspectedContact]) -> list[InspectedContact]:

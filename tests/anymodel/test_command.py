@@ -43,7 +43,7 @@ def test_it_chooses(model, capsys):
     assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1"))) == 10
     assert len(_rows(lines_of(capsys, "inspect", model, "--body", "leg1", "--geom", "floor"))) == 1
     assert len(_rows(lines_of(capsys, "inspect", model, "--pair", "leg[12]", "floor"))) == 2
-    (none,) = lines_of(capsys, "inspect", model, "--geom", "hand")
+    (none,) = lines_of(capsys, "inspect", model, "--pair", "leg1", "leg1")
     assert none == "None of the 55 contacts of this model is of these geoms, bodies or pairs."
     (none,) = lines_of(capsys, "inspect", model, "--pairs")
     assert none == "This model has no contact that can act."
@@ -73,5 +73,8 @@ def test_what_cannot_be_is_said(model, tmp_path, capsys):
     assert "is no file" in capsys.readouterr().err
     assert main(["inspect", str(model), "--keyframe", "home"]) == 2
     assert "keyframe = 'home' of type str is no keyframe of this model; it has: none" in capsys.readouterr().err
+    for choice in (["--pair", "foo", "floor"], ["--geom", "foo"], ["--body", "foo"]):
+        assert main(["inspect", str(model), *choice]) == 2
+        assert "the model has no geom or body foo; geoms are: floor, leg0[1]" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["inspect"])

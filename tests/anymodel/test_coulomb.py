@@ -1,5 +1,7 @@
 """Coulomb's law in a user's own steps: a pushed box, a spinning one, a held object."""
 
+import copy
+
 import mujoco
 import numpy as np
 import pytest
@@ -104,6 +106,29 @@ def test_forces_of_the_user_remain():
         assert data.qfrc_applied.tolist() == [12.0, 0, 0, 0, 0, 0]
         assert (model.pair_dim[0], friction.sliding) == (3, ())
     assert speeds[0] == speeds[1] == pytest.approx(0.3 * (6 - MU * G), rel=0.01)
+
+
+def test_a_model_is_stepped_with_one_data():
+    """What slides stands in the model, so that a second state, or a second function, needs a model of its own."""
+    spec = mujoco.MjSpec.from_string(scene(FLOOR, BOX, timestep=1e-3, gravity=G))
+    mr.contact_for(spec, "box", "floor", k=K / 4, xi=0.3, friction=MU).apply(spec)
+    model = spec.compile()
+    friction, other = mr.CoulombFriction(model), mr.CoulombFriction(model)
+    first, second = mujoco.MjData(model), mujoco.MjData(model)
+    first.qpos[2] -= 2 * G / K
+    first.qvel[0] = 3.0
+    for _ in range(2):
+        assert friction(first) == (0,)
+        mujoco.mj_step(model, first)
+    with pytest.raises(ValueError, match=r"data is another MjData .*copy\.copy\(model\)"):
+        friction(second)
+    with pytest.raises(ValueError, match=r"pair_dim \[1\], and this one left \[3\]"):
+        other(second)
+    own = copy.copy(model)
+    own.pair_dim[:] = 3
+    assert mr.CoulombFriction(own)(second) == ()
+    friction.release(first)
+    assert friction(second) == ()
 
 
 def test_what_cannot_be_is_refused():

@@ -79,7 +79,7 @@ def test_wildcards_among_bodies_and_among_each_other():
         ({("foot0", "floor"): 3.0}, "= 3.0 of type float has to be arguments of contact_for"),
         ({"foot0": {"k": 1.0, "c": 1.0}}, "pairs have the key 'foot0' of type str; it has to be two geoms"),
         (
-            {("foot*", "floor"): {"k": 1e6, "c": 1.0}, ("foot0", 0): {"k": 1e6, "c": 1.0}},
+            {("foot0", "floor"): {"k": 1e6, "c": 1.0}, ("foot*", 0): {"k": 1e6, "c": 1.0}},
             "pairs name the geoms .* twice",
         ),
         ([("foot0", "floor")], "pairs = .* has to be a dictionary, such as"),

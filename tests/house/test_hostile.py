@@ -358,7 +358,7 @@ def test_every_public_entry_is_tried():
         "Sensitivity", "sensitivity", "MASONRY_TYPES", "MasonryType", "Implausible", "ResponseSpectrum",
         "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
-        "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
+        "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}

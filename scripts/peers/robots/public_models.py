@@ -29,7 +29,7 @@ COUNTED = {
     "gain energy": GAINS,
     "in a long step": LONG,
     "with springs or dampers beside": "along the approach",
-    "with constraints that yield": "yields in a contact",
+    "with constraints that yield": "in a contact, so that",
     "immobile": IMMOBILE,
 }
 """What is counted, by a part of the note that says it."""
