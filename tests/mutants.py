@@ -37,12 +37,18 @@ OTHERS = (
     "result/history.py",
 )
 """Modules of the method without compiled functions."""
-TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model")
+TOOLS = (
+    *("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model"),
+    *("filters", "meeting", "others"),
+)
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contact", "friction", "links", "loop")
 """Modules of the explicit steps, in the plane and in space, whose tests are their own."""
 OWN = {
-    **{f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing") for name in TOOLS},
+    **{
+        f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing", "rest_of_the_model")
+        for name in TOOLS
+    },
     "geometry/frames.py": ("frames", "kinematics"),
     "geometry/kinematics.py": ("kinematics", "frames", "slipping"),
     "geometry/vectors.py": ("frames", "kinematics"),

@@ -13,10 +13,9 @@ import mujoco
 
 from ..quantities import require_flag, require_text
 from .geoms import GeomPair, compiled
-from .mixing import Mixed
 from .notes import ContactWarning, missing, spoilers
 from .numbers import ContactNumbers
-from .others import Others, kept, sentence
+from .others import Changed, Others, sentence
 
 
 @dataclass(frozen=True)
@@ -202,13 +201,14 @@ def write(
             each.impratio = max([float(each.impratio), *(contact.impratio for contact in contacts)])
     changed = [] if others is None else list(others.changed())
     if keep_others:
-        changed = [each for each in changed if not _keep(model, each[0], kept(*each))]
+        changed = [each for each in changed if not _keep(model, each)]
     if changed:
         warnings.warn(sentence(changed), ContactWarning, stacklevel=3)
 
 
-def _keep(model: mujoco.MjModel | mujoco.MjSpec, geoms: GeomPair, numbers: Mixed | None) -> bool:
-    """Write the numbers of a contact that is kept; whether that can be."""
+def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: Changed) -> bool:
+    """Write the numbers with which a contact is kept; whether that can be."""
+    geoms, numbers = changed.pair, changed.kept
     if numbers is None or len(geoms.listed) > 1:
         return False
     if isinstance(model, mujoco.MjModel):

@@ -158,9 +158,9 @@ class GeomPair:
         return [float(self.model.body_subtreemass[root]) for root in roots]
 
     @property
-    def weight(self) -> float:
-        """Weight of the lighter tree [N]."""
-        return min(self.trees, default=0.0) * float(np.linalg.norm(self.model.opt.gravity))
+    def load(self) -> float:
+        """Weight of the lighter tree [N], or next to nothing where there is none."""
+        return max(1e-9, min(self.trees, default=0.0) * float(np.linalg.norm(self.model.opt.gravity)))
 
     @property
     def thickness(self) -> float:

@@ -137,7 +137,7 @@ def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | N
     row = Row(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
-    force = load if load is not None else max(pair.weight, 1e-9) / met.points
+    force = load if load is not None else pair.load / met.points
     contact = InspectedContact(
         *pair.labels,
         explicit=pair.explicit >= 0,

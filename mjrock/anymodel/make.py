@@ -167,11 +167,11 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> tuple[PairContact, C
         speed=speed,
         gravity=max(0.0, met.felt.gravity),
         pose=pose.label,
-        load=pair.weight / met.points,
+        load=pair.load / met.points,
         remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, Row(pair).k, pair.thickness))
+    soft = () if asked.k is not None else tuple(soft_spoilers(contact, Row(pair).loaded(contact.load), pair.thickness))
     return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
 
 

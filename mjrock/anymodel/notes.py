@@ -142,13 +142,14 @@ def weight_spoilers(contact: ContactNumbers) -> Iterator[str]:
 
 
 def soft_spoilers(contact: ContactNumbers, model_k: float, thickness: float) -> Iterator[str]:
-    """Where the stiffest contact that the step resolves is soft: against that of the model [N/m], and under the weight
+    """Where the stiffest contact that the step resolves is soft under the weight: against that of the model [N/m], and
     against the smallest half extent of the geoms [m]."""
     h, k = contact.timestep, contact.k
-    if k < model_k:
+    if k < (1 - SCATTER) * model_k:
         yield (
-            f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the {model_k:.3g} N/m of "
-            f"the contact that the model has; {rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
+            f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the contact that "
+            f"the model had, {model_k:.3g} N/m under the weight; "
+            f"{rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
         )
     if contact.depth > DEEP * thickness:
         resolving = h * math.sqrt(DEEP * thickness / contact.depth)

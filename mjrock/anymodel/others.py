@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import mujoco
 
@@ -41,30 +42,47 @@ class Others:
         pairs = (pair for pair in every_pair(model) if frozenset(pair.geoms) not in written)
         self.before = [(pair, Row(pair)) for pair in pairs]
 
-    def changed(self) -> Iterator[tuple[GeomPair, Row, Row]]:
-        """Those that are stiffer or softer now, with their rows before and after."""
+    def changed(self) -> Iterator[Changed]:
+        """Those that are stiffer or softer now."""
         for pair, before in self.before:
-            if not math.isclose((after := Row(pair)).k, before.k, rel_tol=SAME):
-                yield pair, before, after
+            after = Row(pair)
+            if not math.isclose(before.loaded(pair.load), after.loaded(pair.load), rel_tol=SAME):
+                yield Changed(pair, before, after)
 
 
-def kept(pair: GeomPair, before: Row, after: Row) -> Mixed | None:
-    """What an explicit pair has to have for its row to be as before; None where MuJoCo has no such row."""
-    factor, (d, dw, *shape) = before.scale / after.scale, before.solimp
-    if before.constant:
-        dw = d
-    near, full = (factor * end / (1 - end + factor * end) for end in (d, dw))
-    spring = before.spring * math.sqrt(d * dw / (near * full))
-    made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
-    return made if math.isclose(Row(pair, made).k, before.k, rel_tol=KEPT) else None
+class Changed(NamedTuple):
+    """A contact that the options change, and its rows before and after."""
+
+    pair: GeomPair
+    before: Row
+    after: Row
+
+    @property
+    def kept(self) -> Mixed | None:
+        """What an explicit pair has to have for its row to be as before; None where MuJoCo has no such row."""
+        before, factor = self.before, self.before.scale / self.after.scale
+        d, dw, *shape = before.solimp
+        if before.constant:
+            dw = d
+        near, full = (factor * end / (1 - end + factor * end) for end in (d, dw))
+        spring = before.spring * math.sqrt(d * dw / (near * full))
+        made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
+        load = self.pair.load
+        return made if math.isclose(Row(self.pair, made).loaded(load), before.loaded(load), rel_tol=KEPT) else None
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """k before and after, under the weight [N/m]."""
+        return self.before.loaded(self.pair.load), self.after.loaded(self.pair.load)
 
 
-def sentence(changed: Collection[tuple[GeomPair, Row, Row]]) -> str:
+def sentence(changed: Collection[Changed]) -> str:
     """What the options do to contacts, the one that changes most first."""
-    worst = sorted(changed, key=lambda each: -abs(math.log(each[2].k / each[1].k)))
-    told = [f"{' on '.join(pair.labels)} ({before.k:.3g} to {after.k:.3g} N/m)" for pair, before, after in worst]
+    told = []
+    for each in sorted(changed, key=lambda one: -abs(math.log(one.stiffness[1] / one.stiffness[0]))):
+        told.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))
     return (
-        f"the options that the contact needs change the stiffness of {len(told)} other contacts of the model: "
-        f"{named(told)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs that keep "
-        "named geoms as they were"
+        f"the options that the contact needs change the stiffness of {len(told)} other contacts of the model under the "
+        f"weight: {named(told)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs that "
+        "keep named geoms as they were"
     )
