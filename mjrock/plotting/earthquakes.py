@@ -103,7 +103,7 @@ def distributions(ax: Axes, samples: Mapping[str, ArrayLike], least: float = 1e-
     """Share of runs whose peak rotation stays below a value, a line a solver; overturned runs lie beyond `most`."""
     for solver, values in samples.items():
         style = {k: v for k, v in STYLES.get(solver, {"label": folded(solver)}).items() if k != "linestyle"}
-        ordered = np.sort(np.clip(np.asarray(values, dtype=float), least, 10 * most))
+        ordered = np.sort(np.clip(np.asarray(values, dtype=float), float(least), 10 * float(most)))
         ax.step(ordered, np.arange(1, len(ordered) + 1) / len(ordered), where="post", **style)
     ax.set(
         xscale="log", xlim=(float(least), float(most)), ylim=(0, 1), xlabel=PEAK, ylabel="share of runs below it [-]"
