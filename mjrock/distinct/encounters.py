@@ -148,7 +148,7 @@ class Encounters:
         lines = system.lines[: len(self.joints)]
         free = np.append(loose, False)
         either = free[lines["body"]] | free[lines["face"]]
-        touches, pairs = lines["push"] > 0, self.pairs
+        touches, pairs = lines["depth"] > 0, self.pairs
         closed = np.unique(pairs[touches | ~either])
         gone = either & ~np.isin(pairs, closed)
         for name in ("k", "c", "friction"):

@@ -58,6 +58,22 @@ def lengthening(link: Row, bodies: Rows, now: Pull, axes: tuple[int, ...]) -> fl
     return dot(now.way, velocity)
 
 
+@inlined
+def since_broken(over: float, rate: float, h: float) -> float:
+    """How long before the pose a tie broke that is longer than it can be by `over` [s], within the step of length h."""
+    return min(over / rate, h) if rate > 0 else 0.0
+
+
+@inlined
+def pulled_until_broken(tie: Row, since: float, h: float) -> float:
+    """Force at the pose after a tie broke, in place of none [N].
+
+    That of the pose before acts on the velocity up to the middle of the step. What the tie pulled after the middle and
+    before it broke is still to act, and what it pulled in the middle after it had broken is to be taken back.
+    """
+    return tie.strength * (0.5 - since / h) if h > 0 else 0.0
+
+
 @jitable
 def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int, ...]) -> None:
     """Add the forces of ties, dampers and constant forces at time t, and book what the last step of length h took."""
@@ -73,8 +89,9 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
             tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
             books.ties[i] += tie.strength * min(beyond, left)
             if beyond >= left:
-                tie.broken = t
-                books.broken[i] = 0.5 * tie.strength**2 / tie.k
+                since = since_broken(beyond - left, lengthening(tie, bodies, now, axes), h)
+                tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
+                act(tie, bodies, now, -pulled_until_broken(tie, since, h))
                 continue
         act(tie, bodies, now, -tie.k * max(0.0, now.length - tie.reach))
     for i in range(len(system.dampers)):

@@ -149,7 +149,8 @@ def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     work = run.samples.energy["ground"][: max(count, 1)]
     own = run.energy[: len(work)] - work
-    scale = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    given = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    scale = max(given, float(run.samples.energy["kinetic"][: len(work)].max()))  # what falls below its rest has more
     gain = from_nowhere(own, scale)
     if gain is not None:
         raise RuntimeError(f"{gain[1]} by t = {run.t[gain[0]]:.4g} s; {advice(stats)}")
@@ -185,4 +186,5 @@ def ledger_of(run: Run, stride: int) -> Ledger:
         friction=np.asarray(energy["friction"] - energy["friction"][0]),
         ties=dict(zip(scene.tie_names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
+        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), samples.ends.T, strict=True)),
     )

@@ -89,6 +89,8 @@ def kinds(d: int) -> Kinds:
         *integer("own_first", "own_last"),  # the edges of the face of its own body
         *spin("grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
         *number("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
+        *number("depth"),  # overlap in the last step [m]
+        *integer("past"),  # 1 for a line that was past the end of its face then
         *spin("dragged"),  # friction of the shear spring in the last step [N]
         *number("widest"),  # largest gap so far [m]
     ]
