@@ -107,6 +107,6 @@ class Samples(NamedTuple):
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         return cls(pose, velocity, rows(ENERGY, count), *accounts)
 
-    def taken(self, which: slice) -> Samples:
+    def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples."""
         return Samples(*(part[which] for part in self))  # type: ignore[arg-type]
