@@ -3,31 +3,23 @@
 from __future__ import annotations
 
 import time
-from typing import Any, TypeGuard
+from typing import Any
 
 import numpy as np
 
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import ON_ITS_FACE, require_flag, require_size, require_within
+from ..quantities import require_flag, require_size, require_within
 from ..result.response import Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
-from ..scene.explicit_step import SHARE, warn_if_tiny
-from ..scene.of_case import course_of, require_case, scene_of
-from .assembly import system_of
-from .encounters import Encounters
-from .following import Setup, Stepping, follow, warn_if_long
-from .limit import longest_step
-from .loop import advance
+from ..scene.explicit_step import warn_if_tiny
+from ..scene.of_case import require_case
+from .following import Stepping, follow, warn_if_long
 from .reading import Run, response_of
-from .space.setup import setup_in_space
+from .setup import setup_of
 from .system import Books, Samples
-
-SHARE_OF_A_WALL = 0.005
-"""Step that is taken for a wall, over the longest stable one [-]. A touch inside a step is met up to half a step late,
-which scatters |e| of a wall against a stop by some 0.5 % with 0.02 and by 0.1 % with 0.005."""
 
 
 def solve_explicit(
@@ -76,17 +68,15 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-9, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
-    setup = setup_in_space(case, state) if in_space(case) else setup_in_plane(case, contacts, state)
+    setup = setup_of(case, contacts, state)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
     count = steps.rows
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
-    groups = tuple(dict.fromkeys(scene.group))
-    columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 3 if ledger else 0)
+    books = Books.of(setup.system, len(set(scene.group)) + 1, 0 if setup.encounters is None else setup.encounters.most)
     if ledger:
-        require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
-    books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else setup.encounters.most)
-    samples = Samples.of(count, len(scene.names), columns, setup.freedom)
+        require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
+    samples = Samples.of(count, len(scene.names), books, scene.freedom, ledger=ledger)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
@@ -101,30 +91,8 @@ def solve_explicit(
         "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
         "stepping_time": took,
     }
-    samples = Samples(*(part[:kept] for part in samples))
+    samples = samples.taken(slice(kept))
     run = Run(case, contacts, scene, setup.course, system, books, samples, steps.times()[:kept])
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response
-
-
-def setup_in_plane(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
-    """A wall or masonry in the plane at its start."""
-    scene = scene_of(case, contacts)
-    course = course_of(case, scene)
-    if state is not None:
-        course = course.continued(*state)
-    masonry, supports = (case.masonry, case.supports) if isinstance(case, MasonryCase) else (None, ())
-    system = system_of(scene, course, masonry, supports)
-    limit = longest_step(system)
-    if masonry is None:
-        assert isinstance(case, Case)
-        # peaks and impacts are read off the samples
-        return Setup(scene, course, system, advance, limit, SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
-    encounters = Encounters(masonry, system, scene.group)
-    return Setup(scene, course, system, advance, limit, SHARE, encounters=encounters)
-
-
-def in_space(case: Case | MasonryCase) -> TypeGuard[MasonryCase]:
-    """Whether a case is one of masonry in space."""
-    return isinstance(case, MasonryCase) and case.masonry.in_space

@@ -1,26 +1,21 @@
-"""Following a system by explicit steps, in the plane or in space: what is set up, how long a step is, and the steps."""
+"""Following a system by explicit steps: how long a step is, and the steps."""
 
 from __future__ import annotations
 
 import math
 import time
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from tqdm import tqdm
 
-from ..geometry.frames import PLANE, SPACE, Freedom
 from ..quantities import Array
 from ..result.samples import intervals
-from ..scene.course import Course
 from ..scene.explicit_step import stepping_seconds
-from ..scene.scene import Scene
-from .encounters import Looking
-from .loop import Clock
-from .system import Books, Samples
+from .loop import Clock, advance
+from .setup import Setup
+from .system import Books, Samples, System
 
 FIRST = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
@@ -32,32 +27,6 @@ WORTH_SAYING = 10.0
 """Time that steps may take before that is spoken of [s]."""
 DAMPED = 10.0
 """How many times shorter dashpots make a step than springs alone before that is spoken of [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Setup:
-    """A system at its start, and how it is followed.
-
-    Args:
-        scene, course, system: what stands, what happens to it, and its rows.
-        advance: the compiled steps.
-        limit, share: the longest stable step [s], and the step that is taken over it [-].
-        spacing: largest spacing of the samples [s].
-        ends: rotation at which the run ends [rad].
-        freedom: of the bodies.
-        encounters: where blocks that fall meet others, or None where that is not followed.
-    """
-
-    scene: Scene
-    course: Course
-    system: Any
-    advance: Callable[..., tuple[int, int, bool]]
-    limit: float
-    share: float
-    spacing: float = math.inf
-    ends: float = math.inf
-    freedom: Freedom = PLANE
-    encounters: Looking | None = None
 
 
 class Stepping(NamedTuple):
@@ -114,7 +83,7 @@ class Stepping(NamedTuple):
         return np.asarray(t)
 
 
-def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> tuple[Any, int, int]:
+def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> tuple[System, int, int]:
     """Make the steps, with a progress bar where they take more than some seconds.
 
     Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
@@ -134,7 +103,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
                     system = encounters.looked_for(system, loose, (look - clock.step) * clock.h)
             begun = time.perf_counter()
             clock = clock._replace(stop=min(stop, look, clock.step + at_once))
-            step, row, ended = setup.advance(system, books, samples, clock)
+            step, row, ended = advance(system, books, samples, clock)
             took = time.perf_counter() - begun
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
             bar.update((step - clock.step) * clock.h)
@@ -146,7 +115,7 @@ def warn_if_long(setup: Setup, stepping: Stepping) -> None:
     """Warn of steps that take long, and of dashpots that make them many."""
     lines = setup.system.lines
     sprung = bool(np.isfinite(lines["k_s"]).any())
-    seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=setup.freedom is SPACE)
+    seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
     if seconds < WORTH_SAYING:
         return
     said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"

@@ -31,7 +31,7 @@ from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.quiet import is_quiet
 from ..scene.scene import Scene
-from .system import Books, Samples
+from .system import Books, Samples, System
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Run:
     contacts: Contacts | None
     scene: Scene
     course: Course
-    system: Any
+    system: System
     books: Books
     samples: Samples
     t: Array
@@ -56,9 +56,10 @@ class Run:
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
         at_rest = self.scene.rest_energies.sum()
-        preloaded = float(self.samples.energy[0].sum() - at_rest - self.course.energy(self.scene))
-        kinetic, potential, elastic = self.samples.energy.T
-        return np.asarray(kinetic + potential + elastic - (float(at_rest) + preloaded))
+        energy = self.samples.energy
+        there = energy["kinetic"] + energy["potential"] + energy["elastic"]
+        preloaded = float(there[0] - at_rest - self.course.energy(self.scene))
+        return np.asarray(there - (float(at_rest) + preloaded))
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
@@ -140,12 +141,12 @@ def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
         count: number of the sample.
         stats: with the step that was taken, and the longest stable one.
     """
-    if not np.isfinite(run.samples.energy[-1]).all():
+    if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
-    work = run.samples.work[: max(count, 1), 1]
+    work = run.samples.energy["ground"][: max(count, 1)]
     own = run.energy[: len(work)] - work
     given = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
-    scale = max(given, float(run.samples.energy[: len(work), 0].max()))  # what falls below its rest has more
+    scale = max(given, float(run.samples.energy["kinetic"][: len(work)].max()))  # what falls below its rest has more
     gain = from_nowhere(own, scale)
     if gain is not None:
         raise RuntimeError(f"{gain[1]} by t = {run.t[gain[0]]:.4g} s; {advice(stats)}")
@@ -169,27 +170,17 @@ def advice(stats: Mapping[str, Any]) -> str:
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
-    samples, scene = run.samples, run.scene
-    work = samples.work[kept, 2:].T
-    yielding = len(scene.damper_names)
-    breaking, groups = (yielding + i * len(scene.tie_names) for i in (1, 2))
-    may_break = np.isfinite(scene.tie_ultimate)
-    dashpots = dict(zip(scene.damper_names, work[:yielding], strict=True))
-    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:-2], strict=True))
-    kinetic, potential, elastic = samples.energy[kept].T
+    scene, samples = run.scene, run.samples.taken(kept)
+    energy, may_break = samples.energy, np.isfinite(scene.tie_ultimate)
+    dashpots = dict(zip(scene.damper_names, samples.dampers.T, strict=True))
+    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), samples.dashpots.T, strict=True))
+    broken = zip(scene.tie_names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[kept],
-        kinetic=kinetic,
-        potential=potential,
-        elastic=elastic,
+        **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
         dashpots=dashpots,
-        friction=samples.work[kept, 0] - samples.work[0, 0],
-        ground=samples.work[kept, 1],
-        ties=dict(zip(scene.tie_names, work[yielding:breaking], strict=True)),
-        broken={
-            name: account
-            for name, account, breaks in zip(scene.tie_names, work[breaking:groups], may_break, strict=True)
-            if breaks
-        },
-        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), work[-2:], strict=True)),
+        friction=np.asarray(energy["friction"] - energy["friction"][0]),
+        ties=dict(zip(scene.tie_names, samples.ties.T, strict=True)),
+        broken={name: account for name, account, breaks in broken if breaks},
+        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), samples.ends.T, strict=True)),
     )
