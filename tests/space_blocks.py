@@ -28,8 +28,8 @@ def free_body(mass, inertia, spin):
 def followed(system, duration, h, every):
     """The samples of a system that is followed without being changed."""
     last = every * round(duration / (h * every))
-    system, books = copied(system), Books.of(system, 1)
-    samples = Samples.of(last // every + 1, len(system.bodies), books, SPACE)
+    system, books = copied(system), Books.empty(system, 1)
+    samples = Samples.room(last // every + 1, len(system.bodies), books, SPACE)
     advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf))
     return samples, system
 

@@ -72,13 +72,13 @@ class Stepping(NamedTuple):
         return cls(timestep, every, max(1, round(output_step / (timestep * every))), last, last * timestep)
 
     @property
-    def rows(self) -> int:
+    def samples(self) -> int:
         """How many samples there are."""
         return -(-self.last // self.every) + 1
 
     def times(self) -> Array:
-        """Times of the samples [s], shape (rows,)."""
-        t = self.h * self.every * np.arange(self.rows)
+        """Times of the samples [s], shape (samples,)."""
+        t = self.h * self.every * np.arange(self.samples)
         t[-1] = self.end
         return np.asarray(t)
 

@@ -68,7 +68,7 @@ class Books(NamedTuple):
     active: Integers
 
     @classmethod
-    def of(cls, system: System, groups: int, further: int = 0) -> Books:
+    def empty(cls, system: System, groups: int, further: int = 0) -> Books:
         """Empty books of a system, with room for some further lines."""
         sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
         dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
@@ -100,7 +100,7 @@ class Samples(NamedTuple):
     ends: Array
 
     @classmethod
-    def of(cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False) -> Samples:
+    def room(cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False) -> Samples:
         """Room for some samples, and for the accounts where there is a ledger."""
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots, books.ends)
