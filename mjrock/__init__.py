@@ -48,8 +48,10 @@ if TYPE_CHECKING:
     from .problem.wall.block import Block
     from .problem.wall.case import Case
     from .problem.wall.damper import Damper
-    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
+    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
+    from .problem.wall.friction_damper import FrictionDamper
     from .problem.wall.section import Opening
+    from .problem.wall.tie import Tie
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
@@ -83,13 +85,13 @@ if TYPE_CHECKING:
 __all__ = [
     "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
     "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "Contacts", "CoulombFriction", "Damper",
-    "DampingLaw", "Fragility", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
-    "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse",
-    "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact", "PairContacts",
-    "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum", "Restitution",
-    "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint",
-    "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate",
-    "campaign", "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness",
+    "DampingLaw", "Fragility", "FrictionDamper", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact",
+    "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
+    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
+    "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum",
+    "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError",
+    "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep",
+    "calibrate", "campaign", "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness",
     "contacts_for", "crushed_inset", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
     "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
     "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity",
@@ -129,8 +131,10 @@ HOMES = {
     "problem.wall.block": "Block",
     "problem.wall.case": "Case",
     "problem.wall.damper": "Damper",
-    "problem.wall.effects": "AddedMass Load SideStop Thrust Tie",
+    "problem.wall.effects": "AddedMass Load SideStop Thrust",
+    "problem.wall.friction_damper": "FrictionDamper",
     "problem.wall.section": "Opening",
+    "problem.wall.tie": "Tie",
     "quantities": "GRAVITY Implausible",
     "reference.compliant": "solve_compliant",
     "reporting.page": "report",

@@ -11,7 +11,6 @@ from ..problem.masonry.lines import edge_ends
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import GRAVITY, Array, Flags, Integers
-from ..result.joints import joint_numbers
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .contact import OVERHANG
@@ -25,12 +24,13 @@ ENOUGH = 1e-9
 def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supports: Sequence[Support] = ()) -> System:
     """The system of a scene at the start of a course. Faces of masonry end where they end, those of a wall do not."""
     pose, velocity = np.asarray(course.pose), np.asarray(course.velocity)
+    ties, dampers = scene.links.sprung, scene.links.damped
     bodies = rows(
         BODY,
-        len(scene.mass),
-        mass=scene.mass,
-        ease=1 / scene.inertia,
-        **named(("x0", "z0"), scene.rest),
+        len(scene.bodies.mass),
+        mass=scene.bodies.mass,
+        ease=1 / scene.bodies.inertia,
+        **named(("x0", "z0"), scene.bodies.rest),
         **named(("x", "z", "theta"), pose),
         **named(("vx", "vz", "w"), velocity),
     )
@@ -42,10 +42,10 @@ def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supp
     system = System(
         bodies,
         lines,
-        links_of(scene.tie_body, scene.tie_point, scene.ties.between, k=scene.tie_k, reach=scene.tie_length,
-                 strength=scene.tie_strength, ultimate=scene.tie_ultimate, broken=np.full(len(scene.tie_k), np.inf)),
-        links_of(scene.damper_body, scene.damper_point, scene.dampers.between, c=scene.damper_c),
-        links_of(scene.force_body, scene.force_point, scene.force),
+        links_of(ties.body, ties.at, scene.ties.between, k=ties.k, reach=scene.ties.reach, strength=ties.strength,
+                 push=ties.push, ultimate=ties.ultimate, broken=np.full(len(ties.k), np.inf)),
+        links_of(dampers.body, dampers.at, scene.dampers.between, c=dampers.c),
+        links_of(scene.forces.body, scene.forces.at, scene.forces.force),
         course.ground,
         moving(supports),
     )  # fmt: skip
@@ -59,30 +59,24 @@ def lines_of(scene: Scene) -> Rows:
     places = scene.places
     return rows(
         LINE,
-        len(scene.k),
+        len(scene.contacts.k),
         body=places.body,
         face=places.face_body,
         support=-1,
-        group=accounts_of(scene),
+        group=scene.contacts.joint,
         **named(("at_x", "at_z"), places.at),
         **named(("origin_x", "origin_z"), places.face_at),
         **named(("normal_x", "normal_z"), places.normal),
         **named(("between_x", "between_z"), places.between),
-        k=scene.k,
-        c=scene.c,
+        k=scene.contacts.k,
+        c=scene.contacts.c,
         k_s=np.inf,
-        friction=scene.friction,
+        friction=scene.contacts.friction,
         low=-FAR,
         high=FAR,
         back=-FAR,
         forth=FAR,
     )
-
-
-def accounts_of(scene: Scene) -> Integers:
-    """The number of the account of each contact line, those of one group the same."""
-    numbers = {name: number for number, name in enumerate(dict.fromkeys(scene.group))}
-    return np.array([numbers[name] for name in scene.group])
 
 
 def links_of(body: Integers, at: Array, between: Array, **given: Array) -> Rows:
@@ -95,7 +89,7 @@ def links_of(body: Integers, at: Array, between: Array, **given: Array) -> Rows:
 
 def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> None:
     """Give lines the shear stiffness of their joint, the ends of its face and edge, and the support that moves it."""
-    of = joint_numbers(masonry, scene.group)
+    of = scene.contacts.joint
     ends = np.array(
         [[edge_ends(masonry.blocks[block], joint) for block in (joint.below, joint.above)] for joint in masonry.joints]
     )  # (joints, below and above, 2)

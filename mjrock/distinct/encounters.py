@@ -10,7 +10,6 @@ blocks meet no edge.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +18,6 @@ from ..compiled import compiled, jitable
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from ..result.joints import joint_numbers
 from .system import LINE, Rows, System, rows
 
 NEAR = 2.0
@@ -62,16 +60,16 @@ class Looking:
     Args:
         masonry: the masonry.
         system: its bodies, and the lines of its joints.
-        group: name of the joint of each line. The account of the encounters comes after those of the joints.
+        joint: number of the joint of each line. The account of the encounters comes after those of the joints.
     """
 
-    def __init__(self, masonry: Masonry, system: Any, group: Sequence[str]) -> None:
-        self.joints, self.group, self.most = system.lines, len(set(group)), MOST * len(masonry.blocks) + 64
+    def __init__(self, masonry: Masonry, system: Any, joint: Integers) -> None:
+        self.joints, self.group, self.most = system.lines, len(masonry.joints), MOST * len(masonry.blocks) + 64
         self.body = free_numbers(masonry.blocks)
         self.widths = narrowest(masonry)
         self.sizes = np.array([masonry.blocks[i].size for i in masonry.free])
         self.softest = softest(self.joints, len(masonry.free))
-        self.pairs = pairs_of(masonry, joint_numbers(masonry, group))
+        self.pairs = pairs_of(masonry, joint)
         self.keys = np.empty(0, dtype=np.int64)
         self.overlaps = np.empty(0)
 
@@ -124,8 +122,8 @@ class Looking:
 class Encounters(Looking):
     """The blocks of masonry as polygons, and the lines where they meet beyond their joints."""
 
-    def __init__(self, masonry: Masonry, system: System, group: Sequence[str]) -> None:
-        super().__init__(masonry, system, group)
+    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
+        super().__init__(masonry, system, joint)
         blocks = masonry.blocks
         self.rest = np.column_stack([system.bodies["x0"], system.bodies["z0"]])
         self.origin = np.where(self.body[:, None] < 0, 0.0, self.rest[self.body])

@@ -76,13 +76,15 @@ def solve_explicit(
     spacing = min(output_step, setup.course.duration, setup.spacing)
     h, every = steps_of(timestep, setup.share * limit, limit, spacing)
     count = math.floor(setup.course.duration / (h * every) * (1 + 1e-12)) + 1
-    require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
-    groups = tuple(dict.fromkeys(scene.group))
-    columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 1 if ledger else 0)
+    require_size(
+        "the samples of this answer", count * len(scene.bodies.names), "raise output_step or follow it for less"
+    )
+    links, groups = scene.links, scene.contacts.joints
+    columns = 2 + (len(links.damped.names) + 2 * len(links.sprung.names) + len(groups) + 1 if ledger else 0)
     if ledger:
         require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
     books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else setup.encounters.most)
-    samples = Samples.of(count, len(scene.names), columns, setup.freedom)
+    samples = Samples.of(count, len(scene.bodies.names), columns, setup.freedom)
     stepping = time.perf_counter()
     system, steps, kept = follow(setup, books, samples, Clock(0, h, every, 0, count, setup.ends))
     took = time.perf_counter() - stepping
@@ -114,7 +116,7 @@ def setup_in_plane(case: Case | MasonryCase, contacts: Contacts | None, state: S
         assert isinstance(case, Case)
         # peaks and impacts are read off the samples
         return Setup(scene, course, system, advance, limit, SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
-    encounters = Encounters(masonry, system, scene.group)
+    encounters = Encounters(masonry, system, scene.contacts.joint)
     return Setup(scene, course, system, advance, limit, SHARE, encounters=encounters)
 
 

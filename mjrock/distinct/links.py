@@ -8,6 +8,7 @@ from typing import NamedTuple
 from ..compiled import inlined, jitable
 from .contact import add_force
 from .system import Books, Row, Supports, System
+from .yielding import elongation, let_yield
 
 
 class Pull(NamedTuple):
@@ -39,16 +40,10 @@ def pull_links(system: System, books: Books, t: float, h: float) -> None:
             continue
         body = system.bodies[tie.body]
         now = pull(tie, body)
-        beyond = now.length - tie.reach - tie.strength / tie.k
-        if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
-            left = tie.ultimate - tie.drawn
-            tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
-            books.ties[i] += tie.strength * min(beyond, left)
-            if beyond >= left:
-                tie.broken = t
-                books.broken[i] = 0.5 * tie.strength**2 / tie.k
-                continue
-        force = -tie.k * max(0.0, now.length - tie.reach)
+        let_yield(tie, now.length, books, i, t)
+        if tie.broken <= t:
+            continue
+        force = -tie.k * elongation(tie, now.length)
         add_force(body, now.rx, now.rz, force * now.nx, force * now.nz)
     for i in range(len(system.dampers)):
         damper = system.dampers[i]
@@ -75,7 +70,7 @@ def linked_energy(system: System) -> tuple[float, float]:
         tie = system.ties[i]
         if tie.broken < math.inf:
             continue
-        stretched = max(0.0, pull(tie, system.bodies[tie.body]).length - tie.reach)
+        stretched = elongation(tie, pull(tie, system.bodies[tie.body]).length)
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.forces)):
         force = system.forces[i]

@@ -21,7 +21,7 @@ from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joint_motion_in_space import joint_motion_in_space
-from ..result.joints import JointMotion, joint_numbers
+from ..result.joints import JointMotion
 from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.response import Response
 from ..result.rocking import Rocking
@@ -90,8 +90,9 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def plastic_of(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, books = run.system.ties, run.books
-    columns = zip(run.scene.tie_names, ties["drawn"], books.ties, ties["broken"], books.broken, strict=True)
+    ties, books, links = run.system.ties, run.books, run.scene.links.sprung
+    start = run.scene.ties.reach - links.reach
+    columns = zip(links.names, ties["drawn"], books.ties, ties["broken"], books.broken, start, strict=True)
     return {name: Plastic(*(float(value) for value in values)) for name, *values in columns}
 
 
@@ -119,13 +120,13 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     masonry, scene, pose = case.masonry, run.scene, run.samples.pose
     flat = pose.reshape(len(pose), -1)
     followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
-    motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
+    motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()
-    of = joint_numbers(masonry, scene.group)
+    of = scene.contacts.joint
     np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])
     return {
         "joints": JointMotion(opening, motion.sliding, fallen),
@@ -174,11 +175,11 @@ def ledger_of(run: Run, stride: int) -> Ledger:
     """The ledger of a run."""
     samples, scene = run.samples, run.scene
     work = samples.work[::stride, 2:].T
-    yielding = len(scene.damper_names)
-    breaking, groups = (yielding + i * len(scene.tie_names) for i in (1, 2))
-    may_break = np.isfinite(scene.tie_ultimate)
-    dashpots = dict(zip(scene.damper_names, work[:yielding], strict=True))
-    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), work[groups:], strict=False))
+    yielding = len(scene.links.damped.names)
+    breaking, groups = (yielding + i * len(scene.links.sprung.names) for i in (1, 2))
+    may_break = np.isfinite(scene.links.sprung.ultimate)
+    dashpots = dict(zip(scene.links.damped.names, work[:yielding], strict=True))
+    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), work[groups:], strict=False))
     kinetic, potential, elastic = samples.energy[::stride].T
     return Ledger(
         t=run.t[::stride],
@@ -188,10 +189,10 @@ def ledger_of(run: Run, stride: int) -> Ledger:
         dashpots=dashpots,
         friction=samples.work[::stride, 0] - samples.work[0, 0],
         ground=samples.work[::stride, 1],
-        ties=dict(zip(scene.tie_names, work[yielding:breaking], strict=True)),
+        ties=dict(zip(scene.links.sprung.names, work[yielding:breaking], strict=True)),
         broken={
             name: account
-            for name, account, breaks in zip(scene.tie_names, work[breaking:groups], may_break, strict=True)
+            for name, account, breaks in zip(scene.links.sprung.names, work[breaking:groups], may_break, strict=True)
             if breaks
         },
     )

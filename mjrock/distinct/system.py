@@ -61,7 +61,7 @@ LINK = np.dtype(
         *((name, float) for name in ("at_x", "at_z")),  # where, from its centroid [m]
         *((name, float) for name in ("between_x", "between_z")),  # from the anchor [m]; components of a force [N]
         *((name, float) for name in ("k", "c")),  # spring and dashpot [N/m, N s/m]
-        *((name, float) for name in ("reach", "strength")),  # slack length of a tie [m], and its yield [N]
+        *((name, float) for name in ("reach", "strength", "push")),  # slack length [m], yield either way [N]
         *((name, float) for name in ("drawn", "ultimate", "broken")),  # plastic elongation, its limit [m], time [s]
         ("pulled", float),  # force of a damper in the last step [N]
     ]

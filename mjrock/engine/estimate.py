@@ -33,18 +33,18 @@ WORTH_SAYING = 3.0
 
 def explicit_seconds(scene: Scene, masonry: Masonry) -> float:
     """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
-    ratio, lines = masonry.joint_shear / masonry.joint_stiffness, len(scene.k)
+    ratio, lines = masonry.joint_shear / masonry.joint_stiffness, len(scene.contacts.k)
     sprung = bool(np.isfinite(ratio).any())
     stiffer = float(np.max(ratio[np.isfinite(ratio)], initial=1.0))  # of the springs along normal and face
     stiffness = stiffer * scene.highest_frequency**2
-    step = SHARE * stable_step(stiffness, stiffness * float((scene.c / scene.k).max()))
+    step = SHARE * stable_step(stiffness, stiffness * float((scene.contacts.c / scene.contacts.k).max()))
     of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if masonry.in_space else (SPRUNG, RIGID)
     return lines * (of_springs if sprung else of_friction) / step
 
 
 def fitted_seconds(scene: Scene) -> tuple[float, float]:
     """Time of a second by steps that fit the motion [s], where little slides or strikes and where much does."""
-    unit = len(scene.k) * scene.highest_frequency
+    unit = len(scene.contacts.k) * scene.highest_frequency
     weak, strong = (WEAK, STRONG) if scene.freedom == PLANE else (WEAK_IN_SPACE, STRONG_IN_SPACE)
     return weak * unit, strong * unit
 

@@ -90,7 +90,8 @@ def ties(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None =
                 at = min(int(np.searchsorted(response.t, tie.broken)), len(response.t) - 1)
                 height = tie.force[max(at - 1, 0)] / 1e3
                 ax.plot(response.t[at], height, "x", color=line.get_color(), markersize=9, markeredgewidth=2, zorder=5)
-    ax.set_ylim(bottom=0.0)
+    if not any((tie.force < 0).any() for response in responses for tie in response.ties.values()):
+        ax.set_ylim(bottom=0.0)
     ax.set_ylim(top=1.0 + 1.35 * ax.get_ylim()[1] if ax.get_ylim()[1] == 0 else 1.35 * ax.get_ylim()[1])
     ax.legend(frameon=False, fontsize=7, loc="upper right")
     ax.set(xlabel=TIME, ylabel="ties [kN]")

@@ -13,10 +13,9 @@ from ...problem.masonry.lines import free_numbers
 from ...problem.masonry.masonry import Masonry
 from ...problem.masonry.support import Support
 from ...quantities import Array, Integers
-from ...result.joints import joint_numbers
 from ...scene.ground import Ground
 from ...scene.scene import Scene
-from ..assembly import accounts_of, moving
+from ..assembly import moving
 from ..contact import OVERHANG
 from ..system import Rows, named, rows
 from .columns import PLACE, QUATERNION, REST, ease_columns, ease_of, named_vectors, turns, vectors
@@ -25,48 +24,55 @@ from .system import BODY, EDGE, LINK, POINT, WAY, System
 
 def masonry_system(scene: Scene, masonry: Masonry) -> System:
     """Masonry in space as it is drawn, at rest on ground that does not move."""
+    sprung, damped = scene.links.sprung, scene.links.damped
     bodies = rows(
-        BODY, len(scene.mass), mass=scene.mass, qw=1.0, **ease_columns(scene.inertia), **named(REST, scene.rest)
+        BODY,
+        len(scene.bodies.mass),
+        mass=scene.bodies.mass,
+        qw=1.0,
+        **ease_columns(scene.bodies.inertia),
+        **named(REST, scene.bodies.rest),
     )
     lines, edges = points_of(scene, masonry)
     ways = rows(WAY, 2 * len(lines) if np.isinf(lines["k_s"]).any() else 0)
     ties = rows(
         LINK,
-        len(scene.tie_k),
-        body=scene.tie_body,
-        anchor=scene.anchor_body,
-        **named_vectors(at=scene.tie_point, origin=scene.anchor, between=scene.ties.between),
-        k=scene.tie_k,
-        reach=scene.tie_length,
-        strength=scene.tie_strength,
-        ultimate=scene.tie_ultimate,
+        len(sprung.k),
+        body=sprung.body,
+        anchor=sprung.anchor_body,
+        **named_vectors(at=sprung.at, origin=sprung.anchor_at, between=scene.ties.between),
+        k=sprung.k,
+        reach=scene.ties.reach,
+        strength=sprung.strength,
+        push=sprung.push,
+        ultimate=sprung.ultimate,
         broken=np.inf,
     )
     forces = rows(
         LINK,
-        len(scene.force_names),
-        body=scene.force_body,
+        len(scene.forces.names),
+        body=scene.forces.body,
         anchor=-1,
-        **named_vectors(at=scene.force_point, between=scene.force),
+        **named_vectors(at=scene.forces.at, between=scene.forces.force),
     )
     dampers = rows(
         LINK,
-        len(scene.damper_c),
-        body=scene.damper_body,
-        anchor=scene.damper_anchor_body,
-        **named_vectors(at=scene.damper_point, origin=scene.damper_anchor, between=scene.dampers.between),
-        c=scene.damper_c,
+        len(damped.c),
+        body=damped.body,
+        anchor=damped.anchor_body,
+        **named_vectors(at=damped.at, origin=damped.anchor_at, between=scene.dampers.between),
+        c=damped.c,
     )
     return System(bodies, lines, edges, ways, ties, dampers, forces, Ground.of(None), moving((), axes=3))
 
 
 def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
     """The contact points of masonry, and the edges of the faces of its joints."""
-    places, of = scene.places, joint_numbers(masonry, scene.group)
+    places, of = scene.places, scene.contacts.joint
     edges, ends = edges_of(scene, masonry)
     above = free_numbers(masonry.blocks)[[joint.above for joint in masonry.joints]][of] == places.body
     of_face, of_body = np.where(above, 0, 1), np.where(above, 1, 0)
-    k_s = masonry.joint_shear[of] * scene.k / masonry.joint_stiffness[of]
+    k_s = masonry.joint_shear[of] * scene.contacts.k / masonry.joint_stiffness[of]
     sprung = np.isfinite(k_s)
     points = rows(
         POINT,
@@ -74,13 +80,13 @@ def points_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Rows]:
         body=places.body,
         face=places.face_body,
         support=-1,
-        group=accounts_of(scene),
+        group=scene.contacts.joint,
         **named_vectors(at=places.at, origin=places.face_at + places.between, normal=places.normal),
-        k=scene.k,
-        c=scene.c,
+        k=scene.contacts.k,
+        c=scene.contacts.c,
         k_s=k_s,
-        c_s=np.where(sprung, scene.c * np.where(sprung, k_s, 0.0) / scene.k, 0.0),
-        friction=scene.friction,
+        c_s=np.where(sprung, scene.contacts.c * np.where(sprung, k_s, 0.0) / scene.contacts.k, 0.0),
+        friction=scene.contacts.friction,
         first=ends[of, of_face, 0],
         last=ends[of, of_face, 1],
         own_first=ends[of, of_body, 0],
@@ -98,7 +104,7 @@ def edges_of(scene: Scene, masonry: Masonry) -> tuple[Rows, Integers]:
         the one above of each joint, shape (joints, 2, 2).
     """
     number = free_numbers(masonry.blocks)
-    origins = np.where(number[:, None] < 0, 0.0, scene.rest[number])
+    origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
         edges_of_face(face, origins[block])
         for joint, faces in zip(masonry.joints, faces_of_joints(masonry), strict=True)
@@ -149,8 +155,8 @@ def take_grips(points: Rows, drag: Array) -> None:
 def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks."""
     numbers = {support.block: i for i, support in enumerate(supports)}
-    below = {joint.name: numbers.get(joint.below, -1) for joint in masonry.joints}
-    support = np.array([below[name] for name in scene.group])
+    below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
+    support = below[scene.contacts.joint]
     system.lines["support"] = np.where(system.lines["face"] < 0, support, -1)
     return system._replace(supports=moving(supports, axes=3))
 

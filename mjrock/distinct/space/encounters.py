@@ -6,8 +6,6 @@ it until it leaves its outline. Corners of fixed blocks meet no face, and edges 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ...problem.masonry.joints_in_space import faces_of
@@ -24,8 +22,8 @@ from .system import POINT, WAY, System
 class EncountersInSpace(Looking):
     """The blocks of masonry as polyhedra, and the points where they meet beyond their joints."""
 
-    def __init__(self, masonry: Masonry, system: System, group: Sequence[str]) -> None:
-        super().__init__(masonry, system, group)
+    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
+        super().__init__(masonry, system, joint)
         blocks, free = masonry.blocks, self.body >= 0
         self.rest = np.where(free[:, None], stacked(system.bodies, REST)[self.body], 0.0)
         faces = [faces_of(block) for block in blocks]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from ...compiled import inlined, jitable
 from ...geometry.vectors import Vector, dot, minus, plus, scaled, spun
 from ..system import Books, Row, Rows
+from ..yielding import elongation, let_yield
 from .system import System, add_force, at_of, between_of, origin_of, place_of, spin_of, velocity_of
 from .turning import swung
 
@@ -65,16 +66,10 @@ def pull_links(system: System, books: Books, t: float, h: float) -> None:
         if t >= tie.broken:
             continue
         now = pull(tie, bodies)
-        beyond = now.length - tie.reach - tie.strength / tie.k
-        if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
-            left = tie.ultimate - tie.drawn
-            tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
-            books.ties[i] += tie.strength * min(beyond, left)
-            if beyond >= left:
-                tie.broken = t
-                books.broken[i] = 0.5 * tie.strength**2 / tie.k
-                continue
-        act(tie, bodies, now, -tie.k * max(0.0, now.length - tie.reach))
+        let_yield(tie, now.length, books, i, t)
+        if tie.broken <= t:
+            continue
+        act(tie, bodies, now, -tie.k * elongation(tie, now.length))
     for i in range(len(system.dampers)):
         damper = system.dampers[i]
         now = pull(damper, bodies)
@@ -97,7 +92,7 @@ def linked_energy(system: System) -> tuple[float, float]:
         tie = system.ties[i]
         if tie.broken < math.inf:
             continue
-        stretched = max(0.0, pull(tie, system.bodies).length - tie.reach)
+        stretched = elongation(tie, pull(tie, system.bodies).length)
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.forces)):
         row = system.forces[i]

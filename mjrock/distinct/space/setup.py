@@ -9,7 +9,7 @@ import numpy as np
 from ...geometry.frames import SPACE
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.masonry import Masonry
-from ...problem.wall.effects import Effect
+from ...problem.wall.effect import Effect
 from ...result.response import State
 from ...scene.equilibrium import UnsettledError
 from ...scene.explicit_step import SHARE
@@ -31,7 +31,7 @@ def setup_in_space(case: MasonryCase, state: State | None) -> Setup:
         course = course.continued(*state)
     system = moved_by(copied(at_rest), scene, case.masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
-    limit, encounters = longest_step(system), EncountersInSpace(case.masonry, system, scene.group)
+    limit, encounters = longest_step(system), EncountersInSpace(case.masonry, system, scene.contacts.joint)
     system = encounters.made_room(system)
     return Setup(scene, course, system, advance, limit, SHARE, freedom=SPACE, encounters=encounters)
 

@@ -91,7 +91,7 @@ LINK = np.dtype(
         *three("origin"),  # the other end from the centroid of the anchor [m]
         *three("between"),  # from the anchor at rest [m]; components of a force [N]
         *numbers("k", "c"),  # spring and dashpot [N/m, N s/m]
-        *numbers("reach", "strength"),  # slack length of a tie [m], and its yield [N]
+        *numbers("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
         *numbers("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
         ("pulled", float),  # force of a damper in the last step [N]
     ]

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...quantities import GRAVITY, Implausible
-from .effects import AddedMass, Load, Thrust, Tie
+from .effects import AddedMass, Load, Thrust
+from .tie import Tie
 from .ties_on_wall import moment_at_strength, pulled
 
 NEGLIGIBLE = 1e-4
