@@ -37,3 +37,8 @@ def test_the_page_names_the_modules_that_change_and_no_other(section, words):
 
 def test_a_device_touches_few_modules():
     assert len(listed(DEVICE)) <= 9
+
+
+def test_no_module_outside_the_problem_asks_which_kind_an_effect_is():
+    kinds = r"isinstance\([^)]*\b(Tie|Thrust|Load|AddedMass|Damper|FrictionDamper|Anchored|Effect)\b|\.each\("
+    assert {name for name in naming(kinds) if not name.startswith("mjrock/problem/")} == set()
