@@ -35,6 +35,7 @@ OTHERS = (
     "scene/masonry.py",
     "scene/rest_in_space.py",
     "result/history.py",
+    "reference/sliders.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model")
@@ -44,7 +45,8 @@ STEPS = ("contact", "friction", "links", "loop")
 OWN = {
     **{f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing") for name in TOOLS},
     "geometry/frames.py": ("frames", "kinematics"),
-    "geometry/kinematics.py": ("kinematics", "frames", "slipping"),
+    "geometry/kinematics.py": ("kinematics", "frames", "slipping", "friction_damper"),
+    "reference/sliders.py": ("friction_damper",),
     "geometry/vectors.py": ("frames", "kinematics"),
     "scene/dampers.py": ("damper",),
     "scene/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),

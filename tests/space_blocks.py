@@ -5,12 +5,10 @@ import math
 import numpy as np
 
 import mjrock as mr
-from mjrock.distinct.loop import Clock
-from mjrock.distinct.space.assembly import copied, moving
-from mjrock.distinct.space.columns import REST, ease_columns, named, named_vectors
-from mjrock.distinct.space.loop import advance
-from mjrock.distinct.space.system import BODY, EDGE, LINK, POINT, WAY, System
-from mjrock.distinct.system import Books, Samples, rows
+from mjrock.distinct.assembly import copied, moving
+from mjrock.distinct.loop import Clock, advance
+from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.system import Books, Samples, System
 from mjrock.geometry.frames import SPACE
 from mjrock.scene.ground import Ground
 
@@ -19,20 +17,20 @@ GROUND = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")
 
 def free_body(mass, inertia, spin):
     """A body far from everything, with a spin about its axes."""
-    inertia = np.asarray(inertia, dtype=float)[None]
-    momentum = inertia[0] @ np.asarray(spin)
-    columns = ease_columns(inertia) | named(REST, np.zeros((1, 3))) | named_vectors(momentum=momentum)
-    bodies, none = rows(BODY, 1, mass=mass, qw=1.0, **columns), rows(LINK, 0)
-    return System(
-        bodies, rows(POINT, 0), rows(EDGE, 0), rows(WAY, 0), none, none, none, Ground.of(None), moving((), axes=3)
-    )
+    kind, inverse = kinds(3), np.linalg.inv(inertia)[None]
+    body = rows(kind.body, 1, mass=mass, inverse_inertia=inverse, quaternion=[1.0, 0, 0, 0], momentum=inertia @ spin)
+    none = {"ties": kind.link, "dampers": kind.link, "forces": kind.link}
+    none |= {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
+    tables = {name: rows(of, 0) for name, of in none.items()}
+    return System(axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), **tables)
 
 
 def followed(system, duration, h, every):
     """The samples of a system that is followed without being changed."""
     count = round(duration / (h * every)) + 1
-    samples, system = Samples.of(count, len(system.bodies), 2, SPACE), copied(system)
-    advance(system, Books.of(system, 1), samples, Clock(0, h, every, 0, count, math.inf))
+    system, books = copied(system), Books.of(system, 1)
+    samples = Samples.of(count, len(system.bodies), books, SPACE)
+    advance(system, books, samples, Clock(0, h, every, 0, count, math.inf))
     return samples, system
 
 

@@ -7,7 +7,7 @@ swing. A tie takes it once, as it yields.
 """
 
 # %%
-# A façade of 6 m that rocks on its own, and the record that overturns it.
+# A façade of 6 m, of 318 kN, and a record that overturns it.
 from matplotlib.figure import Figure
 
 import mjrock as mr
@@ -16,8 +16,8 @@ from mjrock import plotting
 wall = mr.Block.from_size(thickness=0.6, height=6.0, length=5.0, density=1800.0)
 e = mr.Restitution.from_geometry(wall)
 contacts = mr.Contacts.from_law(wall, e, k_base=2e9, k_side=2e9)  # N/m3
-record = mr.GroundMotion.synthetic(peak=6.0, duration=10.0, seed=3)  # m/s2, s
-damper = mr.FrictionDamper(height=5.5, stiffness=20e6, slip_force=8e3)  # m, N/m, N
+record = mr.GroundMotion.synthetic(peak=6.0, duration=10.0, seed=2)  # m/s2, s
+damper = mr.FrictionDamper(height=5.5, stiffness=20e6, slip_force=20e3)  # m, N/m, N
 
 # %%
 # Without it and with it.

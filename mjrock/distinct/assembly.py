@@ -1,147 +1,172 @@
-"""The rows of a system from a scene and what happens to it."""
+"""The rows of a system from a scene, the joints of its masonry, and what happens to it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from scipy.sparse.linalg import lsmr
 
-from ..problem.masonry.lines import edge_ends
+from ..geometry.vectors import tangents
+from ..problem.masonry.joint_law import normal_force, shear_limit
+from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
-from ..quantities import GRAVITY, Array, Flags, Integers
-from ..scene.course import Course
+from ..problem.wall.effect import LinkLaw
+from ..quantities import GRAVITY, Array
+from ..scene.ground import Ground
+from ..scene.parts import Links
 from ..scene.scene import Scene
-from .contact import OVERHANG
+from .faces import edges_of, margins, outlines_of_joints
 from .limit import line_rates, ways_of
-from .system import BODY, FAR, LINE, LINK, Rows, Supports, System, named, rows, stacked
+from .rows import Rows, joined, kinds, rows
+from .system import Supports, System
+from .turning import start_turning
 
 ENOUGH = 1e-9
 """Tolerance of the search for the friction at rest, relative [-]."""
 
 
-def system_of(scene: Scene, course: Course, masonry: Masonry | None = None, supports: Sequence[Support] = ()) -> System:
-    """The system of a scene at the start of a course. Faces of masonry end where they end, those of a wall do not."""
-    pose, velocity = np.asarray(course.pose), np.asarray(course.velocity)
-    ties, dampers = scene.links.sprung, scene.links.damped
-    bodies = rows(
-        BODY,
-        len(scene.bodies.mass),
-        mass=scene.bodies.mass,
-        ease=1 / scene.bodies.inertia,
-        **named(("x0", "z0"), scene.bodies.rest),
-        **named(("x", "z", "theta"), pose),
-        **named(("vx", "vz", "w"), velocity),
-    )
-    half = np.sin(0.5 * pose[:, 2])
-    bodies["sine"], bodies["versine"] = 2 * half * np.cos(0.5 * pose[:, 2]), 2 * half**2
-    lines = lines_of(scene)
+def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
+    """The system of a scene, undeformed. Faces of masonry end where they end, those of a wall do not."""
+    d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)
+    kind = kinds(d)
+    inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
+    bodies = rows(kind.body, n, mass=scene.bodies.mass, inverse_inertia=inverse, rest=scene.bodies.rest)
+    lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
-        add_joints(lines, scene, masonry, supports)
-    system = System(
-        bodies,
-        lines,
-        links_of(ties.body, ties.at, scene.ties.between, k=ties.k, reach=scene.ties.reach, strength=ties.strength,
-                 push=ties.push, ultimate=ties.ultimate, broken=np.full(len(ties.k), np.inf)),
-        links_of(dampers.body, dampers.at, scene.dampers.between, c=dampers.c),
-        links_of(scene.forces.body, scene.forces.at, scene.forces.force),
-        course.ground,
-        moving(supports),
-    )  # fmt: skip
-    if masonry is not None:
-        take_up_friction(system)
-    return system
+        edges = add_joints(lines, scene, masonry)
+    ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
+    acting = *links_of(scene), Ground.of(None), moving((), d)
+    system = System(scene.freedom.axes, bodies, lines, edges, ways, *acting)
+    return started(system, scene.potential.unmoved.reshape(n, -1))
 
 
 def lines_of(scene: Scene) -> Rows:
     """The contact lines of a scene, whose faces have no end and which stick rigidly."""
     places = scene.places
     return rows(
-        LINE,
+        kinds(scene.bodies.rest.shape[1]).line,
         len(scene.contacts.k),
         body=places.body,
         face=places.face_body,
         support=-1,
         group=scene.contacts.joint,
-        **named(("at_x", "at_z"), places.at),
-        **named(("origin_x", "origin_z"), places.face_at),
-        **named(("normal_x", "normal_z"), places.normal),
-        **named(("between_x", "between_z"), places.between),
+        at=places.at,
+        origin=places.face_at + places.between,
+        normal=places.normal,
         k=scene.contacts.k,
         c=scene.contacts.c,
         k_s=np.inf,
         friction=scene.contacts.friction,
-        low=-FAR,
-        high=FAR,
-        back=-FAR,
-        forth=FAR,
+        margin=np.inf,
     )
 
 
-def links_of(body: Integers, at: Array, between: Array, **given: Array) -> Rows:
-    """Ties, dampers or forces as rows."""
-    if not len(body):
-        return rows(LINK, 0)
-    held = {**named(("at_x", "at_z"), at), **named(("between_x", "between_z"), between)}
-    return rows(LINK, len(body), body=body, **held, **given)
+def links_of(scene: Scene) -> tuple[Rows, Rows, Rows]:
+    """The links with a spring, those with a dashpot, and the constant forces of a scene."""
+    kind, forces = kinds(scene.bodies.rest.shape[1]).link, scene.forces
+
+    def links(some: Links, between: Array, **more: Array | float) -> Rows:
+        columns = {name: getattr(some, name) for name in LinkLaw._fields} | more
+        ends = {"anchor": some.anchor_body, "at": some.at, "origin": some.anchor_at, "between": between}
+        return rows(kind, len(some.body), body=some.body, **columns | ends if len(some.body) else {})
+
+    ties = links(scene.links.sprung, scene.ties.between, reach=scene.ties.reach, broken=np.inf)
+    held: dict[str, Any] = {"anchor": -1, "at": forces.at, "between": forces.force} if len(forces.body) else {}
+    return (
+        ties,
+        links(scene.links.damped, scene.dampers.between),
+        rows(kind, len(forces.body), body=forces.body, **held),
+    )
 
 
-def add_joints(lines: Rows, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> None:
-    """Give lines the shear stiffness of their joint, the ends of its face and edge, and the support that moves it."""
-    of = scene.contacts.joint
-    ends = np.array(
-        [[edge_ends(masonry.blocks[block], joint) for block in (joint.below, joint.above)] for joint in masonry.joints]
-    )  # (joints, below and above, 2)
-    along = np.array([joint.along for joint in masonry.joints])[of]
-    turned = lines["normal_z"] * along[:, 0] - lines["normal_x"] * along[:, 1] < 0  # the point is on the block below
-    place = lines["between_x"] * along[:, 0] + lines["between_z"] * along[:, 1]
-    face = np.where(turned[:, None], ends[of, 1], ends[of, 0])
-    edge = np.where(turned[:, None], ends[of, 0], ends[of, 1]) - place[:, None]
-    face, edge = (np.where(turned[:, None], -values[:, ::-1], values) for values in (face, edge))
-    for (low, high), ends_of in ((("low", "high"), face), (("back", "forth"), edge)):
-        beyond = OVERHANG * (ends_of[:, 1] - ends_of[:, 0])
-        lines[low], lines[high] = ends_of[:, 0] - beyond, ends_of[:, 1] + beyond
+def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
+    """Give lines the shear stiffness of their joint and the ends of its two faces. Returns the edges of all faces."""
+    of, number = scene.contacts.joint, free_numbers(masonry.blocks)
+    origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
+    tables = [
+        edges_of(face, origins[block])
+        for joint, faces in zip(masonry.joints, outlines_of_joints(masonry), strict=True)
+        for block, face in zip((joint.below, joint.above), faces, strict=True)
+    ]
+    edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
+    ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
+    above = number[[joint.above for joint in masonry.joints]][of] == lines["body"]
+    lines["first"], lines["last"] = ends[of, np.where(above, 0, 1)].T
+    lines["own_first"], lines["own_last"] = ends[of, np.where(above, 1, 0)].T
+    lines["margin"] = margins(lines, edges)
     lines["k_s"] = masonry.joint_shear[of] * lines["k"] / masonry.joint_stiffness[of]
     sprung = np.isfinite(lines["k_s"])
     lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]
-    moved = {support.block: i for i, support in enumerate(supports)}
-    below = [moved.get(masonry.joints[j].below, -1) for j in of]
-    lines["support"] = np.where(lines["face"] < 0, below, -1)
+    return edges
 
 
-def moving(supports: Sequence[Support], axes: int = 2) -> Supports:
-    """The supports for compiled functions, in the plane or along three axes."""
+def started(system: System, pose: Array, velocity: Array | None = None) -> System:
+    """The system with its bodies at a pose, shape (n, nq), with velocities, shape (n, nv), or at rest."""
+    bodies, d = system.bodies, len(system.axes)
+    if velocity is None:
+        velocity = np.zeros((len(bodies), 3 * d - 3))
+    bodies["place"], bodies["velocity"] = pose[:, :d], velocity[:, :d]
+    start_turning(bodies, pose, velocity)
+    return system
+
+
+def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
+    """The system with supports that move fixed blocks."""
+    numbers = {support.block: i for i, support in enumerate(supports)}
+    below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
+    of = scene.contacts.joint
+    system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)
+    return system._replace(supports=moving(supports, len(system.axes)))
+
+
+def moving(supports: Sequence[Support], d: int) -> Supports:
+    """The supports for compiled functions, along d axes."""
     sizes = [len(support.t) for support in supports]
     return Supports(
         np.concatenate([np.empty(0), *(support.t for support in supports)]),
-        np.concatenate([np.empty((0, axes)), *(support.displacement for support in supports)]),
+        np.concatenate([np.empty((0, d)), *(support.displacement for support in supports)]),
         np.cumsum([0, *sizes]),
-        np.zeros((len(supports), axes)),
-        np.zeros((len(supports), axes)),
+        np.zeros((len(supports), d)),
+        np.zeros((len(supports), d)),
     )
 
 
-def take_up_friction(system: System) -> None:
-    """Let the lines start with the friction that carries the masonry at rest, the smallest forces that do.
+def copied(system: System) -> System:
+    """A system whose motion leaves the first as it is."""
+    tables = ("bodies", "lines", "edges", "ways", "ties", "dampers", "forces")
+    return system._replace(**{name: getattr(system, name).copy() for name in tables})
+
+
+def friction_at_rest(system: System, pose: Array) -> Array:
+    """The friction that carries masonry of the plane at a pose of rest, the smallest forces that do [N], shape (m, 1).
 
     A structure such as an arch needs friction to stand. Its shear springs would else first have to give way.
     """
     bodies, lines = system.bodies, system.lines
-    normal, along = (line_rates(system, way) for way in ways_of(lines))
-    pose = stacked(bodies, ("x", "z", "theta")).ravel()
-    push = np.maximum(-lines["k"] * (normal @ pose), 0.0)
+    normal, along = (line_rates(lines, way, len(bodies)) for way in ways_of(lines))
+    push = normal_force(lines, normal @ pose.ravel(), 0.0)
     force = normal.T @ push
     force[1::3] -= GRAVITY * bodies["mass"]
     for row in system.forces:
-        arm = row["at_x"], row["at_z"]
         place = 3 * int(row["body"])
-        force[place : place + 2] += row["between_x"], row["between_z"]
-        force[place + 2] += arm[1] * row["between_x"] - arm[0] * row["between_z"]
-    rubs: Flags = (lines["friction"] > 0) & (push > 0)
+        force[place : place + 2] += row["between"]
+        force[place + 2] += row["at"][1] * row["between"][0] - row["at"][0] * row["between"][1]
+    limit, drag = shear_limit(lines, push), np.zeros((len(lines), 1))
+    rubs = limit > 0
     if rubs.any():
         needed = lsmr(along[rubs].T, -force, atol=ENOUGH, btol=ENOUGH, maxiter=5000)[0]
-        most = lines["friction"][rubs] * push[rubs]
-        drag = np.clip(needed, -most, most)
-        sprung = np.isfinite(lines["k_s"][rubs])
-        lines["grip"][rubs] = np.where(sprung, -drag / np.where(sprung, lines["k_s"][rubs], 1.0), drag)
+        drag[rubs, 0] = np.clip(needed, -limit[rubs], limit[rubs])
+    return drag
+
+
+def take_grips(lines: Rows, drag: Array) -> None:
+    """Let lines start with the friction at rest along the ways of their faces [N], shape (m, d - 1)."""
+    force = drag
+    if drag.shape[1] == 2:
+        first, second = np.array([tangents(tuple(normal)) for normal in lines["normal"].tolist()]).swapaxes(0, 1)
+        force = drag[:, :1] * first + drag[:, 1:] * second
+    sprung = np.isfinite(lines["k_s"])[:, None]
+    lines["grip"] = np.where(sprung, -force / np.where(sprung, lines["k_s"][:, None], 1.0), force)

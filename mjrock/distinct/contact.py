@@ -1,11 +1,12 @@
 """A contact line at a pose: where it presses, how fast, and with what force.
 
-The force along the normal is max(0, -(k g + c g')) while the gap g is negative, so never a tension. The dashpot takes
-the velocity half a step before the pose. Along the face a spring of stiffness k_s slips where its force would pass the
-friction, as in distinct-element codes, or the line sticks rigidly, see `friction`.
+The force along the normal is that of `joint_law`. The dashpot takes the velocity half a step before the pose. Along the
+face a spring with a slider acts, or the line sticks rigidly, see `friction`.
 
-A line has moved past the end of its face where the block above overhangs. There the corner of the face presses on the
-edge of the block above, and past the end of that edge too nothing is left of the contact.
+A line beyond the outline of its face has moved past an end of it. The nearest place of the outline then presses on the
+face of the block that carries the line, and past the outline of that face too nothing is left of the contact. Nor is
+anything left of it once the two faces are turned away from each other. A corner that meets a face beyond the joints
+presses where it has come through the face, until it leaves the outline.
 """
 
 from __future__ import annotations
@@ -14,19 +15,34 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined, jitable
-from .system import Books, Row, Rows, Supports, System
+from ..geometry.vectors import (
+    Vector,
+    components,
+    dot,
+    increase,
+    minus,
+    moment,
+    no_spin,
+    plus,
+    put,
+    scaled,
+    spin_components,
+    spun,
+    vector,
+)
+from ..problem.masonry.joint_law import normal_force
+from .faces import is_beside, pulled_inside
+from .friction import along_face, as_vector, carried, list_rigid, sprung_friction
+from .rows import Row, Rows
+from .system import Books, Supports, System
+from .turning import in_body, in_world, rotation_change
 
 OPEN = 1.0
 """Gap of a line that has left its face [m]."""
-OVERHANG = 0.02
-"""Length by which a face is taken to be longer at either end, over its length [-]. The points of a block that stands
-flush lie at the very end of the face, and move to and fro there. Over the same length beyond, the normal turns from
-that of the face to that of the edge of the block above."""
-
-
-ENTERED = 2.0
-"""Depth of a corner in its first step behind an edge, over its way in the step [-]. A deeper one has come round the end
-of the edge, and the edge does not push it."""
+TURNED_OVER = 2 * OPEN
+"""Gap of a line whose block has turned over [m]. The contact is gone for good."""
+NEAR, THROUGH, BESIDE = 1, 2, 3
+"""A corner outside a face, one that has come through it, and one that is behind it and passed beside its outline."""
 
 
 class Meeting(NamedTuple):
@@ -34,165 +50,162 @@ class Meeting(NamedTuple):
 
     Args:
         gap: [m].
-        nx, nz: normal out of the face.
-        rx, rz: from the centroid of the body to the line [m].
-        sx, sz: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
+        normal: out of the face.
+        arm: from the centroid of the body to the line [m].
+        face_arm: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
     """
 
     gap: float
-    nx: float
-    nz: float
-    rx: float
-    rz: float
-    sx: float
-    sz: float
+    normal: Vector
+    arm: Vector
+    face_arm: Vector
 
 
 @inlined
-def meeting(bodies: Rows, line: Row, supports: Supports) -> Meeting:
+def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
     """Where a line is."""
-    body, nx, nz = bodies[line.body], line.normal_x, line.normal_z
-    swung_x = line.at_z * body.sine - line.at_x * body.versine
-    swung_z = -line.at_x * body.sine - line.at_z * body.versine
-    rx, rz = line.at_x + swung_x, line.at_z + swung_z
-    dx, dz = line.between_x + body.x + swung_x, line.between_z + body.z + swung_z
-    sx, sz = rx, rz
+    body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
+    change = rotation_change(body, at)
+    arm, across = plus(at, change), plus(components(line.between, axes), plus(components(body.place, axes), change))
+    face_arm = arm
     if line.face >= 0:
-        face = bodies[line.face]
-        dx -= face.x + line.origin_z * face.sine - line.origin_x * face.versine
-        dz -= face.z - line.origin_x * face.sine - line.origin_z * face.versine
-        nx, nz = (
-            nx + line.normal_z * face.sine - line.normal_x * face.versine,
-            nz - line.normal_x * face.sine - line.normal_z * face.versine,
-        )
-        sx, sz = (body.x0 - face.x0) + (body.x - face.x), (body.z0 - face.z0) + (body.z - face.z)
+        face, origin = system.bodies[line.face], components(line.origin, axes)
+        change = rotation_change(face, origin)
+        across = minus(across, plus(components(face.place, axes), change))
+        face_arm = plus(plus(origin, change), across)
+        normal = plus(normal, rotation_change(face, normal))
     elif line.support >= 0:
-        dx, dz = dx - supports.moved[line.support, 0], dz - supports.moved[line.support, 1]
-    gap = nx * dx + nz * dz
+        across = minus(across, vector(system.supports.moved, line.support, axes))
+    gap = dot(normal, across)
+    if line.corner > 0:
+        return cornered(system, line, across, Meeting(gap, normal, arm, face_arm))
     if gap < 0:
-        place = nz * dx - nx * dz
-        if place < line.low or place > line.high:
-            end = line.low if place < line.low else line.high
-            dx, dz = dx - end * nz, dz + end * nx
-            mx = line.normal_x + line.normal_z * body.sine - line.normal_x * body.versine
-            mz = line.normal_z - line.normal_x * body.sine - line.normal_z * body.versine
-            back = mx * dz - mz * dx
-            gap = OPEN if back < line.back or back > line.forth else mx * dx + mz * dz
-            rx, rz = rx + back * mz, rz - back * mx
-            share = min(abs(place - end) / (OVERHANG * (line.high - line.low)), 1.0)
-            nx, nz = nx + share * (mx - nx), nz + share * (mz - nz)
-            size = math.sqrt(nx * nx + nz * nz)
-            nx, nz = nx / size, nz / size
-    if line.face >= 0:
-        sx, sz = sx + rx, sz + rz
-    return Meeting(gap, nx, nz, rx, rz, sx, sz)
+        if dot(normal, in_world(body, components(line.normal, axes))) < 0:
+            return Meeting(TURNED_OVER, normal, arm, face_arm)
+        if dot(across, across) - gap * gap > line.margin:
+            return at_the_end(system, line, across, Meeting(gap, normal, arm, face_arm))
+    return Meeting(gap, normal, arm, face_arm)
+
+
+@jitable
+def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meeting:
+    """Where a line is that may have moved past the outline of its face, `across` from its place there at rest [m]."""
+    fixed = line.face < 0
+    face, body = system.bodies[max(line.face, 0)], system.bodies[line.body]
+    reached = plus(components(line.origin, across), across if fixed else in_body(face, across))
+    inside, share = pulled_inside(system.edges, line.first, line.last, reached)
+    if share == 0:
+        return meet
+    over = minus(reached, inside)
+    apart = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
+    own = in_world(body, components(line.normal, across))
+    gap = dot(own, apart)
+    along = minus(apart, scaled(gap, own))
+    place = minus(components(line.at, across), in_body(body, along))
+    if is_beside(system.edges, line.own_first, line.own_last, place):
+        gap = OPEN
+    normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
+    normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
+    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along))
+
+
+@jitable
+def cornered(system: System, line: Row, across: Vector, meet: Meeting) -> Meeting:
+    """Where a corner is that may meet a face, `across` from the origin of the face [m]. Beside the face it is open."""
+    if meet.gap >= 0:
+        line.corner = NEAR
+        return meet
+    if line.corner != BESIDE:
+        within = across if line.face < 0 else in_body(system.bodies[line.face], across)
+        place = plus(components(line.origin, across), within)
+        line.corner = BESIDE if is_beside(system.edges, line.first, line.last, place) else THROUGH
+    if line.corner == BESIDE:
+        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm)
+    return meet
 
 
 @inlined
-def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> tuple[float, float]:
+def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting, axes: tuple[int, ...]) -> Vector:
     """Velocity of the point of a line over the face [m/s]."""
     body = bodies[line.body]
-    ux, uz = body.vx + body.w * meet.rz, body.vz - body.w * meet.rx
+    velocity = plus(components(body.velocity, axes), spun(spin_components(body.spin, axes), meet.arm))
     if line.face >= 0:
         face = bodies[line.face]
-        ux, uz = ux - face.vx - face.w * meet.sz, uz - face.vz + face.w * meet.sx
+        of_face = plus(components(face.velocity, axes), spun(spin_components(face.spin, axes), meet.face_arm))
+        velocity = minus(velocity, of_face)
     elif line.support >= 0:
-        ux, uz = ux - supports.moving[line.support, 0], uz - supports.moving[line.support, 1]
-    return ux, uz
-
-
-@inlined
-def carried(line: Row, supports: Supports, x: float, z: float) -> float:
-    """Velocity of the support of a line in a direction, zero where none moves it [m/s]."""
-    if line.support < 0:
-        return 0.0
-    velocity: float = x * supports.moving[line.support, 0] + z * supports.moving[line.support, 1]
+        velocity = minus(velocity, vector(supports.moving, line.support, axes))
     return velocity
 
 
 @inlined
-def add_force(body: Row, rx: float, rz: float, fx: float, fz: float) -> None:
+def add_force(body: Row, arm: Vector, force: Vector) -> None:
     """Add a force at an arm from the centroid of a body [N]."""
-    body.fx += fx
-    body.fz += fz
-    body.moment += rz * fx - rx * fz
+    increase(body.force, force)
+    increase(body.moment, moment(arm, force))
 
 
 @inlined
-def sprung_friction(line: Row, push: float, slip: float, h: float) -> float:
-    """Force of the shear spring with its slider and dashpot [N]. The last velocity has stretched the spring.
-
-    The slider shortens the spring to what friction can hold, and then spring and dashpot together pull no more than
-    that. A dashpot that alone exceeds it stretches no spring, which would put energy in.
-    """
-    most = line.friction * push
-    longest = most / line.k_s
-    line.grip = min(max(line.grip + h * slip, -longest), longest)
-    drag: float = min(max(-line.k_s * line.grip - line.c_s * slip, -most), most)
-    return drag
+def push_apart(bodies: Rows, line: Row, meet: Meeting, force: Vector, turning: Vector) -> None:
+    """Add a force and a moment on the body of a line, and their reaction on the body of the face."""
+    body = bodies[line.body]
+    add_force(body, meet.arm, force)
+    increase(body.moment, turning)
+    if line.face >= 0:
+        face = bodies[line.face]
+        add_force(face, meet.face_arm, scaled(-1.0, force))
+        increase(face.moment, scaled(-1.0, turning))
 
 
 @jitable
-def press_lines(system: System, books: Books, h: float, kick: float) -> int:
+def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple[int, ...]) -> int:
     """Add the forces of all lines but rigid friction, and list the lines that stick rigidly.
 
     Args:
         system, books: the bodies and their lines, and the accounts.
         h: length of the step that led to the pose [s], zero at the start.
         kick: time for which the forces act on the velocities [s].
+        axes: of the system.
 
     Returns:
         How many lines stick rigidly.
     """
     bodies, lines, supports, active = system.bodies, system.lines, system.supports, 0
+    rubbed, put_in = 0.0, 0.0
     for p in range(len(lines)):
         line = lines[p]
-        meet = meeting(bodies, line, supports)
-        if meet.gap >= 0:
+        meet = meeting(system, line, axes)
+        if meet.gap == TURNED_OVER:
+            line.k = line.c = line.friction = 0.0
+        elif meet.gap >= 0:
             line.widest = max(line.widest, meet.gap)
-            if line.push == 0 and line.pressed == 0 and line.dragged == 0:
-                line.grip, line.corner = 0.0, min(line.corner, 1)
+            if line.push == 0 and line.pressed == 0:  # nor was there friction
+                put(line.grip, no_spin(axes))
                 continue
-        ux, uz = relative(bodies, line, supports, meet)
-        rate, slip = meet.nx * ux + meet.nz * uz, meet.nz * ux - meet.nx * uz
-        if line.corner == 1:
-            if meet.gap < -ENTERED * h * abs(rate):
-                continue  # it did not come through this edge
-            line.corner = 2 if meet.gap < 0 else 1
-        sprung = -line.k * min(meet.gap, 0.0)
-        push = max(0.0, sprung - line.c * rate) if meet.gap < 0 else 0.0
+        velocity = relative(bodies, line, supports, meet, axes)
+        rate = dot(meet.normal, velocity)
+        slip = along_face(meet.normal, velocity)
+        sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
-        books.friction[1] += 0.5 * h * (line.push + push) * carried(line, supports, meet.nx, meet.nz)
+        put_in += 0.5 * h * (line.push + push) * carried(line, supports, meet.normal)
         line.push, line.pressed = push, push - sprung
-        middle, drag = -0.5 * min(meet.gap, 0.0), 0.0  # friction rubs halfway into the overlap
+        last, drag = spin_components(line.dragged, axes), no_spin(axes)
+        middle = scaled(-0.5 * min(meet.gap, 0.0), meet.normal)  # friction rubs halfway into the overlap
         if push == 0:
-            line.grip = 0.0
+            put(line.grip, drag)
         elif line.k_s < math.inf:
-            drag = sprung_friction(line, push, slip, h)
-            books.friction[0] -= 0.5 * h * (line.dragged + drag) * slip
-            books.friction[1] += 0.5 * h * (line.dragged + drag) * carried(line, supports, meet.nz, -meet.nx)
+            drag = sprung_friction(bodies, line, meet.normal, slip, push, h)
         elif line.friction > 0:
             books.active[active] = p
+            arms = plus(meet.arm, middle), plus(meet.face_arm, middle)
+            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, arms[0], arms[1])
             active += 1
-            list_rigid(bodies, line, meet, kick * line.friction * push)
-        line.dragged = drag
-        fx, fz, turning = push * meet.nx + drag * meet.nz, push * meet.nz - drag * meet.nx, middle * drag
-        add_force(bodies[line.body], meet.rx, meet.rz, fx, fz)
-        bodies[line.body].moment += turning
-        if line.face >= 0:
-            add_force(bodies[line.face], meet.sx, meet.sz, -fx, -fz)
-            bodies[line.face].moment -= turning
+        put(line.dragged, drag)
+        mean = scaled(0.5 * h, plus(last, drag))
+        rubbed -= dot(mean, slip)
+        put_in += carried(line, supports, as_vector(meet.normal, mean))
+        rubbing = as_vector(meet.normal, drag)
+        push_apart(bodies, line, meet, plus(scaled(push, meet.normal), rubbing), moment(middle, rubbing))
+    books.totals[0].friction += rubbed
+    books.totals[0].ground += put_in
     return active
-
-
-@inlined
-def list_rigid(bodies: Rows, line: Row, meet: Meeting, most: float) -> None:
-    """Prepare the row of a line that sticks rigidly: way and levers of its friction, its most, and what it moves."""
-    middle, body = -0.5 * meet.gap, bodies[line.body]
-    line.way_x, line.way_z, line.most = meet.nz, -meet.nx, most
-    line.lever = meet.rz * meet.nz + meet.rx * meet.nx + middle
-    line.light = 1 / body.mass + body.ease * line.lever**2
-    if line.face >= 0:
-        face = bodies[line.face]
-        line.other = meet.sz * meet.nz + meet.sx * meet.nx + middle
-        line.light += 1 / face.mass + face.ease * line.other**2

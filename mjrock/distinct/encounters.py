@@ -1,16 +1,17 @@
-"""Encounters: blocks that have left their joints meet others, corner against edge.
+"""Encounters: blocks that have left their joints meet others, corner on face.
 
 From time to time the blocks that have moved by more than the width of a joint are looked at. Where a corner of one
-comes near an edge of another that it has no closed joint with, a contact line appears there, and it lasts until the
-next look. It has the stiffness, damping and friction of the softest line of the block that carries the corner. Two
-blocks that overlap when their line appears push each other apart only where they come nearer. The corners of fixed
-blocks meet no edge.
+comes near a face of another that it has no closed joint with, a contact line appears there for each face that the
+corner is outside of, or for the nearest where it is inside. It has the stiffness, damping and friction of the
+softest line of the block that carries the corner. Two blocks that overlap when their line appears push each other apart
+only where they come nearer. A corner that has come through a face presses on it until it leaves its outline, see
+`contact.cornered`, and meets no other face of that block from within. Corners of fixed blocks meet no face, and edges
+that cross do not meet.
 """
 
 from __future__ import annotations
 
-import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,44 +19,53 @@ from ..compiled import compiled, jitable
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from .system import LINE, Rows, System, rows
+from .contact import NEAR, THROUGH
+from .faces import edges_of, outlines_of
+from .rows import Rows, joined, rows
+from .system import System
+from .turning import angles, rotations
 
-NEAR = 2.0
-"""Distance up to which a corner is near an edge, over the way that a block makes until the next look [-]."""
+AHEAD = 2.0
+"""Distance up to which a corner is near a face, over the way that a block makes until the next look [-]."""
 LEAST = 1e-3
-"""Smallest distance up to which a corner is near an edge, over the size of the smallest block [-]."""
+"""Smallest distance up to which a corner is near a face, over the size of the smallest block [-]."""
 MOST = 16
 """Encounters for which there is room, over the number of blocks [-]."""
-CORNERS = 1024
-"""More than the corners and than the faces of any block."""
-KEPT = ("corner", "grip", "push", "pressed", "dragged")
-"""What a line remembers of its last step."""
 
 
 class Look(NamedTuple):
-    """What is looked at for encounters.
+    """What is looked at for encounters, at the pose.
 
     Args:
-        places: corners of all blocks [m], shape (corners, 2).
+        corners: of all blocks [m], shape (corners, d).
         first: where those of each block begin, and where those of the last end, shape (blocks + 1,).
-        order: the blocks by their left ends, shape (blocks,).
-        left, right: lowest and highest x of each block [m], shape (blocks,).
+        normals, offsets: of the faces of all blocks, n and n.x of a point x on each [m], (faces, d) and (faces,).
+        first_face: where those of each block begin, and where those of the last end, shape (blocks + 1,).
+        low, high: least and largest coordinates of each block [m], shape (blocks, d).
+        order: the blocks by their low ends along the axis on which they are spread most, shape (blocks,).
+        axis: its number.
         loose, fixed: which blocks have left their places, and which are fixed, shape (blocks,).
         held: pairs of blocks that have a joint, increasing, see `pair_number`.
+        flush: difference of depths up to which faces count as equally near [m].
     """
 
-    places: Array
+    corners: Array
     first: Integers
+    normals: Array
+    offsets: Array
+    first_face: Integers
+    low: Array
+    high: Array
     order: Integers
-    left: Array
-    right: Array
+    axis: int
     loose: Flags
     fixed: Flags
     held: Integers
+    flush: float
 
 
-class Looking:
-    """What is looked at from time to time, in the plane and in space: which blocks have left their joints.
+class Encounters:
+    """The blocks of masonry, and the lines where they meet beyond their joints.
 
     Args:
         masonry: the masonry.
@@ -63,37 +73,74 @@ class Looking:
         joint: number of the joint of each line. The account of the encounters comes after those of the joints.
     """
 
-    def __init__(self, masonry: Masonry, system: Any, joint: Integers) -> None:
-        self.joints, self.group, self.most = system.lines, len(masonry.joints), MOST * len(masonry.blocks) + 64
-        self.body = free_numbers(masonry.blocks)
+    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
+        blocks = masonry.blocks
+        self.joints, self.group, self.most = system.lines, len(masonry.joints), MOST * len(blocks) + 64
+        self.body = free_numbers(blocks)
         self.widths = narrowest(masonry)
-        self.sizes = np.array([masonry.blocks[i].size for i in masonry.free])
+        self.sizes = np.array([blocks[i].size for i in masonry.free])
         self.softest = softest(self.joints, len(masonry.free))
         self.pairs = pairs_of(masonry, joint)
-        self.keys = np.empty(0, dtype=np.int64)
-        self.overlaps = np.empty(0)
+        self.rest = np.where(self.body[:, None] >= 0, system.bodies["rest"][self.body], 0.0)
+        self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.rest, strict=True)])
+        self.first = np.cumsum([0, *(len(block.corners) for block in blocks)])
+        outlines = [outlines_of(block) for block in blocks]
+        self.first_face = np.cumsum([0, *map(len, outlines)])
+        faces = [(face, at) for sides, at in zip(outlines, self.rest, strict=True) for face in sides]
+        self.normals = np.array([face.normal for face, _ in faces])
+        self.offsets = np.array([((face.corners - at) @ face.normal).mean() for face, at in faces])
+        edges = [edges_of(face, at) for face, at in faces]
+        self.ends = len(system.edges) + np.cumsum([0, *map(len, edges)])  # of the edges of each face
+        self.edges = joined(system.edges, *edges)
+        self.room = np.zeros((self.most, 5))
+        self.keys = np.empty((0, 4), dtype=np.int64)  # of the lines there are, see `_lines`
 
-    def moved(self, bodies: Rows) -> Array:
-        """How far a corner of each body has moved at most [m], shape (bodies,)."""
-        raise NotImplementedError
+    def made_room(self, system: System) -> System:
+        """The system with the edges of all faces, and room for the ways of encounters that stick rigidly."""
+        further = (len(system.axes) - 1) * self.most if len(system.ways) else 0
+        ways = rows(system.ways.dtype, len(system.ways) + further)
+        return system._replace(edges=self.edges, ways=ways)
 
-    def speeds(self, bodies: Rows) -> Array:
-        """The velocity of a corner of each body at most [m/s], shape (bodies,)."""
-        raise NotImplementedError
+    def loose(self, system: System) -> Flags:
+        """Which bodies have a corner that may have moved by more than the narrowest of their joints is wide."""
+        bodies = system.bodies
+        moved = np.linalg.norm(bodies["place"], axis=1) + angles(bodies) * self.sizes
+        return np.asarray(moved > self.widths)
 
-    def loose(self, system: Any) -> Flags:
-        """Which bodies have moved by more than the narrowest of their joints is wide."""
-        return np.asarray(self.moved(system.bodies) > self.widths)
-
-    def looked_for(self, system: Any, loose: Flags, until: float) -> Any:
+    def looked_for(self, system: System, loose: Flags, until: float) -> System:
         """The system with the lines of the encounters that may happen within a time [s]."""
-        raise NotImplementedError
+        bodies, free = system.bodies, self.body >= 0
+        held = self._held(system, loose)
+        places = self.rest + np.where(free[:, None], bodies["place"][self.body], 0.0)
+        turn = np.where(free[:, None, None], rotations(bodies)[self.body], 0.0)
+        of_corner, of_face = (np.repeat(np.arange(len(free)), np.diff(n)) for n in (self.first, self.first_face))
+        corners = places[of_corner] + self.corners + np.einsum("nij,nj->ni", turn[of_corner], self.corners)
+        normals = self.normals + np.einsum("nij,nj->ni", turn[of_face], self.normals)
+        offsets = self.offsets + (normals * places[of_face]).sum(axis=1)
+        low, high = (ends.reduceat(corners, self.first[:-1]) for ends in (np.minimum, np.maximum))
+        axis = int(np.ptp(low, axis=0).argmax())
+        order = np.argsort(low[:, axis], kind="stable")
+        loose_blocks = np.append(loose, False)[self.body]
+        look = Look(
+            corners, self.first, normals, offsets, self.first_face, low, high, order, axis, loose_blocks, ~free, held,
+            LEAST * float(self.sizes.min()),
+        )  # fmt: skip
+        last = self._lasting(system.lines[len(self.joints) :], look)
+        count = near_corners(look, self._near(bodies, until), self.room)
+        met = self.room[:count, :4].astype(np.int64)
+        corner, other = met[:, 1], met[:, 2]
+        within = corners[corner] - places[other]  # corners of one block in the axes of the other
+        within = within + np.einsum("nji,nj->ni", turn[other], within)
+        new = self._unknown(met, self.room[:count, 4])[: self.most - len(last)]
+        lines = self._lines(met[new], within[new], self.room[new, 4])
+        return system._replace(lines=joined(system.lines[: len(self.joints)], last, lines))
 
     def _near(self, bodies: Rows, until: float) -> float:
         """Distance up to which a corner is near what it may meet within a time [m]."""
-        return max(NEAR * float(self.speeds(bodies).max()) * until, LEAST * float(self.sizes.min()))
+        speeds = np.linalg.norm(bodies["velocity"], axis=1) + np.linalg.norm(bodies["spin"], axis=1) * self.sizes
+        return max(AHEAD * float(speeds.max()) * until, LEAST * float(self.sizes.min()))
 
-    def _held(self, system: Any, loose: Flags) -> Integers:
+    def _held(self, system: System, loose: Flags) -> Integers:
         """Pairs of blocks whose joint still touches, as numbers in order. A joint of loose blocks that has opened is
         gone for good."""
         lines = system.lines[: len(self.joints)]
@@ -106,82 +153,50 @@ class Looking:
             lines[name][gone] = 0.0
         return np.asarray(np.setdiff1d(closed, pairs[lines["k"] == 0]), dtype=np.int64)
 
-    def _joined(self, system: Any, lines: Rows) -> Any:
-        """The system with the lines of its joints and those of the encounters."""
-        return system._replace(lines=np.concatenate([system.lines[: len(self.joints)], lines]).view(np.recarray))
+    def _lasting(self, lines: Rows, look: Look) -> Rows:
+        """The lines of corners that have come through their face, or are behind it since the last step."""
+        _, corner, _, face = self.keys.T
+        gaps = (look.normals[face] * look.corners[corner]).sum(axis=1) - look.offsets[face]
+        lasts = (lines["corner"] == THROUGH) | ((lines["corner"] == NEAR) & (gaps < 0))
+        self.keys = self.keys[lasts]
+        lasting: Rows = lines[lasts]
+        return lasting
 
-    def _remembered(self, keys: Integers, gaps: Array) -> tuple[Array, Integers, Integers]:
-        """Overlaps that count as none [m], and which of these encounters are which of those of the last look."""
-        _, new, old = np.intersect1d(keys, self.keys, return_indices=True)
-        overlaps = np.minimum(gaps, 0.0)
-        overlaps[new] = np.maximum(self.overlaps[old], overlaps[new])
-        self.keys, self.overlaps = keys, overlaps
-        return overlaps, new, old
+    def _unknown(self, met: Integers, gaps: Array) -> Integers:
+        """Which corners near faces have no line yet: not one on this face, nor, within the block, one on another."""
+        blocks, faces = len(self.body), len(self.normals)
+        corner_and_block, known = (numbers[:, 1] * blocks + numbers[:, 2] for numbers in (met, self.keys))
+        on_face = np.isin(corner_and_block * faces + met[:, 3], known * faces + self.keys[:, 3])
+        return np.flatnonzero(~on_face & ((gaps > 0) | ~np.isin(corner_and_block, known)))
 
+    def _lines(self, met: Integers, within: Array, gaps: Array) -> Rows:
+        """New lines of encounters.
 
-class Encounters(Looking):
-    """The blocks of masonry as polygons, and the lines where they meet beyond their joints."""
-
-    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
-        super().__init__(masonry, system, joint)
-        blocks = masonry.blocks
-        self.rest = np.column_stack([system.bodies["x0"], system.bodies["z0"]])
-        self.origin = np.where(self.body[:, None] < 0, 0.0, self.rest[self.body])
-        self.first = np.cumsum([0, *(len(block.corners) for block in blocks)])
-        self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.origin, strict=True)])
-        self.room = np.zeros((self.most, 5))
-
-    def moved(self, bodies: Rows) -> Array:
-        """As in `Looking`."""
-        return np.asarray(np.hypot(bodies["x"], bodies["z"]) + np.abs(bodies["theta"]) * self.sizes)
-
-    def speeds(self, bodies: Rows) -> Array:
-        """As in `Looking`."""
-        return np.asarray(np.hypot(bodies["vx"], bodies["vz"]) + np.abs(bodies["w"]) * self.sizes)
-
-    def looked_for(self, system: System, loose: Flags, until: float) -> System:
-        """As in `Looking`."""
-        bodies, near = system.bodies, self._near(system.bodies, until)
-        held = self._held(system, loose)
-        places = self._places(bodies)
-        polygon_loose = np.append(loose, False)[self.body]
-        left, right = (ends.reduceat(places[:, 0], self.first[:-1]) for ends in (np.minimum, np.maximum))
-        order = np.argsort(left, kind="stable").astype(np.int64)
-        looks = Look(places, self.first, order, left, right, polygon_loose, self.body < 0, held)
-        count = near_corners(looks, near, self.room)
-        met = self.room[:count]
-        lines = self._lines(met[:, :4].astype(np.int64), met[:, 4], system.lines[len(self.joints) :])
-        joined: System = self._joined(system, lines)
-        return joined
-
-    def _places(self, bodies: Rows) -> Array:
-        """Corners of all blocks at the pose [m], shape (corners, 2)."""
-        of = np.repeat(self.body, np.diff(self.first))
-        free, (x, z) = of >= 0, self.corners.T
-        sine, versine = (np.where(free, bodies[name][of], 0.0) for name in ("sine", "versine"))
-        at = [np.where(free, bodies[name][of] + bodies[f"{name}0"][of], 0.0) for name in ("x", "z")]
-        return np.column_stack([at[0] + x + z * sine - x * versine, at[1] + z - x * sine - z * versine])
-
-    def _lines(self, numbers: Integers, gaps: Array, last: Rows) -> Rows:
-        """Lines of encounters, the numbers of two blocks with a corner of one and an edge of the other, (count, 4)."""
-        a, corner, b, edge = numbers.T
-        keys = ((a * CORNERS + corner) * len(self.body) + b) * CORNERS + edge
-        overlaps, new, old = self._remembered(keys, gaps)
-        body, face = self.body[a], self.body[b]
-        at = self.corners[self.first[a] + corner]
-        start, end = (self.corners[self.first[b] + (edge + i) % np.diff(self.first)[b]] for i in (0, 1))
-        length = np.hypot(*(end - start).T)
-        normal = np.column_stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]]) / length[:, None]
-        start = start + overlaps[:, None] * normal  # the edge is taken to lie where the corner is
-        between = (self.origin[a] + at) - (self.origin[b] + start)
-        lines = rows(LINE, len(numbers), body=body, face=face, support=-1, group=self.group, corner=1, low=-length)
-        for name, values in (("at", at), ("origin", start), ("normal", normal), ("between", between)):
-            lines[f"{name}_x"], lines[f"{name}_z"] = values.T
-        for name in ("k", "c", "k_s", "c_s", "friction"):
-            lines[name] = self.softest[name][body]
-        for name in KEPT:
-            lines[name][new] = last[name][old]
-        return lines
+        Args:
+            met: two blocks with the numbers of a corner of one and of a face of the other, shape (count, 4).
+            within: the corners, from the centroid of the other block in its axes [m], shape (count, d).
+            gaps: of the corners [m], shape (count,).
+        """
+        block, corner, other, face = met.T
+        at, normal = self.corners[corner], self.normals[face]
+        origin = within - np.maximum(gaps, 0.0)[:, None] * normal  # or the face is taken to lie where the corner is
+        self.keys = np.concatenate([self.keys, met])
+        return rows(
+            self.joints.dtype,
+            len(met),
+            body=self.body[block],
+            face=self.body[other],
+            support=-1,
+            group=self.group,
+            corner=NEAR,
+            at=at,
+            origin=origin,
+            between=self.rest[block] + at - self.rest[other] - origin,
+            normal=normal,
+            first=self.ends[face],
+            last=self.ends[face + 1],
+            **{name: self.softest[name][self.body[block]] for name in ("k", "c", "k_s", "c_s", "friction")},
+        )
 
 
 def narrowest(masonry: Masonry) -> Array:
@@ -229,59 +244,67 @@ def among(values: Integers, number: int) -> bool:
 
 
 @jitable
-def beside(places: Array, i: int, j: int, x: float, z: float) -> tuple[float, float, float]:
-    """Distance of a point from the line of the edge between corners i and j, its place along it, and the length [m]."""
-    ex, ez = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-    size = math.sqrt(ex * ex + ez * ez)
-    dx, dz = x - places[i, 0], z - places[i, 1]
-    return (ez * dx - ex * dz) / size, (ex * dx + ez * dz) / size, size
+def gap_to(look: Look, face: int, corner: int) -> float:
+    """Distance of a corner from the plane of a face [m]."""
+    gap: float = -look.offsets[face]
+    for i in range(look.corners.shape[1]):
+        gap += look.normals[face, i] * look.corners[corner, i]
+    return gap
 
 
 @jitable
-def meet_edges(look: Look, near: float, met: Array, count: int, p: int, corner: int, q: int) -> int:
-    """Write the edges of block q that a corner of block p may come through: all that it is outside of.
+def are_apart(look: Look, near: float, a: int, b: int) -> bool:
+    """Whether two blocks are farther apart than a distance along an axis [m]."""
+    for i in range(look.low.shape[1]):
+        if look.low[a, i] > look.high[b, i] + near or look.low[b, i] > look.high[a, i] + near:
+            return True
+    return False
 
-    Where it is inside already, that is the edge that it is nearest to. Returns how many rows are written by then.
+
+@jitable
+def meet_faces(look: Look, near: float, met: Array, count: int, p: int, q: int) -> int:
+    """Write the faces of block q that corners of block p may come through: all that they are outside of.
+
+    For a corner that is inside already, that is the face that it is nearest to, or the faces if several are so. Returns
+    how many rows are written.
     """
-    places, start, end = look.places, look.first[q], look.first[q + 1]
-    x, z, inside, widest = places[corner, 0], places[corner, 1], -1, -np.inf
-    for i in range(start, end):
-        apart, place, size = beside(places, i, i + 1 if i + 1 < end else start, x, z)
-        if apart > near:
-            return count
-        if apart > widest:
-            inside, widest = i, apart
-    for i in range(start, end):
-        apart, place, size = beside(places, i, i + 1 if i + 1 < end else start, x, z)
-        entered = apart > 0 or (i == inside and widest > -0.5 * size)
-        if entered and -near <= place <= size + near and count < len(met):
-            met[count, 0], met[count, 1], met[count, 2] = p, corner - look.first[p], q
-            met[count, 3], met[count, 4] = i - start, apart
-            count += 1
+    for corner in range(look.first[p], look.first[p + 1]):
+        widest = -np.inf
+        for face in range(look.first_face[q], look.first_face[q + 1]):
+            widest = max(widest, gap_to(look, face, corner))
+            if widest > near:
+                break
+        if widest > near:
+            continue
+        for face in range(look.first_face[q], look.first_face[q + 1]):
+            gap = gap_to(look, face, corner)
+            if gap > min(0.0, widest - look.flush) and count < len(met):
+                met[count, 0], met[count, 1], met[count, 2], met[count, 3] = p, corner, q, face
+                met[count, 4] = gap
+                count += 1
     return count
 
 
 @compiled
 def near_corners(look: Look, near: float, met: Array) -> int:
-    """Write corners nearer than `near` [m] to edges of other blocks: block, corner, other block, edge, gap [m].
+    """Write corners nearer than `near` [m] to other blocks: block, corner, other block, face, gap [m].
 
     Returns:
         How many there are, at most as many as there is room for.
     """
-    first, order, loose, held = look.first, look.order, look.loose, look.held
-    count, blocks = 0, len(first) - 1
+    order, blocks, count = look.order, len(look.order), 0
     for turn in range(blocks):
         a = order[turn]
         for other in range(turn + 1, blocks):
             b = order[other]
-            if look.left[b] > look.right[a] + near:
+            if look.low[b, look.axis] > look.high[a, look.axis] + near:
                 break
-            if not (loose[a] or loose[b]) or among(held, min(a, b) * blocks + max(a, b)):
+            if not (look.loose[a] or look.loose[b]) or are_apart(look, near, a, b):
                 continue
-            for turned in range(2):
-                p, q = (a, b) if turned == 0 else (b, a)
-                if look.fixed[p]:
-                    continue
-                for corner in range(first[p], first[p + 1]):
-                    count = meet_edges(look, near, met, count, p, corner, q)
+            if among(look.held, min(a, b) * blocks + max(a, b)):
+                continue
+            if not look.fixed[a]:
+                count = meet_faces(look, near, met, count, a, b)
+            if not look.fixed[b]:
+                count = meet_faces(look, near, met, count, b, a)
     return count

@@ -4,30 +4,22 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any, TypeGuard
+from typing import Any
 
 import numpy as np
 
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import ON_ITS_FACE, require_flag, require_size, require_within
+from ..quantities import require_flag, require_size, require_within
 from ..result.response import Response, State
 from ..result.start import required_start
-from ..scene.explicit_step import SHARE
-from ..scene.of_case import course_of, require_case, scene_of
-from .assembly import system_of
-from .encounters import Encounters
-from .following import Setup, follow, steps_of
-from .limit import longest_step
-from .loop import Clock, advance
+from ..scene.of_case import require_case
+from .following import follow, steps_of
+from .loop import Clock
 from .reading import Run, response_of
-from .space.setup import setup_in_space
+from .setup import setup_of
 from .system import Books, Samples
-
-SHARE_OF_A_WALL = 0.005
-"""Step that is taken for a wall, over the longest stable one [-]. A touch inside a step is met up to half a step late,
-which scatters |e| of a wall against a stop by some 0.5 % with 0.02 and by 0.1 % with 0.005."""
 
 
 def solve_explicit(
@@ -71,7 +63,7 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
     output_step = require_within("output_step", output_step, 1e-9, 1e3, "s")
     state = None if start is None else required_start(start, case)
-    setup = setup_in_space(case, state) if in_space(case) else setup_in_plane(case, contacts, state)
+    setup = setup_of(case, contacts, state)
     scene, limit = setup.scene, setup.limit
     spacing = min(output_step, setup.course.duration, setup.spacing)
     h, every = steps_of(timestep, setup.share * limit, limit, spacing)
@@ -79,12 +71,12 @@ def solve_explicit(
     require_size(
         "the samples of this answer", count * len(scene.bodies.names), "raise output_step or follow it for less"
     )
-    links, groups = scene.links, scene.contacts.joints
-    columns = 2 + (len(links.damped.names) + 2 * len(links.sprung.names) + len(groups) + 1 if ledger else 0)
+    books = Books.of(
+        setup.system, len(scene.contacts.joints) + 1, 0 if setup.encounters is None else setup.encounters.most
+    )
     if ledger:
-        require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
-    books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else setup.encounters.most)
-    samples = Samples.of(count, len(scene.bodies.names), columns, setup.freedom)
+        require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
+    samples = Samples.of(count, len(scene.bodies.names), books, scene.freedom, ledger=ledger)
     stepping = time.perf_counter()
     system, steps, kept = follow(setup, books, samples, Clock(0, h, every, 0, count, setup.ends))
     took = time.perf_counter() - stepping
@@ -96,30 +88,8 @@ def solve_explicit(
         "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
         "stepping_time": took,
     }
-    samples = Samples(*(part[:kept] for part in samples))
+    samples = samples.taken(slice(kept))
     run = Run(case, contacts, scene, setup.course, system, books, samples, h * every)
     response = response_of(run, ledger=ledger, stride=max(1, round(output_step / (h * every))), stats=stats)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response
-
-
-def setup_in_plane(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
-    """A wall or masonry in the plane at its start."""
-    scene = scene_of(case, contacts)
-    course = course_of(case, scene)
-    if state is not None:
-        course = course.continued(*state)
-    masonry, supports = (case.masonry, case.supports) if isinstance(case, MasonryCase) else (None, ())
-    system = system_of(scene, course, masonry, supports)
-    limit = longest_step(system)
-    if masonry is None:
-        assert isinstance(case, Case)
-        # peaks and impacts are read off the samples
-        return Setup(scene, course, system, advance, limit, SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
-    encounters = Encounters(masonry, system, scene.contacts.joint)
-    return Setup(scene, course, system, advance, limit, SHARE, encounters=encounters)
-
-
-def in_space(case: Case | MasonryCase) -> TypeGuard[MasonryCase]:
-    """Whether a case is one of masonry in space."""
-    return isinstance(case, MasonryCase) and case.masonry.in_space

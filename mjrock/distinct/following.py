@@ -1,51 +1,19 @@
-"""Following a system by explicit steps, in the plane or in space: what is set up, how long a step is, and the steps."""
+"""Following a system by explicit steps: how long a step is, and the steps."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
 
 from tqdm import tqdm
 
-from ..geometry.frames import PLANE, Freedom
-from ..scene.course import Course
-from ..scene.scene import Scene
-from .encounters import Looking
-from .loop import Clock
-from .system import Books, Samples
+from .loop import Clock, advance
+from .setup import Setup
+from .system import Books, Samples, System
 
 AT_ONCE = 2e7
 """Steps of a line that are made before the progress bar moves and Ctrl-C is heard: about a second."""
 LOOK = 5e-3
 """Longest time between two looks for blocks that meet others [s]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Setup:
-    """A system at its start, and how it is followed.
-
-    Args:
-        scene, course, system: what stands, what happens to it, and its rows.
-        advance: the compiled steps.
-        limit, share: the longest stable step [s], and the step that is taken over it [-].
-        spacing: largest spacing of the samples [s].
-        ends: rotation at which the run ends [rad].
-        freedom: of the bodies.
-        encounters: where blocks that fall meet others, or None where that is not followed.
-    """
-
-    scene: Scene
-    course: Course
-    system: Any
-    advance: Callable[..., tuple[int, int, bool]]
-    limit: float
-    share: float
-    spacing: float = math.inf
-    ends: float = math.inf
-    freedom: Freedom = PLANE
-    encounters: Looking | None = None
 
 
 def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
@@ -61,7 +29,7 @@ def steps_of(timestep: float | None, taken: float, limit: float, spacing: float)
     return timestep, max(1, round(spacing / timestep))
 
 
-def follow(setup: Setup, books: Books, samples: Samples, clock: Clock) -> tuple[Any, int, int]:
+def follow(setup: Setup, books: Books, samples: Samples, clock: Clock) -> tuple[System, int, int]:
     """Make the steps, with a progress bar where they take more than some seconds.
 
     Returns:
@@ -77,7 +45,7 @@ def follow(setup: Setup, books: Books, samples: Samples, clock: Clock) -> tuple[
                 loose = encounters.loose(system)
                 if loose.any():
                     system = encounters.looked_for(system, loose, rows * sample)
-            step, row, ended = setup.advance(system, books, samples, clock._replace(rows=min(rows, total - clock.row)))
+            step, row, ended = advance(system, books, samples, clock._replace(rows=min(rows, total - clock.row)))
             bar.update(row - clock.row)
             clock = clock._replace(step=step, row=row)
     return system, clock.step, clock.row

@@ -1,16 +1,41 @@
-"""Rigid friction: impulses along the faces that stop the slip, as far as Coulomb's law lets them.
+"""Friction along a face: one way in the plane, two in space.
 
-They are found by projected Gauss-Seidel: one line after the other gets the impulse that stops its slip, at most mu
-times its pressure, until the impulses no longer change. They start from those of the last step. A unit impulse along
-the way of a line moves its body along it and turns it by the lever, and the body of the face against it.
+A line with a shear stiffness has a spring with a slider, as in distinct-element codes: its force is no larger than the
+face holds. What it keeps is the stretch of the spring, in the plane a number along the face and in space a vector in
+the axes of the face.
+
+A line that sticks rigidly gets an impulse along its face that stops the slip, as far as Coulomb's law lets it. The
+impulses of all lines are found by projected Gauss-Seidel: one line after the other gets the impulse that stops its
+slip, until the impulses no longer change. They start from those of the last step. In space, where this impulse is more
+than the face holds, the point gets one against its slip instead, shortened to what the face holds. In the end the
+friction of a point that slips is against its slip.
 """
 
 from __future__ import annotations
 
+import math
+
 from ..compiled import inlined, jitable
+from ..geometry.vectors import (
+    Vector,
+    components,
+    dot,
+    increase,
+    minus,
+    moment,
+    plus,
+    put,
+    scaled,
+    spin_components,
+    spun,
+    tangent,
+    vector,
+)
+from ..problem.masonry.joint_law import shear_limit
 from ..quantities import Integers
-from .contact import carried
-from .system import Books, Row, Rows, Supports, System
+from .rows import Row, Rows
+from .system import Books, Supports, System
+from .turning import in_body, in_world, spin_from_moment, strike_spin
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -19,69 +44,234 @@ SETTLED = 1e-3
 
 
 @inlined
-def slip_of(bodies: Rows, line: Row, supports: Supports) -> float:
-    """Velocity along its face of a line that sticks rigidly [m/s]."""
-    body = bodies[line.body]
-    slip: float = line.way_x * body.vx + line.way_z * body.vz + line.lever * body.w
-    if line.face >= 0:
-        face = bodies[line.face]
-        slip -= line.way_x * face.vx + line.way_z * face.vz + line.other * face.w
-    return slip - carried(line, supports, line.way_x, line.way_z)
+def along_face(normal: Vector, a: Vector) -> Vector:
+    """The part of a vector along a face: a number along its tangent in the plane, where it stays, a vector in space."""
+    if len(a) == 1:
+        return a
+    if len(a) == 2:
+        return (dot(tangent(normal), a),)
+    return minus(a, scaled(dot(normal, a), normal))
 
 
 @inlined
-def strike(bodies: Rows, line: Row, impulse: float) -> None:
-    """Change the velocities on both sides of a line by an impulse [N s]."""
-    body = bodies[line.body]
-    body.vx += line.way_x * impulse / body.mass
-    body.vz += line.way_z * impulse / body.mass
-    body.w += line.lever * impulse * body.ease
+def as_vector(normal: Vector, a: Vector) -> Vector:
+    """A vector of the world from its part along a face."""
+    if len(a) == 1:
+        return scaled(a[0], tangent(normal))
+    return a
+
+
+@inlined
+def shortened(a: Vector, limit: float) -> Vector:
+    """A vector that is no longer than a limit."""
+    if len(a) == 1:
+        return (min(max(a[0], -limit), limit),)
+    square = dot(a, a)
+    return a if square <= limit * limit else scaled(limit / math.sqrt(square), a)
+
+
+@inlined
+def carried(line: Row, supports: Supports, way: Vector) -> float:
+    """Velocity of the support of a line along a vector, zero where none moves it."""
+    if line.support < 0:
+        return 0.0
+    return dot(way, vector(supports.moving, line.support, way))
+
+
+@inlined
+def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push: float, h: float) -> Vector:
+    """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it.
+
+    The slider shortens the spring to what the face holds, and then spring and dashpot together pull no more than that.
+    A dashpot that alone exceeds it stretches no spring, which would put energy in.
+    """
+    grip, limit = spin_components(line.grip, normal), shear_limit(line, push)
     if line.face >= 0:
-        face = bodies[line.face]
-        face.vx -= line.way_x * impulse / face.mass
-        face.vz -= line.way_z * impulse / face.mass
-        face.w -= line.other * impulse * face.ease
+        grip = in_world(bodies[line.face], grip)
+    grip = shortened(along_face(normal, plus(grip, scaled(h, slip))), limit / line.k_s)
+    drag = shortened(minus(scaled(-line.k_s, grip), scaled(line.c_s, slip)), limit)
+    if line.face >= 0:
+        grip = in_body(bodies[line.face], grip)
+    put(line.grip, grip)
+    return drag
+
+
+@inlined
+def way_along(normal: Vector, number: int) -> Vector:
+    """One of the directions along a face."""
+    if len(normal) == 2:
+        return tangent(normal)
+    x, y, z = normal
+    if abs(z) > 0.5:
+        size = 1 / math.sqrt(x * x + z * z)
+        first = (z * size, 0.0, -x * size)
+    else:
+        size = 1 / math.sqrt(x * x + y * y)
+        first = (-y * size, x * size, 0.0)
+    return first if number == 0 else spun(normal, first)
+
+
+@inlined
+def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vector, face_arm: Vector) -> None:
+    """Prepare the ways of a line that sticks rigidly.
+
+    Args:
+        system: the bodies, and the room for the ways.
+        line: the line.
+        first: number of its first way.
+        normal: of its face.
+        arm, face_arm: from the two centroids to where friction acts [m].
+    """
+    body, face, on_face = system.bodies[line.body], system.bodies[max(line.face, 0)], line.face >= 0
+    for i in range(len(normal) - 1):
+        row, way = system.ways[first + i], way_along(normal, i)
+        lever = moment(arm, way)
+        spin = spin_from_moment(body, lever)
+        put(row.way, way)
+        put(row.lever, lever)
+        put(row.spin, spin)
+        row.compliance = 1 / body.mass + dot(lever, spin)
+        if on_face:
+            lever = moment(face_arm, way)
+            spin = spin_from_moment(face, lever)
+            put(row.lever_on_face, lever)
+            put(row.spin_of_face, spin)
+            row.compliance += 1 / face.mass + dot(lever, spin)
+    if len(normal) == 3:
+        a, b = system.ways[first], system.ways[first + 1]
+        a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
+        if on_face:
+            a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
+
+
+@inlined
+def slip_along(system: System, line: Row, row: Row, axes: tuple[int, ...]) -> float:
+    """Velocity along a way of a line that sticks rigidly [m/s]."""
+    body, way = system.bodies[line.body], components(row.way, axes)
+    slip = dot(way, components(body.velocity, axes))
+    slip += dot(spin_components(row.lever, axes), spin_components(body.spin, axes))
+    if line.face >= 0:
+        face = system.bodies[line.face]
+        slip -= dot(way, components(face.velocity, axes))
+        slip -= dot(spin_components(row.lever_on_face, axes), spin_components(face.spin, axes))
+    return slip - carried(line, system.supports, way)
+
+
+@inlined
+def strike(system: System, line: Row, row: Row, impulse: float, axes: tuple[int, ...]) -> None:
+    """Let an impulse along a way act on the body of a line and on that of its face [N s]."""
+    body, way = system.bodies[line.body], components(row.way, axes)
+    increase(body.velocity, scaled(impulse / body.mass, way))
+    strike_spin(body, impulse, spin_components(row.lever, axes), spin_components(row.spin, axes))
+    if line.face >= 0:
+        face = system.bodies[line.face]
+        increase(face.velocity, scaled(-impulse / face.mass, way))
+        strike_spin(face, -impulse, spin_components(row.lever_on_face, axes), spin_components(row.spin_of_face, axes))
+
+
+@inlined
+def begin(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> float:
+    """Start with the friction of the last step. Returns the most that the face holds [N s]."""
+    limit: float = kick * shear_limit(line, line.push)
+    grip = scaled(kick, spin_components(line.grip, axes))
+    if line.face >= 0:
+        grip = in_world(system.bodies[line.face], grip)
+    if len(axes) == 2:
+        impulses = shortened(grip, limit)
+    else:
+        a, b = system.ways[first], system.ways[first + 1]
+        impulses = shortened((dot(components(a.way, axes), grip), dot(components(b.way, axes), grip)), limit)
+    for i in range(len(axes) - 1):
+        row = system.ways[first + i]
+        row.impulse = impulses[i]
+        strike(system, line, row, row.impulse, axes)
+    return limit
+
+
+@inlined
+def stopping(system: System, line: Row, first: int, limit: float, axes: tuple[int, ...]) -> Vector:
+    """The impulses along its ways that stop the slip of a line as far as its face can [N s]."""
+    a = system.ways[first]
+    slip = slip_along(system, line, a, axes)
+    if len(axes) == 2:
+        return shortened((a.impulse - slip / a.compliance,), limit)
+    b = system.ways[first + 1]
+    other = slip_along(system, line, b, axes)
+    area = a.compliance * b.compliance - a.coupling * a.coupling
+    along = a.impulse - (b.compliance * slip - a.coupling * other) / area
+    across = b.impulse - (a.compliance * other - a.coupling * slip) / area
+    if along * along + across * across > limit * limit:  # it slips, and friction is against the slip
+        half = 0.5 * (a.compliance - b.compliance)
+        loosest = 0.5 * (a.compliance + b.compliance) + math.sqrt(half * half + a.coupling * a.coupling)
+        along, across = a.impulse - slip / loosest, b.impulse - other / loosest
+        shorter = min(1.0, limit / math.sqrt(along * along + across * across))
+        along, across = shorter * along, shorter * across
+    return along, across
+
+
+@inlined
+def stop(system: System, line: Row, first: int, limit: float, axes: tuple[int, ...]) -> float:
+    """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
+    impulses, changed = stopping(system, line, first, limit, axes), 0.0
+    for i in range(len(axes) - 1):
+        row = system.ways[first + i]
+        change = impulses[i] - row.impulse
+        strike(system, line, row, change, axes)
+        row.impulse = impulses[i]
+        changed = max(changed, abs(change))
+    return changed
 
 
 @jitable
-def stick(system: System, active: Integers, count: int, kick: float) -> None:
-    """Stop the slip of the lines that stick rigidly. Their impulses are left in `dragged` [N s]."""
-    bodies, lines, largest = system.bodies, system.lines, 0.0
+def stick(system: System, active: Integers, count: int, kick: float, axes: tuple[int, ...]) -> None:
+    """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s]."""
+    lines, each, largest = system.lines, len(axes) - 1, 0.0
     for i in range(count):
-        line = lines[active[i]]
-        line.dragged = min(max(kick * line.grip, -line.most), line.most)
-        strike(bodies, line, line.dragged)
-        largest = max(largest, line.most)
+        largest = max(largest, begin(system, lines[active[i]], each * i, kick, axes))
     for sweep in range(SWEEPS):
         changed = 0.0
         for turn in range(count):
-            line = lines[active[turn if sweep % 2 else count - 1 - turn]]
-            impulse = line.dragged - slip_of(bodies, line, system.supports) / line.light
-            impulse = min(max(impulse, -line.most), line.most)
-            change = impulse - line.dragged
-            strike(bodies, line, change)
-            line.dragged = impulse
-            changed = max(changed, abs(change))
+            i = turn if sweep % 2 else count - 1 - turn
+            line = lines[active[i]]
+            changed = max(changed, stop(system, line, each * i, kick * shear_limit(line, line.push), axes))
         if changed <= SETTLED * largest:
             break
     for i in range(count):
-        lines[active[i]].grip = lines[active[i]].dragged / kick
+        keep_rigid(system, lines[active[i]], each * i, kick, axes)
+
+
+@inlined
+def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> None:
+    """Keep the friction of a line that sticks rigidly for the next step [N]."""
+    a = system.ways[first]
+    if len(axes) == 2:
+        line.grip[0] = a.impulse / kick
+    else:
+        b = system.ways[first + 1]
+        grip = plus(
+            scaled(a.impulse / kick, components(a.way, axes)), scaled(b.impulse / kick, components(b.way, axes))
+        )
+        if line.face >= 0:
+            grip = in_body(system.bodies[line.face], grip)
+        put(line.grip, grip)
 
 
 @jitable
-def note_slips(system: System, active: Integers, count: int) -> None:
+def note_slips(system: System, active: Integers, count: int, axes: tuple[int, ...]) -> None:
     """Keep the slip of the lines that stick rigidly before the forces act."""
-    for i in range(count):
-        line = system.lines[active[i]]
-        line.sliding = slip_of(system.bodies, line, system.supports)
+    each = len(axes) - 1
+    for i in range(each * count):
+        row = system.ways[i]
+        row.slip = slip_along(system, system.lines[active[i // each]], row, axes)
 
 
 @jitable
-def book_rubbing(system: System, books: Books, count: int) -> None:
+def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> None:
     """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
     the supports put in through it."""
-    for i in range(count):
-        line = system.lines[books.active[i]]
-        slip = 0.5 * (line.sliding + slip_of(system.bodies, line, system.supports))
-        books.friction[0] -= line.dragged * slip
-        books.friction[1] += line.dragged * carried(line, system.supports, line.way_x, line.way_z)
+    totals, each = books.totals[0], len(axes) - 1
+    for i in range(each * count):
+        row, line = system.ways[i], system.lines[books.active[i // each]]
+        slip = 0.5 * (row.slip + slip_along(system, line, row, axes))
+        totals.friction -= row.impulse * slip
+        totals.ground += row.impulse * carried(line, system.supports, components(row.way, axes))

@@ -1,4 +1,4 @@
-"""Ties, dampers and constant forces on bodies, and the supports that move."""
+"""Ties, dampers and constant forces on bodies, from the ground or from another body, and the supports that move."""
 
 from __future__ import annotations
 
@@ -6,77 +6,122 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined, jitable
+from ..geometry.vectors import Vector, components, dot, minus, plus, scaled, spin_components, spun
 from .contact import add_force
-from .system import Books, Row, Supports, System
-from .yielding import elongation, let_yield
+from .rows import Row, Rows
+from .system import Books, Supports, System
+from .turning import rotation_change
 
 
 class Pull(NamedTuple):
-    """A link at a pose: its length [m], its direction away from the anchor, and the arm to its point [m]."""
+    """A link at a pose: its length [m], its direction away from the anchor, and the arms to its two ends [m]."""
 
     length: float
-    nx: float
-    nz: float
-    rx: float
-    rz: float
+    way: Vector
+    arm: Vector
+    anchor_arm: Vector
 
 
 @inlined
-def pull(link: Row, body: Row) -> Pull:
+def pull(link: Row, bodies: Rows, axes: tuple[int, ...]) -> Pull:
     """Where a tie or a damper is."""
-    swung_x = link.at_z * body.sine - link.at_x * body.versine
-    swung_z = -link.at_x * body.sine - link.at_z * body.versine
-    dx, dz = link.between_x + body.x + swung_x, link.between_z + body.z + swung_z
-    length = math.sqrt(dx * dx + dz * dz)
-    return Pull(length, dx / length, dz / length, link.at_x + swung_x, link.at_z + swung_z)
+    body, at = bodies[link.body], components(link.at, axes)
+    change = rotation_change(body, at)
+    arm, across = plus(at, change), plus(components(link.between, axes), plus(components(body.place, axes), change))
+    anchor_arm = components(link.origin, axes)
+    if link.anchor >= 0:
+        anchor = bodies[link.anchor]
+        change = rotation_change(anchor, anchor_arm)
+        across = minus(across, plus(components(anchor.place, axes), change))
+        anchor_arm = plus(anchor_arm, change)
+    length = math.sqrt(dot(across, across))
+    return Pull(length, scaled(1 / length, across), arm, anchor_arm)
+
+
+@inlined
+def act(link: Row, bodies: Rows, now: Pull, force: float) -> None:
+    """Add a force along a link on the bodies at both ends [N], positive where it pushes them apart."""
+    add_force(bodies[link.body], now.arm, scaled(force, now.way))
+    if link.anchor >= 0:
+        add_force(bodies[link.anchor], now.anchor_arm, scaled(-force, now.way))
+
+
+@inlined
+def lengthening(link: Row, bodies: Rows, now: Pull, axes: tuple[int, ...]) -> float:
+    """Rate of the length of a link [m/s]."""
+    body = bodies[link.body]
+    velocity = plus(components(body.velocity, axes), spun(spin_components(body.spin, axes), now.arm))
+    if link.anchor >= 0:
+        anchor = bodies[link.anchor]
+        of_anchor = plus(components(anchor.velocity, axes), spun(spin_components(anchor.spin, axes), now.anchor_arm))
+        velocity = minus(velocity, of_anchor)
+    return dot(now.way, velocity)
+
+
+@inlined
+def elongation(tie: Row, length: float) -> float:
+    """Elastic elongation of a link with a spring [m], zero where one that only pulls is slack."""
+    elastic: float = length - tie.reach
+    return elastic if tie.push > 0 else max(0.0, elastic)
 
 
 @jitable
-def pull_links(system: System, books: Books, t: float, h: float) -> None:
+def let_yield(tie: Row, length: float, books: Books, i: int, t: float) -> None:
+    """Let link i yield at its length [m], break where it has been drawn out as far as it can be, and book it."""
+    beyond, shorter = length - tie.reach - tie.strength / tie.k, tie.reach - length - tie.push / tie.k
+    if beyond > 0:
+        left = tie.ultimate - tie.drawn
+        tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
+        books.ties[i] += tie.strength * min(beyond, left)
+        if beyond >= left:
+            tie.broken = t
+            books.broken[i] = 0.5 * tie.strength**2 / tie.k
+    elif tie.push > 0 and shorter > 0:
+        tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter
+        books.ties[i] += tie.push * shorter
+
+
+@jitable
+def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int, ...]) -> None:
     """Add the forces of ties, dampers and constant forces at time t, and book what the last step of length h took."""
+    bodies = system.bodies
     for i in range(len(system.ties)):
         tie = system.ties[i]
         if t >= tie.broken:
             continue
-        body = system.bodies[tie.body]
-        now = pull(tie, body)
+        now = pull(tie, bodies, axes)
         let_yield(tie, now.length, books, i, t)
-        if tie.broken <= t:
-            continue
-        force = -tie.k * elongation(tie, now.length)
-        add_force(body, now.rx, now.rz, force * now.nx, force * now.nz)
+        if tie.broken > t:
+            act(tie, bodies, now, -tie.k * elongation(tie, now.length))
     for i in range(len(system.dampers)):
         damper = system.dampers[i]
-        body = system.bodies[damper.body]
-        now = pull(damper, body)
-        rate = now.nx * (body.vx + body.w * now.rz) + now.nz * (body.vz - body.w * now.rx)
+        now = pull(damper, bodies, axes)
+        rate = lengthening(damper, bodies, now, axes)
         force = -damper.c * rate
         books.dampers[i] -= 0.5 * h * (force + damper.pulled) * rate
         damper.pulled = force
-        add_force(body, now.rx, now.rz, force * now.nx, force * now.nz)
+        act(damper, bodies, now, force)
     for i in range(len(system.forces)):
-        force_row = system.forces[i]
-        body = system.bodies[force_row.body]
-        rx = force_row.at_x + force_row.at_z * body.sine - force_row.at_x * body.versine
-        rz = force_row.at_z - force_row.at_x * body.sine - force_row.at_z * body.versine
-        add_force(body, rx, rz, force_row.between_x, force_row.between_z)
+        row = system.forces[i]
+        body, at = bodies[row.body], components(row.at, axes)
+        add_force(body, plus(at, rotation_change(body, at)), components(row.between, axes))
 
 
 @jitable
-def linked_energy(system: System) -> tuple[float, float]:
+def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
     """Potential energy of constant forces, and energy in the springs of the ties [J]."""
     falls, elastic = 0.0, 0.0
     for i in range(len(system.ties)):
         tie = system.ties[i]
         if tie.broken < math.inf:
             continue
-        stretched = elongation(tie, pull(tie, system.bodies[tie.body]).length)
+        stretched = elongation(tie, pull(tie, system.bodies, axes).length)
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.forces)):
-        force = system.forces[i]
-        body = system.bodies[force.body]
-        falls -= force.between_x * (body.x + force.at_z * body.sine - force.at_x * body.versine)
-        falls -= force.between_z * (body.z - force.at_x * body.sine - force.at_z * body.versine)
+        row = system.forces[i]
+        body = system.bodies[row.body]
+        moved = plus(components(body.place, axes), rotation_change(body, components(row.at, axes)))
+        falls -= dot(components(row.between, axes), moved)
     return falls, elastic
 
 

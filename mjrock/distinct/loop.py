@@ -1,7 +1,7 @@
-"""The explicit steps: forces at the pose, then velocities, then the pose.
+"""The explicit steps: forces at the pose, then velocities and spins, then the pose.
 
-Velocities stand half a step before the pose, and the step is symplectic Euler's. At the start they stand at the pose,
-and the forces act on them for half a step.
+Velocities and spins stand half a step before the pose, and the step is symplectic Euler's. At the start they stand at
+the pose, and the forces act on them for half a step.
 """
 
 from __future__ import annotations
@@ -9,13 +9,37 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined, jitable
+from ..geometry.vectors import (
+    Vector,
+    components,
+    dot,
+    increase,
+    minus,
+    no_spin,
+    plus,
+    put,
+    scaled,
+    spin_components,
+)
+from ..problem.masonry.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
-from ..scene.ground import mean_acceleration
+from ..scene.ground import Ground, mean_acceleration
 from .contact import meeting, press_lines
 from .friction import book_rubbing, note_slips, stick
 from .links import linked_energy, move_supports, pull_links
-from .system import Books, Rows, Samples, System
+from .rows import Rows
+from .system import Books, Samples, System
+from .turning import (
+    apply_inverse_inertia,
+    in_body,
+    kick_spin,
+    momentum_of,
+    take_turn,
+    turn_body,
+    turns_within,
+    write_turn,
+)
 
 GONE = 1e6
 """Displacement beyond which a run has broken down [m]."""
@@ -41,96 +65,123 @@ class Clock(NamedTuple):
     ends: float
 
 
+@inlined
+def accelerated(ground: Ground, t: float, h: float, axes: tuple[int, ...]) -> Vector:
+    """Mean acceleration of the ground over the window of a step [m/s2]."""
+    x, z = mean_acceleration(ground.x, t, h), mean_acceleration(ground.z, t, h)
+    if len(axes) == 2:
+        return x, z
+    return x, mean_acceleration(ground.y, t, h), z
+
+
+@inlined
+def upwards(size: float, axes: tuple[int, ...]) -> Vector:
+    """A vertical vector."""
+    if len(axes) == 2:
+        return 0.0, size
+    return 0.0, 0.0, size
+
+
 @jitable
-def weigh(system: System, books: Books, t: float, h: float, kick: float) -> None:
+def start_forces(system: System, books: Books, t: float, h: float, kick: float, axes: tuple[int, ...]) -> None:
     """Start the forces with weight and ground motion, and book the work of the ground in the last step."""
-    accounts, last = books.friction, h if kick == h else 0.0
-    push_x = mean_acceleration(system.ground.x, t, h) * h / kick
-    push_z = mean_acceleration(system.ground.z, t, h) * h / kick
-    mean_x, mean_z = 0.5 * (push_x + accounts[2]), 0.5 * (push_z + accounts[3])
+    totals, last, done = books.totals[0], h if kick == h else 0.0, 0.0
+    push = scaled(h / kick, accelerated(system.ground, t, h, axes))
+    mean = scaled(0.5, plus(push, components(totals.push, axes)))
+    weight = plus(push, upwards(GRAVITY, axes))
     for b in range(len(system.bodies)):
         body = system.bodies[b]
-        half = math.sin(0.5 * body.theta)
-        body.sine, body.versine = 2 * half * math.cos(0.5 * body.theta), 2 * half * half
-        accounts[1] -= last * body.mass * (mean_x * body.vx + mean_z * body.vz)
-        body.fx, body.fz, body.moment = -body.mass * push_x, -body.mass * (GRAVITY + push_z), 0.0
-    accounts[2], accounts[3] = push_x, push_z
+        take_turn(body, axes)
+        done -= last * body.mass * dot(mean, components(body.velocity, axes))
+        put(body.force, scaled(-body.mass, weight))
+        put(body.moment, no_spin(axes))
+    totals.ground += done
+    put(totals.push, push)
 
 
 @jitable
-def kick_bodies(bodies: Rows, kick: float) -> None:
-    """Let the forces act on the velocities for a time [s]."""
+def kick_bodies(bodies: Rows, kick: float, axes: tuple[int, ...]) -> None:
+    """Let forces and moments act for a time [s]."""
     for b in range(len(bodies)):
         body = bodies[b]
-        body.vx += kick * body.fx / body.mass
-        body.vz += kick * body.fz / body.mass
-        body.w += kick * body.moment * body.ease
+        increase(body.velocity, scaled(kick / body.mass, components(body.force, axes)))
+        kick_spin(body, kick, axes)
 
 
 @jitable
-def move_bodies(bodies: Rows, h: float) -> None:
+def move_bodies(bodies: Rows, h: float, axes: tuple[int, ...]) -> None:
     """Move the bodies by a step."""
     for b in range(len(bodies)):
         body = bodies[b]
-        body.x += h * body.vx
-        body.z += h * body.vz
-        body.theta += h * body.w
+        increase(body.place, scaled(h, components(body.velocity, axes)))
+        turn_body(body, h, axes)
 
 
 @jitable
-def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
-    """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work."""
+def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+    """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work.
+
+    In place of the spins the angular momenta are kept for now, see `keep_velocity`."""
+    d = len(axes)
     for b in range(len(system.bodies)):
         body, pose, velocity = system.bodies[b], samples.pose[row, b], samples.velocity[row, b]
-        pose[0], pose[1], pose[2] = body.x, body.z, body.theta
-        velocity[0], velocity[1], velocity[2] = body.vx, body.vz, body.w
-    potential, elastic = linked_energy(system)
+        put(pose, components(body.place, axes))
+        write_turn(body, pose, axes)
+        put(velocity, components(body.velocity, axes))
+        put(velocity[d:], momentum_of(body, axes))
+    potential, elastic = linked_energy(system, axes)
     sheared = 0.0
     for p in range(len(system.lines)):
         line = system.lines[p]
-        pressed = min(meeting(system.bodies, line, system.supports).gap, 0.0)
-        if line.corner == 1:  # it may be behind an edge that it has not come through
-            pressed = 0.0
-        elastic += 0.5 * line.k * pressed * pressed
+        elastic += stored(line, meeting(system, line, axes).gap)
         if line.k_s < math.inf:
-            sheared += 0.5 * line.k_s * line.grip * line.grip
-    samples.energy[row, 1], samples.energy[row, 2] = potential, elastic + sheared
-    samples.work[row, 0], samples.work[row, 1] = books.friction[0] - sheared, books.friction[1]
-    if samples.work.shape[1] > 2:
-        keep_work(books, samples.work[row])
+            grip = spin_components(line.grip, axes)
+            sheared += stored_along(line, dot(grip, grip))
+    energy, totals = samples.energy[row], books.totals[0]
+    energy.potential, energy.elastic = potential, elastic + sheared
+    energy.friction, energy.ground = totals.friction - sheared, totals.ground
+    keep_account(books.dampers, samples.dampers[row])
+    keep_account(books.ties, samples.ties[row])
+    keep_account(books.broken, samples.broken[row])
+    keep_account(books.dashpots, samples.dashpots[row])
+
+
+@inlined
+def keep_account(account: Array, kept: Array) -> None:
+    """Keep an account, for which there is room where there is a ledger."""
+    for i in range(len(kept)):
+        kept[i] = account[i]
 
 
 @jitable
-def keep_work(books: Books, work: Array) -> None:
-    """Keep the accounts of dampers, ties, broken ties and dashpots."""
-    column = 2
-    for account in (books.dampers, books.ties, books.broken, books.dashpots):
-        for i in range(len(account)):
-            work[column] = account[i]
-            column += 1
+def keep_velocity(bodies: Rows, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+    """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
-
-@jitable
-def keep_velocity(bodies: Rows, samples: Samples, row: int) -> None:
-    """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy."""
-    kinetic, potential, share = 0.0, 0.0, 0.5 if row > 0 else 0.0
+    Angular momenta give way to spins in the axes of the bodies."""
+    kinetic, potential, share, d = 0.0, 0.0, 0.5 if row > 0 else 0.0, len(axes)
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
-        velocity[0] += share * (body.vx - velocity[0])
-        velocity[1] += share * (body.vz - velocity[1])
-        velocity[2] += share * (body.w - velocity[2])
-        kinetic += 0.5 * body.mass * (velocity[0] ** 2 + velocity[1] ** 2) + 0.5 * velocity[2] ** 2 / body.ease
-        potential += GRAVITY * body.mass * body.z
-    samples.energy[row, 0] = kinetic
-    samples.energy[row, 1] += potential
+        linear, momentum = components(velocity, axes), spin_components(velocity[d:], axes)
+        linear = plus(linear, scaled(share, minus(components(body.velocity, axes), linear)))
+        momentum = in_body(body, plus(momentum, scaled(share, minus(momentum_of(body, axes), momentum))))
+        spin = apply_inverse_inertia(body, momentum)
+        put(velocity, linear)
+        put(velocity[d:], spin)
+        kinetic += 0.5 * body.mass * dot(linear, linear) + 0.5 * dot(momentum, spin)
+        potential += GRAVITY * body.mass * body.place[d - 1]
+    samples.energy[row].kinetic = kinetic
+    samples.energy[row].potential += potential
 
 
 @jitable
-def broken(bodies: Rows, ends: float) -> bool:
-    """Whether a body has gone astray, or has turned by more than a run follows."""
+def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
+    """Whether a body has gone so far that the run has broken down, or has turned by more than a run follows."""
     for b in range(len(bodies)):
         body = bodies[b]
-        if not (abs(body.x) < GONE and abs(body.z) < GONE and abs(body.theta) < ends):
+        for i in range(len(axes)):
+            if not abs(body.place[i]) < GONE:
+                return True
+        if not turns_within(body, ends, axes):
             return True
     return False
 
@@ -141,32 +192,40 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
-    n, h, row, last = clock.step, clock.h, clock.row, clock.row + clock.rows
-    accounted = samples.work.shape[1] > 2 or len(system.supports.moved) > 0
+    return make_steps(system, books, samples, clock, system.axes)
+
+
+@jitable
+def make_steps(
+    system: System, books: Books, samples: Samples, clock: Clock, axes: tuple[int, ...]
+) -> tuple[int, int, bool]:
+    """The steps of `advance`. The compiler drops what is of the plane or of space by the length of the axes."""
+    n, h, row, last, totals = clock.step, clock.h, clock.row, clock.row + clock.rows, books.totals[0]
+    accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
     while True:
         before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
         move_supports(system.supports, n * h, before)
-        weigh(system, books, n * h, h, kick)
-        pull_links(system, books, n * h, before)
-        sticking = press_lines(system, books, before, kick)
+        start_forces(system, books, n * h, h, kick, axes)
+        pull_links(system, books, n * h, before, axes)
+        sticking = press_lines(system, books, before, kick, axes)
         if sampled:
-            keep_pose(system, books, samples, row)
+            keep_pose(system, books, samples, row, axes)
         if accounted:
-            note_slips(system, books.active, sticking)
-        kick_bodies(system.bodies, kick)
-        stick(system, books.active, sticking, kick)
+            note_slips(system, books.active, sticking, axes)
+        kick_bodies(system.bodies, kick, axes)
+        stick(system, books.active, sticking, kick, axes)
         if accounted:
-            rubbed, carried = books.friction[0], books.friction[1]
-            book_rubbing(system, books, sticking)
+            rubbed, put_in = totals.friction, totals.ground
+            book_rubbing(system, books, sticking, axes)
             if sampled and n > 0:  # half of it belongs to the time before the pose
-                samples.work[row, 0] += 0.5 * (books.friction[0] - rubbed)
-                samples.work[row, 1] += 0.5 * (books.friction[1] - carried)
+                samples.energy[row].friction += 0.5 * (totals.friction - rubbed)
+                samples.energy[row].ground += 0.5 * (totals.ground - put_in)
         if sampled:
-            keep_velocity(system.bodies, samples, row)
+            keep_velocity(system.bodies, samples, row, axes)
             row += 1
-            if broken(system.bodies, clock.ends):
+            if is_astray(system.bodies, clock.ends, axes):
                 return n, row, True
-        move_bodies(system.bodies, h)
+        move_bodies(system.bodies, h, axes)
         n += 1
         if row == last:
             return n, row, False

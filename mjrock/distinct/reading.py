@@ -28,7 +28,7 @@ from ..result.rocking import Rocking
 from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .system import Books, Samples
+from .system import Books, Samples, System
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class Run:
     contacts: Contacts | None
     scene: Scene
     course: Course
-    system: Any
+    system: System
     books: Books
     samples: Samples
     spacing: float
@@ -58,9 +58,10 @@ class Run:
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
         at_rest = self.scene.rest_energies.sum()
-        preloaded = float(self.samples.energy[0].sum() - at_rest - self.course.energy(self.scene))
-        kinetic, potential, elastic = self.samples.energy.T
-        return np.asarray(kinetic + potential + elastic - (float(at_rest) + preloaded))
+        energy = self.samples.energy
+        there = energy["kinetic"] + energy["potential"] + energy["elastic"]
+        preloaded = float(there[0] - at_rest - self.course.energy(self.scene))
+        return np.asarray(there - (float(at_rest) + preloaded))
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
@@ -145,9 +146,9 @@ def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
         count: number of the sample.
         stats: with the step that was taken, and the longest stable one.
     """
-    if not np.isfinite(run.samples.energy[-1]).all():
+    if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
-    work = run.samples.work[: max(count, 1), 1]
+    work = run.samples.energy["ground"][: max(count, 1)]
     own = run.energy[: len(work)] - work
     scale = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     gain = from_nowhere(own, scale)
@@ -173,26 +174,16 @@ def advice(stats: Mapping[str, Any]) -> str:
 
 def ledger_of(run: Run, stride: int) -> Ledger:
     """The ledger of a run."""
-    samples, scene = run.samples, run.scene
-    work = samples.work[::stride, 2:].T
-    yielding = len(scene.links.damped.names)
-    breaking, groups = (yielding + i * len(scene.links.sprung.names) for i in (1, 2))
-    may_break = np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip(scene.links.damped.names, work[:yielding], strict=True))
-    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), work[groups:], strict=False))
-    kinetic, potential, elastic = samples.energy[::stride].T
+    scene, samples = run.scene, run.samples.taken(slice(None, None, stride))
+    energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
+    dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
+    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
+    broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[::stride],
-        kinetic=kinetic,
-        potential=potential,
-        elastic=elastic,
+        **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
         dashpots=dashpots,
-        friction=samples.work[::stride, 0] - samples.work[0, 0],
-        ground=samples.work[::stride, 1],
-        ties=dict(zip(scene.links.sprung.names, work[yielding:breaking], strict=True)),
-        broken={
-            name: account
-            for name, account, breaks in zip(scene.links.sprung.names, work[breaking:groups], may_break, strict=True)
-            if breaks
-        },
+        friction=np.asarray(energy["friction"] - energy["friction"][0]),
+        ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
+        broken={name: account for name, account, breaks in broken if breaks},
     )

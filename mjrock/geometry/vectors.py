@@ -16,11 +16,55 @@ Vector = tuple[float, ...]
 
 
 @inlined
-def vector(values: Array, i: int, axes: tuple[int, ...]) -> Vector:
+def vector(values: Array, i: int, axes: Vector) -> Vector:
     """The first numbers of row i, as many as there are axes."""
     if len(axes) == 2:
         return values[i, 0], values[i, 1]
     return values[i, 0], values[i, 1], values[i, 2]
+
+
+@inlined
+def components(values: Array, axes: Vector) -> Vector:
+    """The vector in an array: two or three numbers, as many as there are axes or as another vector has."""
+    if len(axes) == 2:
+        return values[0], values[1]
+    return values[0], values[1], values[2]
+
+
+@inlined
+def spin_components(values: Array, axes: Vector) -> Vector:
+    """The spin, or the moment, in an array: one number in the plane and three in space."""
+    if len(axes) == 2:
+        return (values[0],)
+    return values[0], values[1], values[2]
+
+
+@inlined
+def put(values: Array, a: Vector) -> None:
+    """Write a vector or a spin into an array."""
+    values[0] = a[0]
+    if len(a) > 1:
+        values[1] = a[1]
+    if len(a) > 2:
+        values[2] = a[2]
+
+
+@inlined
+def increase(values: Array, a: Vector) -> None:
+    """Add a vector or a spin to the one in an array."""
+    values[0] += a[0]
+    if len(a) > 1:
+        values[1] += a[1]
+    if len(a) > 2:
+        values[2] += a[2]
+
+
+@inlined
+def no_spin(axes: Vector) -> Vector:
+    """The spin of a body that does not turn."""
+    if len(axes) == 2:
+        return (0.0,)
+    return 0.0, 0.0, 0.0
 
 
 @inlined
@@ -45,7 +89,9 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 @inlined
 def scaled(factor: float, a: Vector) -> Vector:
-    """A vector times a number."""
+    """A vector or a spin times a number."""
+    if len(a) == 1:
+        return (factor * a[0],)
     if len(a) == 2:
         return factor * a[0], factor * a[1]
     return factor * a[0], factor * a[1], factor * a[2]
@@ -54,6 +100,8 @@ def scaled(factor: float, a: Vector) -> Vector:
 @inlined
 def dot(a: Vector, b: Vector) -> float:
     """Scalar product."""
+    if len(a) == 1:
+        return a[0] * b[0]
     if len(a) == 2:
         return a[0] * b[0] + a[1] * b[1]
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
@@ -24,6 +25,23 @@ def test_a_block_that_is_thrown_off_its_table_comes_to_rest_on_the_ground():
     assert np.abs(run.velocity[-1, 1]).max() < 0.02
     assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.kinetic.max()
     assert "not in the model" not in run.message
+
+
+@pytest.mark.parametrize("speed", among(np.arange(2.0, 4.05, 0.1).round(1).tolist(), 2.2, 3.1))
+@pytest.mark.parametrize("flat", [True, False])
+def test_a_block_that_is_thrown_at_any_speed_stays_above_the_ground(flat, speed):
+    """Prisms are flush with the ground and the table on two sides, where rounding alone parts them."""
+    blocks = [GROUND, TABLE, box(-0.5, -0.1, 1, 1.3, name="box")]
+    velocity = [(0, 0, 0), (speed, 0, 0)]
+    if not flat:
+        blocks = [mr.Polyhedron.prism(block) for block in blocks]
+        velocity = [(0,) * 6, (speed, 0, 0, 0, 0, 0)]
+    masonry = mr.Masonry(blocks, k_n=1e8, friction=0.5, xi=0.2, frequency=60.0)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 2.5, velocity=velocity), output_step=5e-3)
+    x, z, theta = run.pose[-1, 1] if flat else (*run.pose[-1, 1, [0, 2]], 2 * np.arctan2(*run.pose[-1, 1, [5, 3]]))
+    lowest = 1.15 + z - 0.15 * abs(np.cos(theta)) - 0.2 * abs(np.sin(theta))
+    assert x > 0.3
+    assert lowest == pytest.approx(0, abs=1e-3)
 
 
 def test_a_face_ends_where_it_ends():

@@ -200,7 +200,7 @@ def test_a_step_that_is_not_stable_is_refused_with_the_longest_that_is():
 @pytest.mark.parametrize("blocks", [1, 4])
 def test_the_longest_step_is_the_limit_of_stability(blocks, monkeypatch):
     """Beyond the limit the motion blows up, and the run says so."""
-    from mjrock.distinct import explicit as module
+    from mjrock.distinct import setup as module
 
     column = columns(blocks, k_n=1e9, xi=0.3)
     limit = solve(column, 0.01).stats["stable_timestep"]

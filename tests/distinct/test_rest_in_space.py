@@ -8,7 +8,7 @@ from everyday import among, slow
 from space_blocks import block
 
 import mjrock as mr
-from mjrock.distinct.space.setup import standing
+from mjrock.distinct.setup import standing
 from mjrock.problem.masonry.statics import falling
 from mjrock.quantities import named
 

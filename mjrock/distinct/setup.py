@@ -1,0 +1,108 @@
+"""What is followed by explicit steps: a wall or masonry at the start of a case."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from ..problem.damping.contacts import Contacts
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.masonry import Masonry
+from ..problem.wall.case import Case
+from ..problem.wall.effect import Effect
+from ..quantities import ON_ITS_FACE, Array
+from ..result.response import State
+from ..scene.course import Course
+from ..scene.equilibrium import UnsettledError
+from ..scene.explicit_step import SHARE
+from ..scene.masonry import masonry_course, require_carried, require_standing, standing_masonry, unsettled
+from ..scene.of_case import course_of, scene_of
+from ..scene.scene import Scene
+from .assembly import copied, friction_at_rest, moved_by, started, system_of, take_grips
+from .encounters import Encounters
+from .limit import longest_step
+from .system import System
+
+SHARE_OF_A_WALL = 0.005
+"""Step that is taken for a wall, over the longest stable one [-]. A touch inside a step is met up to half a step late,
+which scatters |e| of a wall against a stop by some 0.5 % with 0.02 and by 0.1 % with 0.005."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A system at its start, and how it is followed.
+
+    Args:
+        scene, course, system: what stands, what happens to it, and its rows.
+        limit, share: the longest stable step [s], and the step that is taken over it [-].
+        spacing: largest spacing of the samples [s].
+        ends: rotation at which the run ends [rad].
+        encounters: where blocks that fall meet others, or None where that is not followed.
+    """
+
+    scene: Scene
+    course: Course
+    system: System
+    limit: float
+    share: float
+    spacing: float = math.inf
+    ends: float = math.inf
+    encounters: Encounters | None = None
+
+
+def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
+    """A wall or masonry at the start of a case, or in a given state."""
+    if isinstance(case, MasonryCase):
+        return setup_of_masonry(case, state)
+    scene = scene_of(case, contacts)
+    course = continued(course_of(case, scene), state)
+    system = started(system_of(scene), course.pose, course.velocity)._replace(ground=course.ground)
+    # peaks and impacts are read off the samples
+    return Setup(scene, course, system, longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
+
+
+def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
+    """Masonry at the start of a case, or in a given state."""
+    masonry = case.masonry
+    scene, at_rest = standing(masonry, case.effects)
+    course = continued(masonry_course(case, scene), state)
+    system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
+    started(system, course.pose, course.velocity)
+    limit, encounters = longest_step(system), Encounters(masonry, system, scene.contacts.joint)
+    return Setup(scene, course, encounters.made_room(system), limit, SHARE, encounters=encounters)
+
+
+def continued(course: Course, state: State | None) -> Course:
+    """A course from its start, or from a given state."""
+    return course if state is None else course.continued(*state)
+
+
+@lru_cache(maxsize=16)
+def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene, System]:
+    """Masonry and its system at rest, which all cases of it with the same effects share.
+
+    Raises:
+        ValueError: if it does not stand. The message names the blocks that fall.
+    """
+    if not masonry.in_space:
+        require_standing(masonry, effects)
+    scene = standing_masonry(masonry, effects)
+    system = system_of(scene, masonry)
+    pose, drag = rest_in_space(scene, masonry, effects) if masonry.in_space else rest_in_plane(scene, system)
+    take_grips(system.lines, drag)
+    return scene, started(system, pose)
+
+
+def rest_in_plane(scene: Scene, system: System) -> tuple[Array, Array]:
+    """The pose of rest of masonry in the plane, and the friction that holds it there."""
+    return scene.at_rest, friction_at_rest(system, scene.at_rest)
+
+
+def rest_in_space(scene: Scene, masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array]:
+    """The pose of rest of masonry in space, and the friction that holds it there."""
+    try:
+        return scene.rest_in_space
+    except UnsettledError as error:
+        require_carried(masonry, effects)
+        raise unsettled(masonry, error.pose) from None

@@ -1,0 +1,245 @@
+"""How a body turns: by an angle in the plane, by its angular momentum and a quaternion in space.
+
+In space a body keeps its angular momentum L in the axes of the world half a step before the pose, and its quaternion at
+the pose. The angular velocity w in the middle of a step, in the axes of the body, solves w = I^-1 exp(-h w / 2) R^T L,
+with R the rotation before the step. The step is of second order and keeps |L| exactly.
+
+R - 1 keeps the digits of small rotations. `turn` holds it in space, and sin and 1 - cos of the angle in the plane.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.sparse import block_diag, csr_array
+
+from ..compiled import inlined, jitable
+from ..geometry.vectors import (
+    Vector,
+    components,
+    dot,
+    increase,
+    plus,
+    put,
+    scaled,
+    spin_components,
+    spun,
+)
+from ..quantities import Array
+from .rows import Row, Rows
+
+PASSES = 3
+"""Passes of the search for the angular velocity in the middle of a step. Each gains the order of h w."""
+SLOW, PASSES_OF_SLOW = 1e-3, 2
+"""Rotation in a step below which fewer passes are enough [rad]: they leave less than its third power."""
+SMALL = 1e-4
+"""Angle below which sines and cosines are taken from their series [rad]. The first term left out is below rounding."""
+
+
+@inlined
+def rotation_change(body: Row, a: Vector) -> Vector:
+    """(R - 1) a: the displacement of the end of a vector a of a body by its rotation."""
+    turn = body.turn
+    if len(a) == 2:
+        return a[1] * turn[0] - a[0] * turn[1], -a[0] * turn[0] - a[1] * turn[1]
+    return (
+        turn[0, 0] * a[0] + turn[0, 1] * a[1] + turn[0, 2] * a[2],
+        turn[1, 0] * a[0] + turn[1, 1] * a[1] + turn[1, 2] * a[2],
+        turn[2, 0] * a[0] + turn[2, 1] * a[1] + turn[2, 2] * a[2],
+    )
+
+
+@inlined
+def in_world(body: Row, a: Vector) -> Vector:
+    """R a: a vector of a body in the axes of the world. A spin of the plane is the same in both."""
+    if len(a) == 1:
+        return a
+    return plus(a, rotation_change(body, a))
+
+
+@inlined
+def in_body(body: Row, a: Vector) -> Vector:
+    """R^T a: a vector of the world in the axes of a body. A spin of the plane is the same in both."""
+    if len(a) == 1:
+        return a
+    turn = body.turn
+    if len(a) == 2:
+        return a[0] - a[0] * turn[1] - a[1] * turn[0], a[1] + a[0] * turn[0] - a[1] * turn[1]
+    return (
+        a[0] + turn[0, 0] * a[0] + turn[1, 0] * a[1] + turn[2, 0] * a[2],
+        a[1] + turn[0, 1] * a[0] + turn[1, 1] * a[1] + turn[2, 1] * a[2],
+        a[2] + turn[0, 2] * a[0] + turn[1, 2] * a[1] + turn[2, 2] * a[2],
+    )
+
+
+@inlined
+def apply_inverse_inertia(body: Row, a: Vector) -> Vector:
+    """I^-1 a, in the axes of the body."""
+    inverse = body.inverse_inertia
+    if len(a) == 1:
+        return (inverse[0, 0] * a[0],)
+    return (
+        inverse[0, 0] * a[0] + inverse[0, 1] * a[1] + inverse[0, 2] * a[2],
+        inverse[0, 1] * a[0] + inverse[1, 1] * a[1] + inverse[1, 2] * a[2],
+        inverse[0, 2] * a[0] + inverse[1, 2] * a[1] + inverse[2, 2] * a[2],
+    )
+
+
+@inlined
+def spin_from_moment(body: Row, a: Vector) -> Vector:
+    """I^-1 a, in the axes of the world at the pose."""
+    return in_world(body, apply_inverse_inertia(body, in_body(body, a)))
+
+
+@inlined
+def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
+    """Angular momentum in the axes of the world [N m s]."""
+    if len(axes) == 2:
+        return (body.spin[0] / body.inverse_inertia[0, 0],)
+    return components(body.momentum, axes)
+
+
+@jitable
+def take_turn(body: Row, axes: tuple[int, ...]) -> None:
+    """Bring R - 1 and the angular velocity of a body up to date with its pose."""
+    turn = body.turn
+    if len(axes) == 2:
+        half = math.sin(0.5 * body.angle)
+        turn[0], turn[1] = 2 * half * math.cos(0.5 * body.angle), 2 * half * half
+    else:
+        w, x, y, z = body.quaternion[0], body.quaternion[1], body.quaternion[2], body.quaternion[3]
+        turn[0, 0], turn[0, 1], turn[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+        turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
+        turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
+        put(body.spin, spin_from_moment(body, momentum_of(body, axes)))
+
+
+@inlined
+def kick_spin(body: Row, kick: float, axes: tuple[int, ...]) -> None:
+    """Let the moment on a body act for a time [s]."""
+    change = scaled(kick, spin_components(body.moment, axes))
+    if len(axes) == 2:
+        increase(body.spin, apply_inverse_inertia(body, change))
+    else:
+        increase(body.momentum, change)
+        put(body.spin, spin_from_moment(body, momentum_of(body, axes)))
+
+
+@inlined
+def strike_spin(body: Row, impulse: float, lever: Vector, spin: Vector) -> None:
+    """Let an impulse act [N s] that turns a body by a lever, with the spin that a unit impulse gives to it."""
+    if len(lever) == 3:
+        increase(body.momentum, scaled(impulse, lever))
+    increase(body.spin, scaled(impulse, spin))
+
+
+@inlined
+def rotated(by: Vector, a: Vector) -> Vector:
+    """exp(by) a: a vector turned by a rotation vector [rad]."""
+    square = dot(by, by)
+    angle = math.sqrt(square)
+    if angle < SMALL:
+        sine, versine = 1 - square / 6, 0.5 - square / 24
+    else:
+        half = math.sin(0.5 * angle)
+        sine, versine = math.sin(angle) / angle, 2 * half * half / square
+    across = spun(by, a)
+    return plus(a, plus(scaled(sine, across), scaled(versine, spun(by, across))))
+
+
+@jitable
+def middle_spin(body: Row, momentum: Vector, h: float) -> Vector:
+    """Angular velocity in the middle of a step of length h, in the axes of the body [rad/s], in space."""
+    start = in_body(body, momentum)
+    spin = apply_inverse_inertia(body, start)
+    for _ in range(PASSES_OF_SLOW if h * h * dot(spin, spin) < SLOW * SLOW else PASSES):
+        spin = apply_inverse_inertia(body, rotated(scaled(-0.5 * h, spin), start))
+    return spin
+
+
+@jitable
+def turn_body(body: Row, h: float, axes: tuple[int, ...]) -> None:
+    """Turn a body by a step of length h."""
+    if len(axes) == 2:
+        body.angle += h * body.spin[0]
+    else:
+        spin = middle_spin(body, momentum_of(body, axes), h)
+        size = math.sqrt(dot(spin, spin))
+        half = 0.5 * h * size
+        if half < SMALL:
+            c, share = 1 - 0.5 * half * half, 0.5 * h * (1 - half * half / 6)
+        else:
+            c, share = math.cos(half), math.sin(half) / size
+        x, y, z = scaled(share, spin)
+        turned = body.quaternion
+        qw, qx, qy, qz = turned[0], turned[1], turned[2], turned[3]
+        w = qw * c - qx * x - qy * y - qz * z
+        i = qw * x + qx * c + qy * z - qz * y
+        j = qw * y - qx * z + qy * c + qz * x
+        k = qw * z + qx * y - qy * x + qz * c
+        size = 1 / math.sqrt(w * w + i * i + j * j + k * k)
+        turned[0], turned[1], turned[2], turned[3] = w * size, i * size, j * size, k * size
+
+
+@inlined
+def write_turn(body: Row, pose: Array, axes: tuple[int, ...]) -> None:
+    """Write the rotation of a body into its pose, after the displacements."""
+    if len(axes) == 2:
+        pose[2] = body.angle
+    else:
+        for i in range(4):
+            pose[3 + i] = body.quaternion[i]
+
+
+@inlined
+def turns_within(body: Row, ends: float, axes: tuple[int, ...]) -> bool:
+    """Whether a body has turned by less than a run follows [rad], in the plane, or turns at a finite speed."""
+    if len(axes) == 2:
+        return bool(abs(body.angle) < ends)
+    return bool(abs(body.spin[0]) < math.inf)
+
+
+def start_turning(bodies: Rows, pose: Array, velocity: Array) -> None:
+    """Give bodies the rotations of a pose, shape (n, nq), and the spins of velocities, shape (n, nv)."""
+    if is_flat(bodies):
+        bodies["angle"], bodies["spin"] = pose[:, 2], velocity[:, 2:]
+        return
+    bodies["quaternion"] = pose[:, 3:]
+    momentum = np.linalg.solve(bodies["inverse_inertia"], velocity[:, 3:, None])[:, :, 0]
+    bodies["momentum"] = momentum + np.einsum("nij,nj->ni", rotations(bodies), momentum)
+
+
+def is_flat(bodies: Rows) -> bool:
+    """Whether bodies are those of the plane."""
+    return bool(bodies["spin"].shape[1] == 1)
+
+
+def rotations(bodies: Rows) -> Array:
+    """R - 1 of bodies at their pose, shape (n, d, d)."""
+    if is_flat(bodies):
+        half = np.sin(0.5 * bodies["angle"])
+        sine, versine = 2 * half * np.cos(0.5 * bodies["angle"]), 2 * half**2
+        return np.moveaxis(np.array([[-versine, sine], [-sine, -versine]]), 2, 0)
+    w, x, y, z = bodies["quaternion"].T
+    matrix = (
+        (-2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(matrix), 2, 0)
+
+
+def angles(bodies: Rows) -> Array:
+    """Angle by which each body is turned from rest [rad], shape (n,)."""
+    if is_flat(bodies):
+        return np.asarray(np.abs(bodies["angle"]))
+    return np.asarray(2 * np.arccos(np.minimum(np.abs(bodies["quaternion"][:, 0]), 1.0)))
+
+
+def root_of_masses(bodies: Rows) -> csr_array:
+    """A matrix whose product with its transpose is the inverse of the masses at rest, shape (n nv, n nv)."""
+    blocks = []
+    for mass, root in zip(bodies["mass"], np.linalg.cholesky(bodies["inverse_inertia"]), strict=True):
+        blocks += [np.eye(bodies["rest"].shape[1]) / np.sqrt(mass), root]
+    return csr_array(block_diag(blocks, format="csr"))
