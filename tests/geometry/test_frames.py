@@ -107,7 +107,7 @@ def tumbling():
     ends, anchors = rng.normal(0, 0.7, (2, 3, 3))
     between = origin(held) + ends - origin(anchor_body) - anchors
     k, reach = np.array([2e4, 3e4, 1e4]), np.array([0.5, 0.9, 9.0])
-    ties = Ties(held, ends, anchor_body, anchors, between, k, reach, *np.full((2, 3), math.inf))
+    ties = Ties(held, ends, anchor_body, anchors, between, k, reach, *np.full((2, 3), math.inf), np.zeros(3))
     forces = Forces(np.array([0, 1]), *rng.normal(0, [[[0.5]], [[300.0]]], (2, 2, 3)))
     masses = np.array([40.0, 40.0, 40.0, 2.0, 3.0, 4.0, 25.0, 25.0, 25.0, 1.0, 2.5, 1.5])
     return rest, Structure(places, np.array([1e5, 2e5, 3e5, 1e5, 2e5]), ties, forces, masses)
