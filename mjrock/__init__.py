@@ -50,8 +50,10 @@ if TYPE_CHECKING:
     from .problem.wall.block import Block
     from .problem.wall.case import Case
     from .problem.wall.damper import Damper
-    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust, Tie
+    from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
+    from .problem.wall.friction_damper import FrictionDamper
     from .problem.wall.section import Opening
+    from .problem.wall.tie import Tie
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
@@ -85,7 +87,8 @@ if TYPE_CHECKING:
 __all__ = [
     "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
     "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction",
-    "Damper", "DampingLaw", "Fragility", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact",
+    "Damper", "DampingLaw", "Fragility", "FrictionDamper", "Grid", "GroundMotion", "Impact", "Implausible",
+    "InspectedContact",
     "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
     "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
     "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum",
@@ -132,8 +135,10 @@ HOMES = {
     "problem.wall.block": "Block",
     "problem.wall.case": "Case",
     "problem.wall.damper": "Damper",
-    "problem.wall.effects": "AddedMass Load SideStop Thrust Tie",
+    "problem.wall.effects": "AddedMass Load SideStop Thrust",
+    "problem.wall.friction_damper": "FrictionDamper",
     "problem.wall.section": "Opening",
+    "problem.wall.tie": "Tie",
     "quantities": "GRAVITY Implausible",
     "reference.compliant": "solve_compliant",
     "reporting.page": "report",

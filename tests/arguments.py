@@ -17,6 +17,9 @@ OF_NUMBERS = {
     "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.25, "wall": 0.5}),
     "Opening": (mr.Opening, {"width": 100, "height": 100, "sill": 100}),
     "Damper": (mr.Damper, {"height": 100, "c": 100, "length": 100, "block": 100}),
+    "FrictionDamper": (
+        mr.FrictionDamper, {"height": 100, "stiffness": 100, "slip_force": 100, "length": 100, "block": 100},
+    ),
     "Tie": (
         mr.Tie,
         {

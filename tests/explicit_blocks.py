@@ -118,16 +118,17 @@ def explicit(scene, course, h=2e-6, every=500):
         for motion in (course.motion, course.vertical)
     ]
     pose, velocity = (np.ravel(part).copy() for part in (course.pose, course.velocity))
-    count = len(scene.k)
+    points, rest = scene.contacts, scene.bodies.rest
+    count, below = len(points.k), points.face_body[:, None] < 0
     out = np.empty((round(course.duration / h) // every + 1, len(pose)))
     # the face passes through its point of the contact at rest, so that the gap is zero there
-    origin = scene.rest[scene.point_body] + scene.point
-    along = np.where(scene.face_body[:, None] < 0, scene.face, scene.rest[scene.face_body] + scene.face) - origin
-    origin = origin + scene.normal * np.sum(along * scene.normal, axis=1)[:, None]
+    origin = rest[points.body] + points.at
+    along = np.where(below, points.face_at, rest[points.face_body] + points.face_at) - origin
+    origin = origin + points.normal * np.sum(along * points.normal, axis=1)[:, None]
     _integrate(
-        1 / scene.masses, scene.rest, scene.point_body, scene.point, scene.face_body,
-        origin - np.where(scene.face_body[:, None] < 0, 0.0, scene.rest[scene.face_body]), scene.normal,
-        scene.k, scene.c, scene.friction, *shaking[0], *shaking[1], h, every, pose, velocity,
+        1 / scene.bodies.masses, rest, points.body, points.at, points.face_body,
+        origin - np.where(below, 0.0, rest[points.face_body]), points.normal,
+        points.k, points.c, points.friction, *shaking[0], *shaking[1], h, every, pose, velocity,
         np.zeros((count, 12)), np.zeros((count, 3)), np.zeros(count), out,
     )  # fmt: skip
     return h * every * np.arange(len(out)), out.reshape(len(out), -1, 3)

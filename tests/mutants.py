@@ -35,6 +35,7 @@ OTHERS = (
     "scene/masonry.py",
     "scene/rest_in_space.py",
     "result/history.py",
+    "reference/sliders.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
@@ -50,7 +51,8 @@ OWN = {
         for name in TOOLS
     },
     "geometry/frames.py": ("frames", "kinematics"),
-    "geometry/kinematics.py": ("kinematics", "frames", "slipping"),
+    "geometry/kinematics.py": ("kinematics", "frames", "slipping", "friction_damper"),
+    "reference/sliders.py": ("friction_damper",),
     "geometry/vectors.py": ("frames", "kinematics"),
     "scene/dampers.py": ("damper",),
     "scene/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),

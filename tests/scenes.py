@@ -10,11 +10,15 @@ from mjrock.engine import stepping
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.scene.course import Course
+from mjrock.scene.parts import Bodies, ContactPoints, Limits
 
 
-def fields(scene):
-    """The parts of a scene, to make another one of them."""
-    return {one.name: getattr(scene, one.name) for one in dataclasses.fields(scene)}
+def changed(scene, **parts):
+    """A scene with other parts, or with parts of which some fields are others, as a dict."""
+    made = {}
+    for name, part in parts.items():
+        made[name] = dataclasses.replace(getattr(scene, name), **part) if isinstance(part, dict) else part
+    return dataclasses.replace(scene, **made)
 
 
 def fixed_steps(scene, course, timestep):
@@ -59,22 +63,18 @@ def two_blocks(k_n=5e8, friction=0.7, xi=0.049, *, width=0.6, height=2.1):
         c[joint] = 2 * xi / np.sqrt(k[joint].sum() * b**2 / about_base) * k[joint]
     outline = np.array([(-b, -h), (b, -h), (b, h), (-b, h)])
     return mr.Scene(
-        names=("lower", "upper"),
-        mass=[mass, mass],
-        inertia=[inertia, inertia],
-        rest=[(0, h), (0, 3 * h)],
-        outlines=(outline, outline),
-        length=1.0,
-        point_body=[0, 0, 1, 1],
-        point=[(-b, -h), (b, -h), (-b, -h), (b, -h)],
-        face_body=[-1, -1, 0, 0],
-        face=[(0, 0), (0, 0), (0, h), (0, h)],
-        normal=[(0, 1)] * 4,
-        k=k,
-        c=c,
-        friction=[friction] * 4,
-        group=("foot", "foot", "middle", "middle"),
-        reach=float(np.hypot(width, 2 * height)),
-        overlap=height,
-        damped_joints=True,
+        Bodies(("lower", "upper"), [mass] * 2, [inertia] * 2, [(0, h), (0, 3 * h)], (outline, outline), length=1.0),
+        ContactPoints(
+            body=[0, 0, 1, 1],
+            at=[(-b, -h), (b, -h), (-b, -h), (b, -h)],
+            face_body=[-1, -1, 0, 0],
+            face_at=[(0, 0), (0, 0), (0, h), (0, h)],
+            normal=[(0, 1)] * 4,
+            k=k,
+            c=c,
+            friction=[friction] * 4,
+            joint=[0, 0, 1, 1],
+            joints=("foot", "middle"),
+        ),
+        limits=Limits(float(np.hypot(width, 2 * height)), height, damped_joints=True),
     )

@@ -9,9 +9,10 @@ from mjrock.engine import stepping
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.scene.course import Course
+from mjrock.scene.parts import Bodies, ContactPoints
 
 
-def box(size, *, k_n=1e8, xi=0.05, friction=0.6, density=2000.0, turned=None, height=None, **parts):
+def box(size, *, k_n=1e8, xi=0.05, friction=0.6, density=2000.0, turned=None, height=None, tensor=None, **parts):
     """A box with a contact at each corner of its base, on ground that is turned with it by a rotation (3, 3) if any.
 
     The damping ratio refers to the heave on all four springs.
@@ -22,30 +23,28 @@ def box(size, *, k_n=1e8, xi=0.05, friction=0.6, density=2000.0, turned=None, he
     inertia = mass / 3 * np.diag((half**2).sum() - half**2)
     k = np.full(4, k_n * size[0] * size[1] / 4)
     c = 2 * xi * np.sqrt(mass / k.sum()) * k
-    given = {
-        "names": ("block",),
-        "mass": [mass],
-        "inertia": [turn @ inertia @ turn.T],
-        "rest": [turn[:, 2] * (half[2] if height is None else height)],
-        "outlines": (vertices @ turn.T,),
-        "length": size[1],
-        "point_body": [0] * 4,
-        "point": (vertices @ turn.T)[vertices[:, 2] < 0],
-        "face_body": [-1] * 4,
-        "face": [(0, 0, 0)] * 4,
-        "normal": [turn[:, 2]] * 4,
-        "k": k,
-        "c": c,
-        "friction": [friction] * 4,
-        "group": ("base",) * 4,
-    }
-    return mr.Scene(**given | parts)
+    rest = turn[:, 2] * (half[2] if height is None else height)
+    tensor = turn @ inertia @ turn.T if tensor is None else tensor
+    bodies = Bodies(("block",), [mass], [tensor], [rest], (vertices @ turn.T,), length=size[1])
+    contacts = ContactPoints(
+        body=[0] * 4,
+        at=(vertices @ turn.T)[vertices[:, 2] < 0],
+        face_body=[-1] * 4,
+        face_at=[(0, 0, 0)] * 4,
+        normal=[turn[:, 2]] * 4,
+        k=k,
+        c=c,
+        friction=[friction] * 4,
+        joint=[0] * 4,
+        joints=("base",),
+    )
+    return mr.Scene(bodies, contacts, **parts)
 
 
 def course(scene, duration, *, pose=None, velocity=None, **motions):
     """The course of a scene of one body from a pose (7,) and with a velocity (6,), at rest where they are None."""
     pose = scene.at_rest if pose is None else np.reshape(pose, (-1, 7))
-    velocity = np.zeros((len(scene.names), 6)) if velocity is None else np.reshape(velocity, (-1, 6))
+    velocity = np.zeros((len(scene.bodies.names), 6)) if velocity is None else np.reshape(velocity, (-1, 6))
     return Course(pose, velocity, duration, **motions)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from scipy.sparse.linalg import lsmr
@@ -12,9 +13,10 @@ from ..problem.masonry.joint_law import normal_force, shear_limit
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
-from ..quantities import GRAVITY, Array, Integers
-from ..result.joints import joint_numbers
+from ..problem.wall.effect import LinkLaw
+from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground
+from ..scene.parts import Links
 from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
 from .limit import line_rates, ways_of
@@ -28,10 +30,10 @@ ENOUGH = 1e-9
 
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     """The system of a scene, undeformed. Faces of masonry end where they end, those of a wall do not."""
-    d, n = scene.rest.shape[1], len(scene.mass)
+    d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)
     kind = kinds(d)
-    inverse = np.linalg.inv(np.reshape(scene.inertia, (n, 2 * d - 3, -1)))
-    bodies = rows(kind.body, n, mass=scene.mass, inverse_inertia=inverse, rest=scene.rest)
+    inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
+    bodies = rows(kind.body, n, mass=scene.bodies.mass, inverse_inertia=inverse, rest=scene.bodies.rest)
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
@@ -45,62 +47,45 @@ def lines_of(scene: Scene) -> Rows:
     """The contact lines of a scene, whose faces have no end and which stick rigidly."""
     places = scene.places
     return rows(
-        kinds(scene.rest.shape[1]).line,
-        len(scene.k),
+        kinds(scene.bodies.rest.shape[1]).line,
+        len(scene.contacts.k),
         body=places.body,
         face=places.face_body,
         support=-1,
-        group=accounts_of(scene),
+        group=scene.contacts.joint,
         at=places.at,
         origin=places.face_at + places.between,
         normal=places.normal,
-        k=scene.k,
-        c=scene.c,
+        k=scene.contacts.k,
+        c=scene.contacts.c,
         k_s=np.inf,
-        friction=scene.friction,
+        friction=scene.contacts.friction,
         margin=np.inf,
     )
 
 
-def accounts_of(scene: Scene) -> Integers:
-    """The number of the account of each contact line, those of one group the same."""
-    numbers = {name: number for number, name in enumerate(dict.fromkeys(scene.group))}
-    return np.array([numbers[name] for name in scene.group])
-
-
 def links_of(scene: Scene) -> tuple[Rows, Rows, Rows]:
-    """The ties, the dampers and the constant forces of a scene."""
+    """The links with a spring, those with a dashpot, and the constant forces of a scene."""
+    kind, forces = kinds(scene.bodies.rest.shape[1]).link, scene.forces
 
-    def links(body: Integers, **columns: Array | Integers | float) -> Rows:
-        return rows(kinds(scene.rest.shape[1]).link, len(body), body=body, **columns if len(body) else {})
+    def links(some: Links, between: Array, **more: Array | float) -> Rows:
+        columns = {name: getattr(some, name) for name in LinkLaw._fields} | more
+        ends = {"anchor": some.anchor_body, "at": some.at, "origin": some.anchor_at, "between": between}
+        return rows(kind, len(some.body), body=some.body, **columns | ends if len(some.body) else {})
 
-    ties = links(
-        scene.tie_body,
-        anchor=scene.anchor_body,
-        at=scene.tie_point,
-        origin=scene.anchor,
-        between=scene.ties.between,
-        k=scene.tie_k,
-        reach=scene.tie_length,
-        strength=scene.tie_strength,
-        ultimate=scene.tie_ultimate,
-        broken=np.inf,
+    ties = links(scene.links.sprung, scene.ties.between, reach=scene.ties.reach, broken=np.inf)
+    held: dict[str, Any] = {"anchor": -1, "at": forces.at, "between": forces.force} if len(forces.body) else {}
+    return (
+        ties,
+        links(scene.links.damped, scene.dampers.between),
+        rows(kind, len(forces.body), body=forces.body, **held),
     )
-    dampers = links(
-        scene.damper_body,
-        anchor=scene.damper_anchor_body,
-        at=scene.damper_point,
-        origin=scene.damper_anchor,
-        between=scene.dampers.between,
-        c=scene.damper_c,
-    )
-    return ties, dampers, links(scene.force_body, anchor=-1, at=scene.force_point, between=scene.force)
 
 
 def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     """Give lines the shear stiffness of their joint and the ends of its two faces. Returns the edges of all faces."""
-    of, number = joint_numbers(masonry, scene.group), free_numbers(masonry.blocks)
-    origins = np.where(number[:, None] < 0, 0.0, scene.rest[number])
+    of, number = scene.contacts.joint, free_numbers(masonry.blocks)
+    origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
         edges_of(face, origins[block])
         for joint, faces in zip(masonry.joints, outlines_of_joints(masonry), strict=True)
@@ -132,7 +117,7 @@ def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[
     """The system with supports that move fixed blocks."""
     numbers = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
     below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
-    of = joint_numbers(masonry, scene.group)
+    of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)
     return system._replace(supports=moving(supports, len(system.axes)))
 

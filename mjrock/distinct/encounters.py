@@ -11,14 +11,12 @@ that cross do not meet.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 
 import numpy as np
 
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from ..result.joints import joint_numbers
 from .contact import NEAR, THROUGH
 from .faces import edges_of, outlines_of
 from .looking import Look, near_corners, pair_number
@@ -40,17 +38,17 @@ class Encounters:
     Args:
         masonry: the masonry.
         system: its bodies, and the lines of its joints.
-        group: name of the joint of each line. The account of the encounters comes after those of the joints.
+        joint: number of the joint of each line. The account of the encounters comes after those of the joints.
     """
 
-    def __init__(self, masonry: Masonry, system: System, group: Sequence[str]) -> None:
+    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
         blocks = masonry.blocks
-        self.joints, self.group, self.most = system.lines, len(set(group)), MOST * len(blocks) + 64
+        self.joints, self.group, self.most = system.lines, len(masonry.joints), MOST * len(blocks) + 64
         self.body = free_numbers(blocks)
         self.widths = narrowest(masonry)
         self.sizes = np.array([blocks[i].size for i in masonry.free])
         self.softest = softest(self.joints, len(masonry.free))
-        self.pairs = pairs_of(masonry, joint_numbers(masonry, group))
+        self.pairs = pairs_of(masonry, joint)
         self.rest = np.where(self.body[:, None] >= 0, system.bodies["rest"][self.body], 0.0)
         self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.rest, strict=True)])
         self.first = np.cumsum([0, *(len(block.corners) for block in blocks)])

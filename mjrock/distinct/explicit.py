@@ -71,14 +71,14 @@ def solve_explicit(
     setup = setup_of(case, contacts, state)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
-    count = steps.samples
-    require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
+    count, bodies = steps.samples, len(scene.bodies.names)
+    require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
     books = Books.empty(
-        setup.system, len(set(scene.group)) + 1, 0 if setup.encounters is None else setup.encounters.most
+        setup.system, len(scene.contacts.joints) + 1, 0 if setup.encounters is None else setup.encounters.most
     )
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    samples = Samples.room(count, len(scene.names), books, scene.freedom, ledger=ledger)
+    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)

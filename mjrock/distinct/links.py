@@ -74,6 +74,13 @@ def pulled_until_broken(tie: Row, since: float, h: float) -> float:
     return tie.strength * (0.5 - since / h) if h > 0 else 0.0
 
 
+@inlined
+def elongation(tie: Row, length: float) -> float:
+    """Elastic elongation of a link with a spring [m], zero where one that only pulls is slack."""
+    elastic: float = length - tie.reach
+    return elastic if tie.push > 0 else max(0.0, elastic)
+
+
 @jitable
 def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int, ...]) -> None:
     """Add the forces of ties, dampers and constant forces at time t, and book what the last step of length h took."""
@@ -84,6 +91,7 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
             continue
         now = pull(tie, bodies, axes)
         beyond = now.length - tie.reach - tie.strength / tie.k
+        shorter = tie.reach - now.length - tie.push / tie.k
         if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
             left = tie.ultimate - tie.drawn
             tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
@@ -93,7 +101,10 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
                 tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
                 act(tie, bodies, now, -pulled_until_broken(tie, since, h))
                 continue
-        act(tie, bodies, now, -tie.k * max(0.0, now.length - tie.reach))
+        elif tie.push > 0 and shorter > 0:  # it slips the other way
+            tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter
+            books.ties[i] += tie.push * shorter
+        act(tie, bodies, now, -tie.k * elongation(tie, now.length))
     for i in range(len(system.dampers)):
         damper = system.dampers[i]
         now = pull(damper, bodies, axes)
@@ -116,7 +127,7 @@ def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
         tie = system.ties[i]
         if tie.broken < math.inf:
             continue
-        stretched = max(0.0, pull(tie, system.bodies, axes).length - tie.reach)
+        stretched = elongation(tie, pull(tie, system.bodies, axes).length)
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.forces)):
         row = system.forces[i]

@@ -21,7 +21,7 @@ from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joint_motion_in_space import joint_motion_in_space
-from ..result.joints import JointMotion, joint_numbers
+from ..result.joints import JointMotion
 from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.motion import SampledMotion
 from ..result.response import Response
@@ -87,8 +87,9 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def plastic_of(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, books = run.system.ties, run.books
-    columns = zip(run.scene.tie_names, ties["drawn"], books.ties, ties["broken"], books.broken, strict=True)
+    ties, books, links = run.system.ties, run.books, run.scene.links.sprung
+    start = run.scene.ties.reach - links.reach
+    columns = zip(links.names, ties["drawn"], books.ties, ties["broken"], books.broken, start, strict=True)
     return {name: Plastic(*(float(value) for value in values)) for name, *values in columns}
 
 
@@ -116,13 +117,13 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     masonry, scene, pose = case.masonry, run.scene, run.samples.pose
     flat = pose.reshape(len(pose), -1)
     followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
-    motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), flat)
+    motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()
-    of = joint_numbers(masonry, scene.group)
+    of = scene.contacts.joint
     np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])
     return {
         "joints": JointMotion(opening, motion.sliding, fallen),
@@ -171,16 +172,16 @@ def advice(stats: Mapping[str, Any]) -> str:
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     scene, samples = run.scene, run.samples.taken(kept)
-    energy, may_break = samples.energy, np.isfinite(scene.tie_ultimate)
-    dashpots = dict(zip(scene.damper_names, samples.dampers.T, strict=True))
-    dashpots |= dict(zip((*dict.fromkeys(scene.group), "encounters"), samples.dashpots.T, strict=True))
-    broken = zip(scene.tie_names, samples.broken.T, may_break, strict=True)
+    energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
+    dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
+    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
+    broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[kept],
         **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
         dashpots=dashpots,
         friction=np.asarray(energy["friction"] - energy["friction"][0]),
-        ties=dict(zip(scene.tie_names, samples.ties.T, strict=True)),
+        ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), samples.ends.T, strict=True)),
     )

@@ -134,7 +134,7 @@ def _link(d: int) -> Fields:
         *_vector(d, "origin"),  # the other end from the centroid of the anchor [m]
         *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]
         *_number("k", "c"),  # spring and dashpot [N/m, N s/m]
-        *_number("reach", "strength"),  # slack length of a tie [m], and its yield [N]
+        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
         *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
         *_number("pulled"),  # force of a damper in the last step [N]
     ]

@@ -10,7 +10,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
-from ..problem.wall.effects import Effect
+from ..problem.wall.effect import Effect
 from ..quantities import ON_ITS_FACE, Array
 from ..result.response import State
 from ..scene.course import Course
@@ -69,7 +69,7 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
-    limit, encounters = longest_step(system), Encounters(masonry, system, scene.group)
+    limit, encounters = longest_step(system), Encounters(masonry, system, scene.contacts.joint)
     return Setup(scene, course, encounters.made_room(system), limit, SHARE, encounters=encounters)
 
 

@@ -38,7 +38,7 @@ def ground_work(scene: Scene, course: Course, steps: Steps) -> Array:
     ground = course.ground
     for axis, shaking in ((0, ground.x), (freedom.translations - 1, ground.z), (1, ground.y)):
         if len(shaking.accel):
-            momentum = windows.mean[:, axis :: freedom.nv] @ scene.mass
+            momentum = windows.mean[:, axis :: freedom.nv] @ scene.bodies.mass
             _ground_work(shaking, steps.t, steps.h, windows.width, momentum, work)
     return work
 
@@ -53,13 +53,13 @@ class ContactWork(NamedTuple):
     """What the contacts take from a motion.
 
     Args:
-        groups: names of the groups of contacts.
-        dashpots, friction: work in the window of each step [J], shapes (steps, groups) and (steps,).
+        joints: names of the joints of the contacts.
+        dashpots, friction: work in the window of each step [J], shapes (steps, joints) and (steps,).
         lift: impulse that the rows of sliding contacts add to their normal force, over the impulse of the contact law
             in the steps in which they slide [-].
     """
 
-    groups: tuple[str, ...]
+    joints: tuple[str, ...]
     dashpots: Array
     friction: Array
     lift: float
@@ -67,13 +67,12 @@ class ContactWork(NamedTuple):
 
 def contact_work(scene: Scene, steps: Steps) -> ContactWork:
     """What the contacts take from a motion."""
-    groups = tuple(dict.fromkeys(scene.group))
-    work = Work(np.zeros((len(steps.t), len(groups))), np.zeros(len(steps.t)), np.zeros(2))
-    number = np.array([groups.index(name) for name in scene.group])
+    joints = scene.contacts.joints
+    work = Work(np.zeros((len(steps.t), len(joints))), np.zeros(len(steps.t)), np.zeros(2))
     points, room = points_of(scene, steps.method), Room.of(scene)
-    _contact_work(points, number, steps.record, steps.windows, steps.kinds, room, work)
+    _contact_work(points, scene.contacts.joint, steps.record, steps.windows, steps.kinds, room, work)
     lift, pressed = work.impulses.tolist()
-    return ContactWork(groups, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
+    return ContactWork(joints, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
 
 
 def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
@@ -82,7 +81,7 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     stored, taken = scene.accounts(windows.pose, windows.velocity, broken)
     lost = lost_by_breaking(scene, broken, len(steps.t))
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
-    groups, dashpots, friction, _ = contact_work(scene, steps)
+    joints, dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
     record = steps.record
     dampers = taken_by_dampers(scene.dampers, scene.freedom, record.pose, windows.mean, windows.width, record.damping)
@@ -92,19 +91,19 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
         kinetic=stored[:, 0],
         potential=stored[:, 1],
         elastic=stored[:, 2],
-        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate((*groups, *scene.damper_names))},
+        dashpots={name: _since_release(dashpots[:, i]) for i, name in enumerate((*joints, *scene.links.damped.names))},
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, course, steps)),
-        ties=dict(zip(scene.tie_names, (taken - taken[0]).T, strict=True)),
+        ties=dict(zip(scene.links.sprung.names, (taken - taken[0]).T, strict=True)),
         broken={name: account - account[0] for name, account in lost.items()},
     )
 
 
 def lost_by_breaking(scene: Scene, broken: Integers, steps: int) -> dict[str, Array]:
     """Elastic energy that each tie that may break has lost by doing so, up to each of a number of steps [J]."""
-    elastic = 0.5 * scene.tie_k * scene.ties.stretch**2
+    links, elastic = scene.links.sprung, 0.5 * scene.ties.k * scene.ties.stretch**2
     may = np.flatnonzero(np.isfinite(scene.ties.limit))
-    return {scene.tie_names[i]: np.where(np.arange(steps) >= broken[i], elastic[i], 0.0) for i in may}
+    return {links.names[i]: np.where(np.arange(steps) >= broken[i], elastic[i], 0.0) for i in may}
 
 
 def given_back(scene: Scene, steps: Steps) -> Array:
@@ -118,7 +117,7 @@ def given_back(scene: Scene, steps: Steps) -> Array:
     broken = np.maximum(
         2 * breaks(scene.ties, steps.pose, scene.places.freedom) - 1, 0
     )  # before the drift that ends at the pose
-    stored = scene.accounts(pose, np.zeros((len(pose), len(scene.masses))), broken)[0].sum(axis=1)
+    stored = scene.accounts(pose, np.zeros((len(pose), len(scene.bodies.masses))), broken)[0].sum(axis=1)
     gained: Array = stored[2::2] - stored[1::2]
     return gained
 
@@ -162,7 +161,7 @@ class Work(NamedTuple):
     """What the contacts take, to be filled.
 
     Args:
-        dashpots, friction: work in the window of each step [J], shapes (steps, groups) and (steps,).
+        dashpots, friction: work in the window of each step [J], shapes (steps, joints) and (steps,).
         impulses: of the lift of contacts that slide on their rows, and of their law [N s], shape (2,).
     """
 
@@ -192,8 +191,8 @@ class Room(NamedTuple):
     @classmethod
     def of(cls, scene: Scene) -> Room:
         """Room for a step of a scene."""
-        freedom, coordinates, contacts = scene.freedom, len(scene.masses), len(scene.k)
-        frames = (freedom.frames(len(scene.mass)) for _ in range(3))
+        freedom, coordinates, contacts = scene.freedom, len(scene.bodies.masses), len(scene.contacts.k)
+        frames = (freedom.frames(len(scene.bodies.mass)) for _ in range(3))
         return cls(*frames, *np.empty((3, coordinates)), *np.empty((2, contacts)))
 
 
@@ -248,9 +247,9 @@ def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> f
 
 @compiled
 def _contact_work(
-    points: Points, number: Integers, record: Record, windows: Windows, kinds: Kinds, room: Room, work: Work
+    points: Points, joint: Integers, record: Record, windows: Windows, kinds: Kinds, room: Room, work: Work
 ) -> None:
-    """Add up the work of dashpots and friction in the window of each step; `number` is the group of each contact."""
+    """Add up the work of dashpots and friction in the window of each step; `joint` is that of each contact."""
     places, law = points.places, points.law
     for n in range(len(record.h)):
         take_step(record, windows, places.axes, n, room)
@@ -264,11 +263,11 @@ def _contact_work(
             drag = drag_of(law.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
             pressed = -(law.k[i] * closed.value + drag.dashpot + drag.sprung)
             if not kinds.released_on[i] if n == 0 else closed.value >= 0:
-                work.dashpots[n, number[i]] += given
+                work.dashpots[n, joint[i]] += given
                 continue
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
             opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
-            work.dashpots[n, number[i]] += drag.dashpot * opened if pressed > 0 else given
+            work.dashpots[n, joint[i]] += drag.dashpot * opened if pressed > 0 else given
             if law.friction[i] > 0:
                 dragging, lift = record.friction[n, i], 0.0
                 if math.isnan(dragging):

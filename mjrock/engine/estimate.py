@@ -28,17 +28,17 @@ WORTH_SAYING = 3.0
 
 def explicit_seconds(scene: Scene, masonry: Masonry) -> float:
     """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
-    ratio = masonry.joint_shear / masonry.joint_stiffness
+    ratio, contacts = masonry.joint_shear / masonry.joint_stiffness, scene.contacts
     sprung = bool(np.isfinite(ratio).any())
     stiffer = float(np.max(ratio[np.isfinite(ratio)], initial=1.0))  # of the springs along normal and face
     stiffness = stiffer * scene.highest_frequency**2
-    step = SHARE * stable_step(stiffness, stiffness * float((scene.c / scene.k).max()))
-    return stepping_seconds(1 / step, len(scene.k), sprung=sprung, in_space=masonry.in_space)
+    step = SHARE * stable_step(stiffness, stiffness * float((contacts.c / contacts.k).max()))
+    return stepping_seconds(1 / step, len(contacts.k), sprung=sprung, in_space=masonry.in_space)
 
 
 def fitted_seconds(scene: Scene) -> tuple[float, float]:
     """Time of a second by steps that fit the motion [s], where little slides or strikes and where much does."""
-    unit = len(scene.k) * scene.highest_frequency
+    unit = len(scene.contacts.k) * scene.highest_frequency
     weak, strong = (WEAK, STRONG) if scene.freedom == PLANE else (WEAK_IN_SPACE, STRONG_IN_SPACE)
     return weak * unit, strong * unit
 

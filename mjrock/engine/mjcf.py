@@ -12,7 +12,6 @@ origin.)
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +20,7 @@ from .._version import __version__
 from ..geometry.frames import PLANE
 from ..method import METHOD, Method
 from ..quantities import GRAVITY, Array
-from ..scene.arrays import GROUND
+from ..scene.checks import GROUND
 from ..scene.scene import Scene
 from .points import points_of
 from .rows import Rows, Step, set_rows
@@ -80,11 +79,15 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         newmark_beta: Newmark's beta of the contact rows [-], see `mjrock.engine.solref.row`.
         keyframe: of the release. None stands for the scene at rest.
     """
-    corners = np.concatenate([rest + outline for rest, outline in zip(scene.rest, scene.outlines, strict=True)])
+    corners = np.concatenate(
+        [rest + outline for rest, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
+    )
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     fixed = pair_rows(scene, timestep, newmark_beta)
-    keyframe = Keyframe(scene.at_rest, np.zeros_like(scene.masses), np.empty(0)) if keyframe is None else keyframe
+    keyframe = (
+        Keyframe(scene.at_rest, np.zeros_like(scene.bodies.masses), np.empty(0)) if keyframe is None else keyframe
+    )
     head = HEAD.format(
         title=scene.title.replace("--", "- -"),
         version=__version__,
@@ -92,8 +95,8 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         timestep=value_text(timestep),
         gravity=value_text((0.0, 0.0, -GRAVITY)),
         impratio=value_text(fixed.impratio),
-        rows=' jacobian="sparse"' if len(scene.names) >= SPARSE_FROM else "",
-        start="" if len(scene.names) > 1 else 'warmstart="disable" ',
+        rows=' jacobian="sparse"' if len(scene.bodies.names) >= SPARSE_FROM else "",
+        start="" if len(scene.bodies.names) > 1 else 'warmstart="disable" ',
         center=value_text(in_space(middle)),
         extent=value_text(2 * half),
         meshes="".join(f"\n    {mesh}" for mesh in meshes(scene)),
@@ -110,7 +113,7 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         *(f"  {site}" for site in sites(scene, GROUND)),
         "</worldbody>",
         *section("contact", _pairs(scene, fixed.rows)),
-        *section("tendon", chain(_ties(scene), _dampers(scene))),
+        *section("tendon", _links(scene)),
         *section("actuator", _forces(scene)),
         *section("custom", _records(scene, newmark_beta)),
         *section("keyframe", iter(["  " + tag("key", name="release", **key)])),
@@ -143,7 +146,7 @@ class Keyframe(NamedTuple):
 
 
 class FixedRows(NamedTuple):
-    """The rows of all pairs at one step, the impratio of the model [-], and the dampers [N s/m], shape (d,)."""
+    """The rows of all pairs at one step, the impratio of the model [-], and the dashpots of the links [N s/m], (t,)."""
 
     rows: Rows
     impratio: float
@@ -152,30 +155,27 @@ class FixedRows(NamedTuple):
 
 def pair_rows(scene: Scene, timestep: float, newmark_beta: float, method: Method = METHOD) -> FixedRows:
     """The rows of a scene at a fixed step."""
-    points, m = points_of(scene, method), len(scene.k)
+    points, m = points_of(scene, method), len(scene.contacts.k)
     rows, step = Rows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
-    return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.damper_c)
+    return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.links.c)
 
 
-def _ties(scene: Scene) -> Iterator[str]:
-    """The ties: springs that are slack up to a length and yield at a force."""
-    for i, name in enumerate(scene.tie_names):
-        yields = {} if scene.ties.stretch[i] == np.inf else {"springyield": scene.ties.stretch[i]}
-        spring = {"springlength": (0, scene.tie_length[i]), "stiffness": scene.tie_k[i], **yields}
+def _links(scene: Scene) -> Iterator[str]:
+    """The links: tendons with a spring that is slack up to a length and yields at a force, and with a dashpot."""
+    links, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
+    for i, name in enumerate(links.names):
+        law: dict[str, object] = {"damping": links.c[i]} if links.c[i] > 0 or links.k[i] == 0 else {}
+        if links.k[i] > 0:
+            yields = {} if links.strength[i] == np.inf else {"springyield": links.strength[i] / links.k[i]}
+            slack_from = lengths[name] if links.push[i] > 0 else 0
+            law = {"springlength": (slack_from, lengths[name]), "stiffness": links.k[i], **yields, **law}
         ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
-        yield "  " + tag("spatial", ends, name=name, **spring)
-
-
-def _dampers(scene: Scene) -> Iterator[str]:
-    """The dampers: tendons that resist the rate of their length."""
-    for name, c in zip(scene.damper_names, scene.damper_c, strict=True):
-        ends = "".join(tag("site", site=site) for site in (f"{name}_anchor", name))
-        yield "  " + tag("spatial", ends, name=name, damping=c)
+        yield "  " + tag("spatial", ends, name=name, **law)
 
 
 def _forces(scene: Scene) -> Iterator[str]:
     """The constant forces: actuators that need no control."""
-    for name, force in zip(scene.force_names, scene.force, strict=True):
+    for name, force in zip(scene.forces.names, scene.forces.force, strict=True):
         yield "  " + tag(
             "general",
             name=name,
@@ -190,8 +190,8 @@ def _forces(scene: Scene) -> Iterator[str]:
 
 def _pairs(scene: Scene, rows: Rows) -> Iterator[str]:
     """The contacts."""
-    for i, (point, face) in enumerate(zip(scene.point_names, scene.face_names, strict=True)):
-        mu = scene.friction[i]
+    for i, (point, face) in enumerate(zip(scene.contacts.point_names, scene.contacts.face_names, strict=True)):
+        mu = scene.contacts.friction[i]
         grip: dict[str, object] = {"condim": "1"}
         if mu > 0:
             grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": rows.solreffriction[i]}

@@ -62,15 +62,15 @@ class Engine:
     @classmethod
     def of(cls, model: mujoco.MjModel, scene: Scene) -> Engine:
         """The engine of a model that was compiled from the text of a scene. It raises what `compile` raises."""
-        inverse = body_weight(scene.mass, scene.freedom.translations)
-        for j, name in enumerate(scene.names):
+        inverse = body_weight(scene.bodies.mass, scene.freedom.translations)
+        for j, name in enumerate(scene.bodies.names):
             weighed = float(model.body_invweight0[j + 1, 0])
             if not math.isclose(weighed, inverse[j], rel_tol=1e-9):
                 raise SimulationError(
                     f"MuJoCo {mujoco.__version__} gives the body {name} the inverse weight {weighed:g} 1/kg instead of "
                     f"{inverse[j]:g} 1/kg: its contact stiffness would not be the one asked for"
                 )
-        if tuple(model.pair(i).name for i in range(model.npair)) != scene.point_names:
+        if tuple(model.pair(i).name for i in range(model.npair)) != scene.contacts.point_names:
             raise SimulationError(f"MuJoCo {mujoco.__version__} does not keep the order of the contacts in the text")
         data = mujoco.MjData(model)
         require_room(model, data)
@@ -78,7 +78,7 @@ class Engine:
             model,
             data,
             Memory.of(model, data),
-            Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.damper_c)),
+            Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.c)),
         )
 
     def follow(self, timestep: float, fixed: FixedRows) -> None:
@@ -86,7 +86,7 @@ class Engine:
         self.model.opt.timestep, self.model.opt.impratio = timestep, fixed.impratio
         for values, wanted in zip(self.memory.rows, fixed.rows, strict=True):
             values[:] = wanted
-        self.model.tendon_damping[len(self.model.tendon_damping) - len(fixed.damping) :] = fixed.damping
+        self.model.tendon_damping[:] = fixed.damping
 
     def place(self, course: Course) -> None:
         """Set pose and velocity of the start.
@@ -100,9 +100,12 @@ class Engine:
         if model.nplastic:
             mujoco.mj_fwdPosition(model, data)
             yields = np.flatnonzero(model.tendon_plasticadr >= 0)
-            upper = model.tendon_plasticadr[yields] + 1  # of the range in which a tie is slack
-            reached = data.ten_length[yields] - model.tendon_springyield[yields]
-            data.plastic[upper] = np.maximum(data.plastic[upper], reached)
+            lower = model.tendon_plasticadr[yields]  # of the range in which a tie is slack, the upper end behind it
+            length, stretch = data.ten_length[yields], model.tendon_springyield[yields]
+            pushes = data.plastic[lower] == data.plastic[lower + 1]
+            data.plastic[lower + 1] = np.maximum(data.plastic[lower + 1], length - stretch)
+            shorter = np.minimum(data.plastic[lower + 1], length + stretch)[pushes]
+            data.plastic[lower[pushes]] = data.plastic[lower[pushes] + 1] = shorter
         mujoco.mj_forward(model, data)  # an error of the engine is one of Python here, and the end in a compiled loop
 
     @property
@@ -172,5 +175,5 @@ def released_mjcf(scene: Scene, course: Course, timestep: float, newmark_beta: f
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
         engine.release(course)
-        keyframe = Keyframe(course.pose, engine.data.qvel.reshape(len(scene.names), -1), engine.data.plastic)
+        keyframe = Keyframe(course.pose, engine.data.qvel.reshape(len(scene.bodies.names), -1), engine.data.plastic)
         return scene_mjcf(scene, timestep, newmark_beta, keyframe)

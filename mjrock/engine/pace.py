@@ -69,17 +69,17 @@ class Pace(NamedTuple):
         """The limits for a scene and what happens to it."""
         short, weight = short_step(scene, accuracy, method), points_of(scene, method).inertia.weight
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
-        represented = min(longest_represented_step(k, W) for k, W in zip(scene.k, weight, strict=True))
+        represented = min(longest_represented_step(k, W) for k, W in zip(scene.contacts.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.principal)
+        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.freedom, scene.bodies.principal)
         slowed = math.sqrt(method.dashpot * accuracy) / max(slowing, 1e-300)
         longest = max(short, min(rocking, represented, stable, slowed, *course.sampling))
-        damped = scene.c / (longest * scene.k) if scene.damped_joints else 0.0
+        damped = scene.contacts.c / (longest * scene.contacts.k) if scene.limits.damped_joints else 0.0
         ringing = np.where(scene.bears > 0, np.maximum(method.ringing_borne - damped, 0.0), method.ringing_open)
         return cls(
             short,
             longest,
-            math.sqrt(method.taut * accuracy) / scene.tie_frequency if len(scene.tie_k) else math.inf,
+            math.sqrt(method.taut * accuracy) / scene.tie_frequency if len(scene.links.sprung.k) else math.inf,
             accuracy,
             2 * float(scene.rest_energies[2]),
             scene.highest_frequency,
@@ -96,7 +96,7 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     `mjrock.engine.solref.row`. It stops what it meets, and how it does so no longer matters.
     """
     spring = min(method.most, math.sqrt(method.short * accuracy)) / scene.highest_frequency
-    strongest = float(np.max(scene.c * inverse_weights(scene)))
+    strongest = float(np.max(scene.contacts.c * inverse_weights(scene)))
     lightest = LIGHTEST[scene.freedom.translations] * strongest
     dashpot = math.sqrt(method.dashpot * accuracy) / lightest if strongest else math.inf
     return min(spring, max(dashpot, spring / 8))

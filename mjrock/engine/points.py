@@ -48,8 +48,9 @@ class Points(NamedTuple):
 
 def inverse_weights(scene: Scene) -> Array:
     """Sum of MuJoCo's inverse weights of the two bodies of each contact [1/kg], shape (m,)."""
-    inverse = body_weight(scene.mass, scene.freedom.translations)
-    return frozen(inverse[scene.point_body] + np.where(scene.face_body < 0, 0.0, inverse[scene.face_body]))
+    inverse = body_weight(scene.bodies.mass, scene.freedom.translations)
+    face = scene.contacts.face_body
+    return frozen(inverse[scene.contacts.body] + np.where(face < 0, 0.0, inverse[face]))
 
 
 @lru_cache(maxsize=64)
@@ -61,16 +62,16 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
     """
     weight = inverse_weights(scene)
     held = method.held_masses * scene.freedom.translations / (3 * weight)
-    mild = scene.damped_joints & (scene.bears > 0) & (scene.c * weight < scene.highest_frequency)
+    mild = scene.limits.damped_joints & (scene.bears > 0) & (scene.contacts.c * weight < scene.highest_frequency)
     return Points(
         places=scene.places,
-        law=Law(scene.k, scene.c, scene.friction),
+        law=Law(scene.contacts.k, scene.contacts.c, scene.contacts.friction),
         inertia=RowInertia(
             weight=weight,
             overdamped=np.where(mild, method.borne, method.overdamped),
-            friction=frozen(np.where(scene.friction > 0, held, 0.0)),
-            growth=0.0 if np.any(scene.holds) else method.held_growth,
+            friction=frozen(np.where(scene.contacts.friction > 0, held, 0.0)),
+            growth=0.0 if np.any(scene.contacts.holds) else method.held_growth,
         ),
-        reach=Reach(scene.bears, scene.reach, scene.overlap),
-        rubs=frozen((scene.friction > 0) & np.logical_not(scene.holds)),
+        reach=Reach(scene.bears, scene.limits.reach, scene.limits.overlap),
+        rubs=frozen((scene.contacts.friction > 0) & np.logical_not(scene.contacts.holds)),
     )

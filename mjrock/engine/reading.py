@@ -81,9 +81,10 @@ class AskedWall:
         count = case.returning(theta)
         met = np.searchsorted(steps.windows.t, times[times <= t[count - 1]])
         slip = steps.pose[:, 0] - case.wall.pose(theta)[:, 0]
-        deepest, groups = -gaps(scene.places, steps.pose).min(axis=0), np.array(scene.group)
+        deepest, contacts = -gaps(scene.places, steps.pose).min(axis=0), scene.contacts
         stats = {"base_displacement": float(np.interp(case.duration, t, slip) - slip[0])}
-        stats |= {f"deepest_{name}": float(max(0.0, *deepest[groups == name])) for name in dict.fromkeys(scene.group)}
+        for joint, name in enumerate(contacts.joints):
+            stats[f"deepest_{name}"] = float(max(0.0, *deepest[contacts.joint == joint]))
         return Reading(
             *ending(case, t, theta, energy, uplift.energy, steps.velocity[-1]),
             marks=np.unique(np.concatenate([[0], np.minimum(met, count - 1), [count - 1]])),
@@ -104,7 +105,7 @@ class AskedMasonry:
         """Openings, slidings and falls. No energy may appear from one of MARKS times to a later one before a fall."""
         masonry, t = self.case.masonry, steps.t
         followed, up = (joint_motion_in_space, 2) if masonry.in_space else (joint_motion, 1)
-        motion = followed(masonry, scene.places, scene.group, scene.at_rest.ravel(), steps.pose)
+        motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose)
         drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
@@ -126,5 +127,5 @@ def left_behind(scene: Scene, course: Course, steps: Steps) -> dict[str, float]:
     freedom = scene.freedom
     last, first = steps.pose[-1].reshape(-1, freedom.nq), scene.at_rest
     shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
-    far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.extent
-    return {name: end for name, distance in zip(scene.names, far, strict=True) if distance >= 0.5 * far.max()}
+    far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
+    return {name: end for name, distance in zip(scene.bodies.names, far, strict=True) if distance >= 0.5 * far.max()}

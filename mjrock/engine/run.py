@@ -106,12 +106,13 @@ def stats_of(scene: Scene, steps: Steps) -> dict[str, Any]:
 def plastic_of(scene: Scene, steps: Steps, taken: Array, broken: Integers, duration: float) -> dict[str, Plastic]:
     """What each tie has yielded when the duration [s] is over, from what it had taken [J] by each step, (n, ties)."""
     plastic = {}
-    for i, (name, strength) in enumerate(zip(scene.tie_names, scene.tie_strength.tolist(), strict=True)):
+    links = scene.links.sprung
+    for i, (name, strength) in enumerate(zip(links.names, links.strength.tolist(), strict=True)):
         energy = float(np.interp(duration, steps.t, taken[:, i]))
-        plastic[name] = Plastic(energy / strength, energy)
+        plastic[name] = Plastic(energy / strength, energy, start=float(scene.ties.reach[i] - links.reach[i]))
         if broken[i] < len(steps.t) and (when := float(steps.windows.t[broken[i]])) <= duration:
-            energy = strength * float(scene.tie_ultimate[i])
-            plastic[name] = Plastic(energy / strength, energy, when, 0.5 * strength**2 / float(scene.tie_k[i]))
+            energy = strength * float(links.ultimate[i])
+            plastic[name] = Plastic(energy / strength, energy, when, 0.5 * strength**2 / float(links.k[i]))
     return plastic
 
 
@@ -133,7 +134,7 @@ def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, sc
         StepError: if energy has appeared.
     """
     windows = steps.windows
-    yields = bool(np.isfinite(scene.tie_strength).any())  # a tie yields between the marks too
+    yields = bool(np.isfinite(scene.links.sprung.strength).any())  # a tie yields between the marks too
     at = np.arange(marks[-1] + 1) if yields else marks
     broken = (breaks(scene.ties, steps.pose, scene.places.freedom),) if yields else ()
     stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
@@ -153,7 +154,7 @@ def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) 
         advice = f"the largest sound step is {sound:.3g} s"
     else:
         advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
-    if accuracy is None and scene.damped_joints and h * scene.highest_frequency > SLIDING:
+    if accuracy is None and scene.limits.damped_joints and h * scene.highest_frequency > SLIDING:
         advice = (
             f"joints that slide are unstable at a fixed step beyond {SLIDING / scene.highest_frequency:.3g} s "
             f"(omega h = {SLIDING:g}, omega the highest frequency of the closed contacts); {advice}"

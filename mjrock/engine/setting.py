@@ -49,9 +49,9 @@ class Setting(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
-        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.damper_c))
+        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.c))
         acting = scene.dampers, damping, refines, float(course.duration)
-        return cls(points_of(scene, method), ties, scene.masses, scene.products, course.ground, *acting)
+        return cls(points_of(scene, method), ties, scene.bodies.masses, scene.bodies.products, course.ground, *acting)
 
 
 @jitable

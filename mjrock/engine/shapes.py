@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.frames import PLANE
 from ..quantities import Array
-from ..scene.arrays import GROUND
+from ..scene.checks import GROUND
 from ..scene.scene import Scene
 from .tags import tag, value_text
 
@@ -38,24 +38,24 @@ def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
 
 def world(scene: Scene) -> Iterator[str]:
     """The faces of the ground, and each body with its faces and its contact points."""
-    faces = {name: i for i, name in reversed(list(enumerate(scene.face_names)))}  # by its first point
+    faces = {name: i for i, name in reversed(list(enumerate(scene.contacts.face_names)))}  # by its first point
     paved: set[float] = set()
     for name in sorted(faces, key=faces.__getitem__):
-        if scene.face_body[faces[name]] == GROUND:
-            height = float(scene.face[faces[name]][-1])
+        if scene.contacts.face_body[faces[name]] == GROUND:
+            height = float(scene.contacts.face_at[faces[name]][-1])
             yield from _ground(scene, name, hidden=scene.freedom != PLANE and height in paved)
             paved.add(height)
     shades = tints(scene)
-    for j in range(len(scene.names)):
+    for j in range(len(scene.bodies.names)):
         yield from _body(scene, j, faces, shades[j])
 
 
 def tints(scene: Scene) -> list[dict[str, object]]:
     """Colours of the bodies: in space, where there are several, another one than those of the blocks they touch."""
-    if scene.freedom == PLANE or len(scene.names) == 1:
-        return [{}] * len(scene.names)
-    touching: list[set[int]] = [set() for _ in scene.names]
-    for body, face in zip(scene.point_body.tolist(), scene.face_body.tolist(), strict=True):
+    if scene.freedom == PLANE or len(scene.bodies.names) == 1:
+        return [{}] * len(scene.bodies.names)
+    touching: list[set[int]] = [set() for _ in scene.bodies.names]
+    for body, face in zip(scene.contacts.body.tolist(), scene.contacts.face_body.tolist(), strict=True):
         if face != GROUND:
             touching[body].add(face)
             touching[face].add(body)
@@ -69,10 +69,10 @@ def tints(scene: Scene) -> list[dict[str, object]]:
 
 def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) -> Iterator[str]:
     """A body with its joints, its shape, its faces by their first points, and its contact points."""
-    name, radius, outline = scene.names[j], scene.radius, scene.outlines[j]
-    prefix = "" if len(scene.names) == 1 else f"{name}_"
-    yield f"  <body name={quoteattr(name)} pos={value_text(in_space(scene.rest[j], radius))}>"
-    yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.mass[j], **_inertia(scene, j))
+    name, radius, outline = scene.bodies.names[j], scene.radius, scene.bodies.outlines[j]
+    prefix = "" if len(scene.bodies.names) == 1 else f"{name}_"
+    yield f"  <body name={quoteattr(name)} pos={value_text(in_space(scene.bodies.rest[j], radius))}>"
+    yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **_inertia(scene, j))
     for joint, kind, axis in HINGE if scene.freedom == PLANE else BALL:
         yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)
     if scene.freedom != PLANE:
@@ -81,11 +81,11 @@ def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) 
         yield "    " + tag("geom", name=name, type="box", size=_half(scene, outline), material="brick", **tint)
     else:
         yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick", **tint)
-    for face in (face for face, i in faces.items() if scene.face_body[i] == j):
+    for face in (face for face, i in faces.items() if scene.contacts.face_body[i] == j):
         yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face]))
-    for i in np.flatnonzero(scene.point_body == j):
-        at = in_space(scene.point[i])
-        yield "    " + tag("geom", name=scene.point_names[i], type="sphere", group="3", size=radius, pos=at)
+    for i in np.flatnonzero(scene.contacts.body == j):
+        at = in_space(scene.contacts.at[i])
+        yield "    " + tag("geom", name=scene.contacts.point_names[i], type="sphere", group="3", size=radius, pos=at)
     yield from (f"    {site}" for site in sites(scene, j))
     yield "  </body>"
 
@@ -94,32 +94,31 @@ def _inertia(scene: Scene, j: int) -> dict[str, object]:
     """Moments of inertia of a body: of the plane, those of a rectangle about the other two axes; any will do that can
     be."""
     if scene.freedom == PLANE:
-        mass, (width, height) = scene.mass[j], np.ptp(scene.outlines[j], axis=0)
-        across = [mass * (scene.length**2 + side**2) / 12 for side in (height, width)]
-        if not abs(across[0] - across[1]) <= scene.inertia[j] <= sum(across):
-            across = [scene.inertia[j]] * 2
-        return {"diaginertia": (across[0], scene.inertia[j], across[1])}
-    moments = np.diagonal(scene.inertia[j])
-    if not scene.products[j].any():
+        mass, (width, height) = scene.bodies.mass[j], np.ptp(scene.bodies.outlines[j], axis=0)
+        across = [mass * (scene.bodies.length**2 + side**2) / 12 for side in (height, width)]
+        if not abs(across[0] - across[1]) <= scene.bodies.inertia[j] <= sum(across):
+            across = [scene.bodies.inertia[j]] * 2
+        return {"diaginertia": (across[0], scene.bodies.inertia[j], across[1])}
+    moments = np.diagonal(scene.bodies.inertia[j])
+    if not scene.bodies.products[j].any():
         return {"diaginertia": moments}
-    return {"fullinertia": np.concatenate([moments, scene.products[j]])}
+    return {"fullinertia": np.concatenate([moments, scene.bodies.products[j]])}
 
 
 def sites(scene: Scene, body: int) -> Iterator[str]:
-    """Ends of ties and points of forces on a body or on the ground, which is raised by the radius of the points."""
+    """Ends of links and points of forces on a body or on the ground, which is raised by the radius of the points."""
+    links = scene.links
     ends = (
-        (scene.tie_names, scene.tie_body, scene.tie_point),
-        ([f"{name}_anchor" for name in scene.tie_names], scene.anchor_body, scene.anchor),
-        (scene.damper_names, scene.damper_body, scene.damper_point),
-        ([f"{name}_anchor" for name in scene.damper_names], scene.damper_anchor_body, scene.damper_anchor),
-        (scene.force_names, scene.force_body, scene.force_point),
+        (links.names, links.body, links.at),
+        ([f"{name}_anchor" for name in links.names], links.anchor_body, links.anchor_at),
+        (scene.forces.names, scene.forces.body, scene.forces.at),
     )
     raised = scene.radius if body == GROUND else 0.0
     for names, bodies, places in ends:
         for name, on, place in zip(names, bodies, places, strict=True):
             if on == body:
                 yield tag("site", name=name, pos=in_space(place, raised))
-    if body == GROUND and scene.force_names:
+    if body == GROUND and scene.forces.names:
         yield tag("site", name="origin")
 
 
@@ -128,8 +127,8 @@ def _ground(scene: Scene, name: str, *, hidden: bool) -> Iterator[str]:
 
     In space no other face is seen, and of several faces at one height, which would flicker, only the first.
     """
-    i = scene.face_names.index(name)
-    face, normal, radius = scene.face[i], scene.normal[i], scene.radius
+    i = scene.contacts.face_names.index(name)
+    face, normal, radius = scene.contacts.face_at[i], scene.contacts.normal[i], scene.radius
     at = in_space(face - radius * normal, radius)
     layer = {"group": "3"} if hidden else {}
     if normal[-1] == 1:
@@ -137,23 +136,23 @@ def _ground(scene: Scene, name: str, *, hidden: bool) -> Iterator[str]:
     elif scene.freedom == PLANE:
         yield from _slab(scene, name, i, at)
     else:
-        size = (scene.extent, scene.extent, 1.0)
+        size = (scene.bodies.extent, scene.bodies.extent, 1.0)
         yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=normal, group="3")
 
 
 def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[str]:
     """The face of point i, which is not level, as a plane at a place, and the slab that is seen behind it."""
-    x, z = scene.face[i]
-    nx, nz = scene.normal[i]
-    met = np.array([face == name for face in scene.face_names])
-    along = (scene.rest[scene.point_body] + scene.point)[met] - scene.face[i]
+    x, z = scene.contacts.face_at[i]
+    nx, nz = scene.contacts.normal[i]
+    met = np.array([face == name for face in scene.contacts.face_names])
+    along = (scene.bodies.rest[scene.contacts.body] + scene.contacts.at)[met] - scene.contacts.face_at[i]
     places = along @ np.array([nz, -nx])
     half, middle = 0.5 * float(np.ptp(places)), 0.5 * float(places.max() + places.min())
     x, z = x + middle * nz, z - middle * nx
-    size, axis = (half, 0.6 * scene.length, 1.0), (nx, 0.0, nz)
+    size, axis = (half, 0.6 * scene.bodies.length, 1.0), (nx, 0.0, nz)
     yield "  " + tag("geom", name=name, type="plane", size=size, pos=at, zaxis=axis, group="3")
     thick = 0.15 * half
-    slab, behind = (half, 0.6 * scene.length, thick), (x - thick * nx, 0.0, z - thick * nz)
+    slab, behind = (half, 0.6 * scene.bodies.length, thick), (x - thick * nx, 0.0, z - thick * nz)
     yield "  " + tag("geom", name=f"{name}_wall", type="box", size=slab, pos=behind, zaxis=axis, material="plaster")
 
 
@@ -163,19 +162,21 @@ def _plate(scene: Scene, i: int) -> dict[str, object]:
     It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
     be at the origin, and a thinner plate of a square block would have its middle a radius away from there.
     """
-    extent, deep, normal = scene.extent, 2 * scene.extent, scene.normal[i]
-    across = 0.6 * scene.length if scene.freedom == PLANE else 4 * extent
-    at = in_space(scene.face[i] - (deep + scene.radius) * normal)
+    extent, deep, normal = scene.bodies.extent, 2 * scene.bodies.extent, scene.contacts.normal[i]
+    across = 0.6 * scene.bodies.length if scene.freedom == PLANE else 4 * extent
+    at = in_space(scene.contacts.face_at[i] - (deep + scene.radius) * normal)
     return {"size": (4 * extent, across, deep), "pos": at, "zaxis": in_space(normal)}
 
 
 def meshes(scene: Scene) -> Iterator[str]:
     """The bodies that are no boxes; those of the plane as prisms."""
-    for name, outline in zip(scene.names, scene.outlines, strict=True):
+    for name, outline in zip(scene.bodies.names, scene.bodies.outlines, strict=True):
         if not _is_box(outline):
             vertices = outline
             if scene.freedom == PLANE:
-                vertices = np.array([(x, y, z) for y in (-scene.length / 2, scene.length / 2) for x, z in outline])
+                vertices = np.array(
+                    [(x, y, z) for y in (-scene.bodies.length / 2, scene.bodies.length / 2) for x, z in outline]
+                )
             yield tag("mesh", name=name, vertex=np.ravel(vertices))
 
 
@@ -183,7 +184,7 @@ def _half(scene: Scene, outline: Array) -> tuple[float, ...]:
     """Half the sizes of a box."""
     size = np.ptp(outline, axis=0)
     if scene.freedom == PLANE:
-        return size[0] / 2, scene.length / 2, size[1] / 2
+        return size[0] / 2, scene.bodies.length / 2, size[1] / 2
     return tuple(size / 2)
 
 

@@ -87,7 +87,7 @@ def fixed_steps(
         done += n
         return n, done * timestep, ended
 
-    record, contacts = _recorded(engine, course.duration, advance), len(scene.k)
+    record, contacts = _recorded(engine, course.duration, advance), len(scene.contacts.k)
     kind = np.zeros(len(record.t), dtype=np.int64)
     kinds = Kinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on)
     return Steps(record, kinds, method=method, freedom=setting.points.places.freedom)

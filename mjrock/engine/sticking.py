@@ -56,16 +56,17 @@ class Joints(NamedTuple):
     @classmethod
     def of_scene(cls, scene: Scene) -> Joints:
         """The joints of a scene in which every body stands on one other body or on the ground; else none."""
-        rough = (scene.friction > 0) & (scene.bears > 0)
+        rough = (scene.contacts.friction > 0) & (scene.bears > 0)
         below = {
-            int(body): set(scene.face_body[rough & (scene.point_body == body)]) for body in scene.point_body[rough]
+            int(body): set(scene.contacts.face_body[rough & (scene.contacts.body == body)])
+            for body in scene.contacts.body[rough]
         }
         order: list[int] = []
         if all(len(bodies) == 1 for bodies in below.values()):
             order = sorted(below, key=lambda body: _height(body, below))
-        of = np.full(len(scene.k), -1)
+        of = np.full(len(scene.contacts.k), -1)
         for joint, body in enumerate(order):
-            of[rough & (scene.point_body == body)] = joint
+            of[rough & (scene.contacts.body == body)] = joint
         ways = scene.freedom.translations - 1
         return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), ways)))
 

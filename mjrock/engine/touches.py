@@ -62,11 +62,19 @@ class Touches(NamedTuple):
 
 @jitable
 def follow(places: Places, ties: Ties, frames: Array, v: Array, a: Array, openings: Openings) -> None:
-    """Write how the gap of every contact and the slack of every tie change. A tie that goes taut is a touch too."""
+    """Write how the gap of every contact and the slack of every tie change. A tie that goes taut is a touch too.
+
+    A link that also pushes is never slack. It counts as one that is taut by its elongation or its shortening.
+    """
+    contacts = len(places.body)
     for i in range(len(openings.value)):
         now = opening(places, ties, i, frames, v, a)
         openings.value[i], openings.rate[i] = now.value, now.rate
         openings.linear[i], openings.swept[i] = now.linear, now.swept
+        if i >= contacts and ties.squeeze[i - contacts] > 0:
+            side = -1.0 if now.value > 0 else 1.0
+            openings.value[i], openings.rate[i] = side * now.value - 2 * ROUNDING, side * now.rate
+            openings.linear[i], openings.swept[i] = side * now.linear, side * now.swept
 
 
 @jitable

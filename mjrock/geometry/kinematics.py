@@ -63,6 +63,7 @@ class Ties(NamedTuple):
             the tie has broken.
         stretch: elongation at which the tie yields [m], infinite for one that does not, shape (t,).
         limit: length beyond which the tie breaks [m], infinite for one that never does, shape (t,).
+        squeeze: shortening below its reach at which it yields [m], zero for one that only pulls, shape (t,).
     """
 
     body: Integers
@@ -74,6 +75,7 @@ class Ties(NamedTuple):
     reach: Array
     stretch: Array
     limit: Array
+    squeeze: Array
 
 
 class Forces(NamedTuple):
@@ -251,14 +253,18 @@ def opening(places: Places, ties: Ties, i: int, frames: Array, v: Array, a: Arra
 
 @jitable
 def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> tuple[float, float]:
-    """Elastic elongation of tie i, and by how much it has just yielded [m]. Its reach is brought up to date.
+    """Elastic elongation of tie i, and by how much it has just yielded either way [m]. Its reach is brought up to date.
 
     The velocities v of the bodies make no difference.
     """
     pulled = -slack(ties, i, frames, v, v, axes).value
     yielded = max(pulled - ties.stretch[i], 0.0)
+    if ties.squeeze[i] == 0:
+        ties.reach[i] += yielded
+        return max(pulled - yielded, 0.0), yielded
+    yielded += min(pulled + ties.squeeze[i], 0.0)
     ties.reach[i] += yielded
-    return max(pulled - yielded, 0.0), yielded
+    return pulled - yielded, abs(yielded)
 
 
 @jitable

@@ -12,7 +12,9 @@ from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..problem.wall.effects import AddedMass, Load, Thrust, Tie
+from ..problem.wall.effect import Anchored, Effect
+from ..problem.wall.effects import forces_of
+from ..problem.wall.in_space import Point
 from ..quantities import Array, Flags
 from ..result.ties import elongation_of, held_by
 from .bodies import Bodies
@@ -61,10 +63,10 @@ def frame_view(ax: Axes, bodies: Bodies, room: float = 0.06) -> None:
 def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     """Draw what a wall meets and carries. The limits of the axes are set for all frames."""
     wall, height = case.block, 2 * case.block.h
-    ties, forces = case.each(Tie), case.each(Load) + case.each(Thrust)
+    ties, forces = list(case.links.values()), list(forces_of(case.effects).values())
     low, high = bodies.extent()
     behind = max([0.2 * height, *(min(1.03 * tie.length, 0.5 * height) for tie in ties)])  # anchors that are far hide
-    reach = (2.6 * ARROW if case.each(Thrust) else 0.08) * height
+    reach = (2.6 * ARROW if any(force[0] for _, force in forces) else 0.08) * height
     left, right = min(-wall.b - behind, low[0] - 0.05 * height), max(high[0], wall.b) + reach
     ax.set_xlim(left, right)
     ax.set_ylim(min(-0.07 * height, low[1]), max(high[1], height) + (1.7 * ARROW if forces else 0.05) * height)
@@ -81,54 +83,61 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
         updates.append(_tie(ax, case, tie, bodies, markersize=6))
         at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
-        note = ax.annotate(text, at, (0, 3), textcoords="offset points", fontsize=6, color=STEEL, va="bottom", zorder=6)
+        look = {"fontsize": 6, "color": tie.colour, "va": "bottom", "zorder": 6}
+        note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox({"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.3})
-    updates += [_force(ax, case, effect, bodies) for effect in forces]
+    updates += [_force(ax, case, effect, force, bodies) for effect, force in forces]
     updates += [_mass(ax, case, added, bodies) for added in case.wall.masses]
     return together(updates)
 
 
 def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
-    """Ties of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
+    """Links of blocks, each from its block to an anchor. An anchor that is far lies at the edge of the picture."""
     low, high = bodies.extent()
-    ties, updates = case.each(Tie), []
+    ties, updates = case.links, []
     edge = float(low[0]) - 0.25 * float(high[1] - low[1])
-    for i, tie in enumerate(ties):
+    for name, tie in ties.items():
         updates.append(_tie(ax, case, tie, bodies, markersize=5, edge=edge))
         place = edge, held_by(case, tie)[1][1] + tie.rise
-        ax.annotate(f"tie_{i}", place, (4, 4), textcoords="offset points", fontsize=7, color=STEEL)
+        ax.annotate(name, place, (4, 4), textcoords="offset points", fontsize=7, color=tie.colour)
     if ties:
         ax.set_xlim(left=edge - 0.03 * float(high[1] - low[1]))
     return together(updates)
 
 
 def _tie(
-    ax: Axes, case: Case | MasonryCase, tie: Tie, bodies: Bodies, *, markersize: float, edge: float = -np.inf
+    ax: Axes, case: Case | MasonryCase, tie: Anchored, bodies: Bodies, *, markersize: float, edge: float = -np.inf
 ) -> Update:
-    """A tie from the point that it holds to its anchor: solid where it pulls, dotted where it is slack, gone once it
+    """A link from the point that it holds to its anchor: solid where it pulls, dotted where it is slack, gone once it
     broke. An anchor beyond an x [m] is drawn there."""
     body, held, centroid = held_by(case, tie)
-    anchor = held + np.array([-tie.length, tie.rise])
+    anchor = tie.anchor_of(held)
     if anchor[0] < edge:
         anchor = held + (anchor - held) * (held[0] - edge) / tie.length
     pulls, broken = pulling(case, tie, bodies.poses)
-    (line,) = ax.plot([], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
-    ax.plot(*anchor, marker="s", markersize=markersize, color=STEEL, zorder=4)
+    (line,) = ax.plot([], [], color=tie.colour, linewidth=1.8, zorder=4, animated=True)
+    ax.plot(*anchor, marker="s", markersize=markersize, color=tie.colour, zorder=4)
 
     def update(frame: int) -> None:
         point = bodies.placed(frame, body, (held - centroid)[None])[0]
         line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
-        line.set_linestyle("-" if pulls[frame] else ":")
+        line.set_linestyle(tie.dashes if pulls[frame] else ":")
         line.set_visible(not broken[frame])
 
     return update
 
 
-def pulling(case: Case | MasonryCase, tie: Tie, poses: Array) -> tuple[Flags, Flags]:
-    """Whether a tie pulls at each frame, longer than when it was slack or last yielded, and whether it has broken."""
+def pulling(case: Case | MasonryCase, tie: Anchored, poses: Array) -> tuple[Flags, Flags]:
+    """Whether a link acts at each frame, and whether it has broken.
+
+    A tie acts where it is longer than when it was slack or last yielded, and what also pushes acts always.
+    """
+    law = tie.law
+    if not law.holds:
+        return np.ones(len(poses), dtype=bool), np.zeros(len(poses), dtype=bool)
     elongation = elongation_of(case, tie, poses)
-    yielded = np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0))
-    broken: Flags = yielded > tie.breaks_at
+    yielded = law.drawn(elongation)
+    broken: Flags = yielded > law.ultimate
     return (elongation > yielded) & ~broken, broken
 
 
@@ -155,7 +164,7 @@ def _openings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     return update
 
 
-def tie_texts(ties: Sequence[Tie], left: float, height: float) -> list[str]:
+def tie_texts(ties: Sequence[Anchored], left: float, height: float) -> list[str]:
     """What stands at each tie: how many are there, at the first of them, and how far behind a hidden anchor is, at the
     highest of those that are as long."""
     placed = [(round(tie.height / (0.03 * height)), tie.length, tie.rise) for tie in ties]
@@ -168,11 +177,11 @@ def tie_texts(ties: Sequence[Tie], left: float, height: float) -> list[str]:
     return texts
 
 
-def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Update:
-    """A load as an arrow downwards onto its point, a thrust as one from its point along the force."""
-    length, loads = 2 * ARROW * case.block.h, isinstance(effect, Load)
-    point = _local(case, effect.offset if isinstance(effect, Load) else 0.0, effect.height)
-    along = np.array([0.0, -length]) if loads else np.array([np.sign(effect.force) * length, 0.0])
+def _force(ax: Axes, case: Case, effect: Effect, force: Point, bodies: Bodies) -> Update:
+    """A force downwards as an arrow onto its point, any other as one from its point along the force."""
+    length, loads = 2 * ARROW * case.block.h, force[0] == 0
+    point = _local(case, effect.offset, effect.height)
+    along = np.array([0.0, -length]) if loads else np.array([np.sign(force[0]) * length, 0.0])
     arrow = FancyArrowPatch((0, 0), (1, 0), arrowstyle="-|>", mutation_scale=12, color=FORCE, linewidth=1.6, zorder=6)
     arrow.set_animated(True)
     ax.add_patch(arrow)
@@ -180,7 +189,7 @@ def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Updat
     look: dict[str, Any] = {"fontsize": 7, "color": FORCE, "zorder": 6, "animated": True}
     look |= {"ha": "center", "va": "bottom"} if loads else {"ha": "left" if outwards else "right", "va": "center"}
     shift = (0, 2) if loads else (2 if outwards else -2, 0)
-    text = ax.annotate(f"{effect.force / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
+    text = ax.annotate(f"{(force[0] - force[2]) / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]
@@ -191,11 +200,11 @@ def _force(ax: Axes, case: Case, effect: Load | Thrust, bodies: Bodies) -> Updat
     return update
 
 
-def _mass(ax: Axes, case: Case, added: AddedMass, bodies: Bodies) -> Update:
+def _mass(ax: Axes, case: Case, added: Effect, bodies: Bodies) -> Update:
     """An added mass as a dot with its size."""
     point = _local(case, added.offset, added.height)
     (dot,) = ax.plot([], [], marker="o", markersize=8, color="0.25", zorder=5, animated=True)
-    text = ax.text(0, 0, f"  {added.mass:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)
+    text = ax.text(0, 0, f"  {added.mass_added:g} kg", fontsize=7, color="0.25", va="center", zorder=6, animated=True)
 
     def update(frame: int) -> None:
         at = bodies.placed(frame, 0, point)[0]

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ..problem.wall.case import Case
-from ..problem.wall.damper import Damper
-from ..problem.wall.effects import Load, Thrust, Tie
+from ..problem.wall.effect import Effect
 from ..quantities import require_flag, require_kind, require_text
 from .arguments import picture
 from .bodies import Bodies
@@ -144,31 +143,13 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
     """Where each effect acts in the section, and what it is."""
-    face, made, ties = -case.block.b, [], case.each(Tie)
-    for i, tie in enumerate(ties):
-        if tie in ties[:i]:
-            continue
-        own = ", ".join(f"tie_{j}" for j, other in enumerate(ties) if other == tie)
-        said = f"z = {tie.height:g} m, {tie.length:g} m long,\n"
-        said += f"k = {tie.stiffness / 1e6:g} kN/mm, slack {1e3 * tie.slack:g} mm"
-        if tie.strength < np.inf:
-            said += f",\nyields at {tie.strength / 1e3:g} kN"
-        if tie.ultimate is not None:
-            said += f", breaks at {1e3 * tie.ultimate:g} mm"
-        names = "height, stiffness, slack,\nstrength, ultimate, length, anchor_height"
-        made.append(((face, tie.height), f"Tie({names})" if arguments else f"{own}: {said}"))
-    for i, thrust in enumerate(case.each(Thrust)):
-        said = f"thrust_{i}: z = {thrust.height:g} m, {thrust.force / 1e3:g} kN outwards"
-        made.append(((0.0, thrust.height), "Thrust(height, force)" if arguments else said))
-    for i, load in enumerate(case.each(Load)):
-        said = f"load_{i}: z = {load.height:g} m, x = {load.offset:g} m,\n{load.force / 1e3:g} kN downwards"
-        made.append(((load.offset, load.height), "Load(force, height, offset)" if arguments else said))
-    for i, damper in enumerate(case.each(Damper)):
-        said = f"damper_{i}: z = {damper.height:g} m, c = {damper.c / 1e3:g} kN s/m"
-        made.append(((face, damper.height), "Damper(height, c, length)" if arguments else said))
-    for mass in case.wall.masses:
-        said = f"mass: z = {mass.height:g} m, x = {mass.offset:g} m, {mass.mass:g} kg"
-        made.append(((mass.offset, mass.height), "AddedMass(mass, height, offset)" if arguments else said))
+    face, said, made = -case.block.b, dict[Effect, str](), []
+    for name, effect in case.named.items():
+        if not effect.mass_added:
+            said[effect] = f"{said[effect]}, {name}" if effect in said else name
+    for effect, name in [*said.items(), *((mass, mass.label) for mass in case.wall.masses)]:
+        note = f"{type(effect).__name__}({effect.arguments})" if arguments else f"{name}: {effect.said}"
+        made.append(((face if effect.on_face else effect.offset, effect.height), note))
     if arguments and case.stop_top is not None:
         made.append(((face - 0.05, case.stop_top), "SideStop(top)"))
     return made

@@ -14,7 +14,7 @@ from ..geometry.frames import SPACE, frames_of
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polyhedron import Polyhedron
-from ..problem.wall.effects import Effect
+from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
 from .bodies import interpolated

@@ -16,13 +16,12 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-un
 
 from ..geometry import convex
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import anchored_at, held_at
-from ..problem.wall.effects import Tie
+from ..problem.masonry.effects import held_at
 from ..quantities import Array
 from .section import Update, pulling
 from .solids import Solids
 
-GROUND, STEEL = "#e6e6e2", "#12406b"
+GROUND = "#e6e6e2"
 LIGHT = np.array([0.62, -0.25, 0.74])
 """Where the light comes from."""
 DARKEST = 0.62
@@ -107,19 +106,20 @@ def fill(ax: Axes, box: Any) -> None:
 
 
 def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
-    """Ties of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
+    """Links of blocks, each from the point that it holds to its anchor: solid where it pulls, dotted where it is slack,
     gone once it broke."""
     space, moves = in_three(ax), []
-    for tie in case.each(Tie):
-        ends = [(held_at(tie), tie.block), (anchored_at(tie), tie.anchor_block)]
-        (line,) = space.plot([], [], [], color=STEEL, linewidth=1.8, zorder=4, animated=True)
-        moves.append((line, ends, *pulling(case, tie, bodies.poses)))
+    for link in case.links.values():
+        held = held_at(link)
+        ends = [(held, link.block), (link.anchor_of(held), link.anchor_block)]
+        (line,) = space.plot([], [], [], color=link.colour, linewidth=1.8, zorder=4, animated=True)
+        moves.append((line, link.dashes, ends, *pulling(case, link, bodies.poses)))
 
     def update(frame: int) -> None:
-        for line, ends, pulls, broken in moves:
+        for line, dashes, ends, pulls, broken in moves:
             points = [bodies.displaced(frame, block, point) for point, block in ends]
             line.set_data_3d(*np.transpose(points))
-            line.set_linestyle("-" if pulls[frame] else ":")
+            line.set_linestyle(dashes if pulls[frame] else ":")
             line.set_visible(not broken[frame])
 
     return update

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -26,6 +27,7 @@ from ..result.motion import SampledMotion
 from ..result.response import Response
 from ..result.rocking import Rocking
 from ..result.samples import intervals, required_spacing, thinned
+from ..result.ties import Plastic
 from .equations import Wall
 
 CAUGHT = 1e-3
@@ -78,10 +80,14 @@ def solve_compliant(
         case=case,
         solver="compliant",
         t=sampled[kept],
-        motion=SampledMotion(history[kept, None, :3], history[kept, None, 3:], energy[kept]),
+        motion=SampledMotion(history[kept, None, :3], history[kept, None, 3:6], energy[kept]),
         rocking=Rocking(impacts, peaks),
         outcome=outcome,
         message=message,
+        plastic={
+            name: Plastic(slider.path, slider.path * slider.law.strength, start=slider.start)
+            for name, slider in system.sliders.items()
+        },
         stats={
             "wall_time": time.perf_counter() - started,
             "evaluations": evaluations,
@@ -95,9 +101,10 @@ def solve_compliant(
 def _integrated(
     system: Wall, case: Case, output: Array, period: float, rtol: float, atol: float
 ) -> tuple[Array, Array, int, int]:
-    """The times of the output up to the end [s] and states, shape (n, 6), and how many evaluations and switches.
+    """The times of the output up to the end [s] and states, and how many evaluations and switches they took.
 
-    The integration is split where friction catches or releases the base.
+    States have the shape (n, 6 + sliders): behind them stand the places of the sliders of friction dampers. The
+    integration is split where friction catches or releases the base, and where a slider begins to slip or to stick.
     """
 
     def switch(t: float, y: Array) -> float:
@@ -110,13 +117,16 @@ def _integrated(
     longest = min(10 * period, *shaking, math.inf)
     switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
     t, y = 0.0, system.released()
-    held = system.edge_load(t, y) > 0
-    states, times = [y[:, None]], [np.zeros(1)]
+    held, changes = system.edge_load(t, y) > 0, [slider_event(system, i) for i in range(len(system.sliders))]
+    fired = [False] * len(changes)
+    system.settle(y, fired)
+    states, times = [system.with_places(y[:, None])], [np.zeros(1)]
     evaluations = switches = 0
     with tqdm(total=case.duration, desc="compliant", unit="s", delay=3, disable=None, leave=False) as bar:
         while switches < SWITCHES:
             if held:
                 y = system.caught(y)
+            system.settle(y, fired)
             switch.direction = -1 if held else 1  # type: ignore[attr-defined]
             arc = solve_ivp(
                 system.held if held else system.free,
@@ -124,7 +134,7 @@ def _integrated(
                 y,
                 method="DOP853",
                 t_eval=output[output > t],
-                events=(switch, overturning),
+                events=(switch, overturning, *changes),
                 rtol=rtol,
                 atol=atol,
                 max_step=longest,
@@ -133,11 +143,25 @@ def _integrated(
                 raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
             evaluations += arc.nfev
             times.append(arc.t)
-            states.append(np.reshape(arc.y, (6, -1)))
+            states.append(system.with_places(np.reshape(arc.y, (6, -1))))
             if arc.status == 0 or arc.t_events[1].size:
+                system.settle(arc.y_events[1][0] if arc.t_events[1].size else arc.y[:, -1], fired)
                 return np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches
-            bar.update(float(arc.t_events[0][0]) - t)
-            t, y = float(arc.t_events[0][0]), arc.y_events[0][0]
-            held = not held
+            fired = [bool(when.size) for when in arc.t_events[2:]]
+            last = next(i for i, when in enumerate(arc.t_events) if when.size)
+            bar.update(float(arc.t_events[last][0]) - t)
+            t, y = float(arc.t_events[last][0]), arc.y_events[last][0]
+            held = held != bool(arc.t_events[0].size)
             switches += 1
     raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")
+
+
+def slider_event(system: Wall, i: int) -> Callable[[float, Array], float]:
+    """The event at which slider i begins to slip or to stick."""
+    slider = list(system.sliders.values())[i]
+
+    def change(t: float, y: Array) -> float:
+        return slider.change(*map(float, system.elongations(y)[i]))
+
+    change.terminal, change.direction = True, -1  # type: ignore[attr-defined]
+    return change

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,10 @@ from scipy.optimize import brentq, fsolve
 
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.case import Case
-from ..problem.wall.damper import Damper
-from ..problem.wall.effects import Load, Thrust, Tie
+from ..problem.wall.effect import Anchored
+from ..problem.wall.effects import forces_of
 from ..quantities import GRAVITY, Array
+from .sliders import Slider
 
 
 class Wall:
@@ -21,16 +23,18 @@ class Wall:
     The state is (x, z, theta, and their rates): the displacement of the centroid from the upright wall on an undeformed
     base [m], x away from the side stop and z upwards, and the rotation [rad], positive towards +x.
 
+    Friction dampers have a state beside it: where their sliders are, see `mjrock.reference.sliders`.
+
     Raises:
         ValueError: for a tie that yields.
     """
 
     def __init__(self, case: Case, contacts: Contacts) -> None:
-        for i, tie in enumerate(case.each(Tie)):
-            if tie.strength < math.inf:
+        for name, link in case.links.items():
+            if link.law.yields and link.law.push == 0:
                 raise ValueError(
-                    f"solve_compliant has no ties that yield, and tie {i} has strength = {tie.strength:g} N; give it "
-                    "none, or take simulate or solve_analytical"
+                    f"solve_compliant has no ties that yield, and {name} has strength = {link.law.strength:g} N; give "
+                    "it none, or take simulate or solve_analytical"
                 )
         wall, self.case = case.wall, case
         self.mass, self.inertia, self.weight = wall.mass, wall.inertia, wall.weight
@@ -41,11 +45,41 @@ class Wall:
         self.side = None if case.stop_top is None else contacts.side_up_to(case.stop_top)
         if self.side is not None:
             self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
-        self.forces = [(load.offset - off, load.height - self.up, 0.0, -load.force) for load in case.each(Load)]
-        self.forces += [(-off, thrust.height - self.up, thrust.force, 0.0) for thrust in case.each(Thrust)]
-        self.ties = [(tie.height - self.up, tie) for tie in case.each(Tie)]
-        self.dampers = case.each(Damper)
+        self.forces = [
+            (effect.offset - off, effect.height - self.up, force[0], force[2])
+            for effect, force in forces_of(case.effects).values()
+        ]
+        self.ties = [(tie.height - self.up, tie) for tie in case.springs.values() if tie.law.push == 0]
+        self.sliders: dict[str, Slider] = {}  # of friction dampers, which bear nothing at rest
+        self.slipping: list[tuple[float, Anchored]] = []
+        self.dampers = [link for link in case.links.values() if link.law.c > 0]
         self.rest = self._rest()
+        self.slipping = [(link.height - self.up, link) for link in case.springs.values() if link.law.push > 0]
+        names = (name for name, link in case.springs.items() if link.law.push > 0)
+        placed = zip(names, self.slipping, self.elongations(np.append(self.rest, np.zeros(3))), strict=True)
+        for name, (_, link), (elongation, _) in placed:
+            self.sliders[name] = Slider(link.law, float(elongation), start=float(elongation))
+
+    def elongations(self, y: Array) -> list[tuple[Any, Any]]:
+        """Elongations of the friction dampers from the length drawn [m], and their rates [m/s]."""
+        x, z, theta, vx, vz, omega = y
+        found = []
+        for height, link in self.slipping:
+            longer, across, up = self._pulled(height, link, x, z, theta)
+            px = height * np.cos(theta) + self.face * np.sin(theta)
+            pz = self.face * np.cos(theta) - height * np.sin(theta)
+            found.append((longer, across * (vx + omega * px) + up * (vz + omega * pz)))
+        return found
+
+    def settle(self, y: Array, fired: Sequence[bool]) -> None:
+        """Let the sliders of friction dampers stick or slip from here on; `fired` says whose event has ended an arc."""
+        for slider, ended, (elongation, rate) in zip(self.sliders.values(), fired, self.elongations(y), strict=True):
+            slider.settle(float(elongation), float(rate), ended)
+
+    def with_places(self, states: Array) -> Array:
+        """States of an arc of shape (6, n), and behind them the places of the sliders, shape (6 + sliders, n)."""
+        at = zip(self.sliders.values(), self.elongations(states), strict=True)
+        return np.vstack([states, *(slider.places(elongation) for slider, (elongation, _) in at)])
 
     def base_gap(self, z: Any, theta: Any) -> Any:
         """Height of each contact line of the base above the base [m]."""
@@ -106,11 +140,11 @@ class Wall:
 
     def energy(self, history: Array) -> Array:
         """Kinetic, potential and elastic energy of many states above the wall at rest [J], shape (n,)."""
-        rest = np.append(self.rest, np.zeros(3))[None]
+        rest = np.concatenate([self.rest, np.zeros(3), [slider.start for slider in self.sliders.values()]])[None]
         return self._energy(history) - self._energy(rest)
 
     def _energy(self, history: Array) -> Array:
-        x, z, theta, vx, vz, omega = history.T
+        x, z, theta, vx, vz, omega = history.T[:6]
         doubled = self.mass * (vx**2 + vz**2) + self.inertia * omega**2 + 2 * self.weight * z
         doubled += np.minimum(self.base_gap(z[:, None], theta[:, None]), 0) ** 2 @ self.base.stiffness
         if self.side is not None:
@@ -119,17 +153,19 @@ class Wall:
             versine, sine = 1 - np.cos(theta), np.sin(theta)
             doubled -= 2 * (fx * (x + pz * sine - px * versine) + fz * (z - px * sine - pz * versine))
         for height, tie in self.ties:
-            doubled += tie.stiffness * np.maximum(self._pulled(height, tie, x, z, theta)[0], 0) ** 2
+            doubled += tie.law.k * np.maximum(self._pulled(height, tie, x, z, theta)[0], 0) ** 2
+        for (height, link), place in zip(self.slipping, history.T[6:], strict=True):
+            doubled += link.law.k * (self._pulled(height, link, x, z, theta)[0] - place) ** 2
         return np.asarray(doubled / 2)
 
-    def _pulled(self, height: float, tie: Tie, x: Any, z: Any, theta: Any) -> tuple[Any, Any, Any]:
+    def _pulled(self, height: float, tie: Anchored, x: Any, z: Any, theta: Any) -> tuple[Any, Any, Any]:
         """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
         across = tie.length + x + self.face * (1 - np.cos(theta)) + height * np.sin(theta)
         up = z + self.face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
         length = np.hypot(across, up)
-        return length - tie.reach, across / length, up / length
+        return length - tie.law.reach, across / length, up / length
 
-    def _damped(self, damper: Damper, y: Array) -> tuple[float, float, float, float]:
+    def _damped(self, damper: Anchored, y: Array) -> tuple[float, float, float, float]:
         """Point of a damper from the centroid at rest [m], and its force on the wall [N], x before z each."""
         x, z, theta, vx, vz, omega = y
         px, pz = -self.face, damper.height - self.up
@@ -138,7 +174,7 @@ class Wall:
         above = z - px * sine + pz * (cosine - 1)
         length = math.hypot(across, above)
         rate_across, rate_above = vx + omega * (pz * cosine - px * sine), vz - omega * (px * cosine + pz * sine)
-        force = -damper.c * (across * rate_across + above * rate_above) / length
+        force = -damper.law.c * (across * rate_across + above * rate_above) / length
         return px, pz, force * across / length, force * above / length
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:
@@ -181,9 +217,13 @@ class Wall:
         applied = self.forces + [
             (px, pz, -nx * pull, -nz * pull)
             for px, pz, stretched, nx, nz, tie in pulls
-            if (pull := tie.stiffness * max(stretched, 0.0)) > 0
+            if (pull := tie.law.k * max(stretched, 0.0)) > 0
         ]
         applied += [self._damped(damper, y) for damper in self.dampers]
+        for slider, (at, link) in zip(self.sliders.values(), self.slipping, strict=True):
+            longer, across, up = self._pulled(at, link, x, z, theta)
+            pull = slider.pull(longer)
+            applied.append((-self.face, at, -across * pull, -up * pull))
         sine, cosine = math.sin(theta), math.cos(theta)
         for px, pz, fx, fz in applied:
             Fx, Fz = Fx + fx, Fz + fz

@@ -14,12 +14,10 @@ from .._version import __version__
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.case import Case
-from ..problem.wall.damper import Damper
-from ..problem.wall.effects import Load, Thrust, Tie
 from ..quantities import GRAVITY
 from ..result.ending import Outcome
 from ..result.response import Response
-from ..result.ties import PLAUSIBLE, Plastic
+from ..result.ties import Plastic, overdrawn
 
 Rows = list[tuple[str, ...]]
 """Rows of a table."""
@@ -48,21 +46,11 @@ def of_wall(case: Case) -> Rows:
 
 def of_effects(case: Case) -> Rows:
     """The effects: name and values with units."""
-    rows: Rows = []
-    for i, tie in enumerate(case.each(Tie)):
-        said = f"at {tie.height:g} m, {tie.stiffness / 1e6:.4g} kN/mm, slack {1e3 * tie.slack:g} mm, "
-        said += f"length {tie.length:g} m, strength {tie.strength / 1e3:g} kN, "
-        said += "never breaks" if tie.ultimate is None else f"breaks at {1e3 * tie.ultimate:g} mm of yielding"
-        rows.append((f"tie_{i}", said))
-    for i, thrust in enumerate(case.each(Thrust)):
-        rows.append((f"thrust_{i}", f"{thrust.force / 1e3:g} kN outwards at {thrust.height:g} m"))
-    for i, load in enumerate(case.each(Load)):
-        rows.append((f"load_{i}", f"{load.force / 1e3:g} kN downwards at {load.height:g} m, x = {load.offset:g} m"))
-    for i, damper in enumerate(case.each(Damper)):
-        rows.append((f"damper_{i}", f"{damper.c / 1e3:g} kN s/m at {damper.height:g} m"))
-    for mass in case.wall.masses:
-        rows.append(("added mass", f"{mass.mass:g} kg at {mass.height:g} m, x = {mass.offset:g} m"))
-    return rows
+    own = [(name, effect) for name, effect in case.named.items() if not effect.mass_added]
+    return [
+        (name, effect.said.replace("\n", " "))
+        for name, effect in (*own, *(("added mass", mass) for mass in case.wall.masses))
+    ]
 
 
 def of_contacts(e: Restitution | None, contacts: Contacts | None) -> Rows:
@@ -145,11 +133,12 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
         if response.outcome is Outcome.TIME_ENDED:
             share = abs(float(response.theta[-1])) / float(response.case.wall.alpha)
             said.append(f"{name}: the wall was still moving when the time ended, at {share:.3g} alpha.")
-        for (tie, drawn), effect in zip(response.plastic.items(), response.case.each(Tie), strict=False):
-            if effect.ultimate is None and drawn.elongation > PLAUSIBLE * effect.length:
+        for tie, drawn in response.plastic.items():
+            effect = response.case.links[tie]
+            if overdrawn(effect, drawn):
                 said.append(
                     f"{name}: {tie}, which never breaks here, was drawn out by {1e3 * drawn.elongation:.3g} mm, "
-                    f"{drawn.elongation / effect.length:.1%} of its length."
+                    f"{drawn.elongation / effect.span:.1%} of its length."
                 )
             elif drawn.broken < float("inf"):
                 said.append(f"{name}: {tie} broke at {drawn.broken:.3f} s.")

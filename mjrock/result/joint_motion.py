@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,6 @@ from ..geometry.kinematics import Places, along, depth
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
 from .fallen import LOST
-from .joints import joint_numbers
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
@@ -50,23 +49,23 @@ def in_parts(pose: Array, joints: int, look: Callable[[Array], Followed]) -> Fol
     return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
 
 
-def joint_motion(masonry: Masonry, places: Places, group: Sequence[str], start: Array, pose: Array) -> Followed:
+def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Followed:
     """What the joints of masonry did.
 
     Args:
         masonry: the masonry.
-        places, group: its contact lines, and the name of the joint of each.
+        places, joint: its contact lines, and the number of the joint of each.
         start: pose at rest, shape (n nq,).
         pose: of the steps or samples, shape (steps, n nq).
     """
     joints = masonry.joints
-    of, widths = joint_numbers(masonry, group), np.array([joint.width for joint in joints])
+    widths = np.array([joint.width for joint in joints])
     (back, forth), frames = np.array([joint.travel for joint in joints]).T, frames_of(start, places.freedom)
-    at_rest = np.array([along(places, i, frames, start).place for i in range(len(of))])  # of each line on its face
+    at_rest = np.array([along(places, i, frames, start).place for i in range(len(joint))])  # of each line on its face
 
     def look(some: Array) -> Followed:
         opened, slid = np.empty((2, len(some), len(joints)))
-        deepest = _look(places, Lines(of, at_rest), some, frames, np.empty(len(joints)), opened, slid)
+        deepest = _look(places, Lines(joint, at_rest), some, frames, np.empty(len(joints)), opened, slid)
         return Followed(opened, np.abs(slid), deepest, (opened > LOST * widths) | (slid > forth) | (slid < -back))
 
     return in_parts(pose, len(joints), look)

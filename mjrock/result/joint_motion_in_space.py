@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ..compiled import compiled, jitable
@@ -15,37 +13,34 @@ from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers
 from .fallen import LOST
 from .joint_motion import Followed, in_parts
-from .joints import joint_numbers
 
 
-def joint_motion_in_space(
-    masonry: Masonry, places: Places, group: Sequence[str], start: Array, pose: Array
-) -> Followed:
+def joint_motion_in_space(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Followed:
     """What the joints of masonry in space did.
 
     A joint holds no longer when it has opened by 0.7 of its width, or when one block has slid off the other.
 
     Args:
         masonry: the masonry.
-        places, group: its contact points, and the name of the joint of each.
+        places, joint: its contact points, and the number of the joint of each.
         start: pose at rest, shape (7 n,).
         pose: of the steps or samples, shape (steps, 7 n).
     """
     joints = masonry.joints
-    of, widths = joint_numbers(masonry, group), np.array([joint.width for joint in joints])
+    widths = np.array([joint.width for joint in joints])
     faces, frames = faces_of_joints(masonry), frames_of(start, places.freedom)
-    at_rest = np.array([_along(places, i, frames) for i in range(len(of))])
+    at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
     free = np.array(masonry.free)
-    above = np.array([joint.above for joint in joints])[of] == free[places.body]
+    above = np.array([joint.above for joint in joints])[joint] == free[places.body]
     at_rest_and_sign = np.column_stack([at_rest, np.where(above, 1.0, -1.0)])
 
     def look(some: Array) -> Followed:
         opened, slid = np.empty((len(some), len(joints))), np.empty((len(some), len(joints), 3))
-        deepest = _look(places, of, at_rest_and_sign, some, (frames, np.empty(len(joints))), opened, slid)
+        deepest = _look(places, joint, at_rest_and_sign, some, (frames, np.empty(len(joints))), opened, slid)
         far, gone = np.linalg.norm(slid, axis=2), opened > LOST * widths
-        for joint in np.flatnonzero((far >= widths).any(axis=0)):
-            ways = slid[:, joint] / np.maximum(far[:, joint], widths[joint])[:, None]
-            gone[:, joint] |= (far[:, joint] >= widths[joint]) & (far[:, joint] > travels(faces[joint], ways))
+        for j in np.flatnonzero((far >= widths).any(axis=0)):
+            ways = slid[:, j] / np.maximum(far[:, j], widths[j])[:, None]
+            gone[:, j] |= (far[:, j] >= widths[j]) & (far[:, j] > travels(faces[j], ways))
         return Followed(opened, far, deepest, gone)
 
     return in_parts(pose, len(joints), look)

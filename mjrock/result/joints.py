@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Integers
+from ..quantities import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +33,3 @@ class JointMotion:
         return same and dict(self.fallen) == dict(other.fallen)
 
     __hash__ = None  # type: ignore[assignment]
-
-
-def joint_numbers(masonry: Masonry, group: Sequence[str]) -> Integers:
-    """Number of the joint of each contact line, from its name, shape (m,)."""
-    number = {joint.name: i for i, joint in enumerate(masonry.joints)}
-    return np.array([number[name] for name in group], dtype=np.int64)

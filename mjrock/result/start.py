@@ -9,7 +9,6 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..problem.wall.effects import Tie
 from ..quantities import ON_ITS_FACE, require_array, require_within, shown
 from .response import State
 
@@ -25,7 +24,7 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
         TypeError: if it is no pose and velocity.
         ValueError: for another shape, a value out of range, or ties that yield among the effects.
     """
-    if any(tie.strength < math.inf for tie in case.each(Tie)):
+    if any(link.law.yields for link in case.links.values()):
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise TypeError(f"start = {shown(start)} is not a pose and a velocity; take the end of an earlier response")
@@ -48,9 +47,9 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
 
 def require_unbreakable(case: Case | MasonryCase) -> None:
     """Raise ValueError for a tie that breaks, of which the text of a model, which a fixed step is, knows nothing."""
-    for i, tie in enumerate(case.each(Tie)):
-        if tie.ultimate is not None:
+    for name, link in case.links.items():
+        if link.law.ultimate < math.inf:
             raise ValueError(
-                f"a fixed step is the text of a model, in which no tie breaks, and tie_{i} has ultimate = "
-                f"{tie.ultimate:g} m; leave timestep out, so that steps fit the motion, or leave ultimate out"
+                f"a fixed step is the text of a model, in which no tie breaks, and {name} has ultimate = "
+                f"{link.law.ultimate:g} m; leave timestep out, so that steps fit the motion, or leave ultimate out"
             )

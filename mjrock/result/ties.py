@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..geometry.frames import SPACE
-from ..problem.masonry.effects import anchored_at, held_at, laden, placed
+from ..problem.masonry.effects import held_at, laden, placed
 from ..problem.wall.case import Case
-from ..problem.wall.effects import Tie
+from ..problem.wall.effect import Anchored
 from ..quantities import Array
 
 PLAUSIBLE = 0.05
@@ -29,23 +29,26 @@ class Plastic(NamedTuple):
         energy: the energy that this took [J].
         broken: when the tie broke [s], infinite for one that did not.
         lost: the elastic energy that it lost as it broke [J].
+        start: elongation at which it bears nothing at rest [m], of a link that is put in when the wall stands.
     """
 
     elongation: float
     energy: float
     broken: float = math.inf
     lost: float = 0.0
+    start: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class TieMotion:
-    """A tie at the samples of a response.
+    """A tie, or another link with a spring, at the samples of a response.
 
     Args:
         elongation: beyond its slack, with what has yielded; zero where the tie is slack for the first time, NaN once it
             has broken [m], shape (n,).
         plastic: the part that has yielded [m], shape (n,).
-        force: what it pulls with, zero once it has broken [N], shape (n,).
+        force: what it pulls with, zero once it has broken [N], shape (n,). A link that also pushes does so with a
+            negative one, and its elongation and its plastic part are those from rest, of either sign.
         largest_force: the largest force [N]: that among the samples, or the strength where it has yielded or broken.
         broken: when it broke [s], infinite for one that did not.
     """
@@ -59,42 +62,47 @@ class TieMotion:
     @property
     def largest_elongation(self) -> float:
         """The largest elongation beyond the slack among the samples before it broke [m]."""
-        return float(np.nanmax(self.elongation, initial=0.0))
+        return float(np.nanmax(np.abs(self.elongation), initial=0.0))
 
 
 def motion_of_ties(case: Any, t: Array, pose: Array, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
     """The ties of a case, of a wall or of masonry, at poses as of a `Response` and times t [s]."""
-    ties = enumerate(case.each(Tie))
-    return {f"tie_{i}": _motion(case, tie, t, pose, plastic.get(f"tie_{i}")) for i, tie in ties}
+    return {name: _motion(case, tie, t, pose, plastic.get(name)) for name, tie in case.springs.items()}
 
 
-def _motion(case: Any, tie: Tie, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
-    elongation = elongation_of(case, tie, pose)
+def _motion(case: Any, tie: Anchored, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
+    elongation, law = elongation_of(case, tie, pose), tie.law
+    if law.push > 0:
+        elongation = elongation - (0.0 if ended is None else ended.start)
+        drawn = law.drawn(elongation)
+        force = law.k * (elongation - drawn)
+        return TieMotion(elongation, drawn, force, float(np.abs(force).max()), math.inf)
     broken = math.inf if ended is None else ended.broken
     pulls = t < broken
-    drawn = np.minimum(np.maximum.accumulate(np.maximum(elongation - tie.stretch, 0.0)), tie.breaks_at)
+    drawn = np.minimum(law.drawn(elongation), law.ultimate)
     if broken < math.inf:
-        drawn = np.where(pulls, drawn, tie.breaks_at)
-    force = np.where(pulls, np.clip(tie.stiffness * (elongation - drawn), 0.0, tie.strength), 0.0)
+        drawn = np.where(pulls, drawn, law.ultimate)
+    force = np.where(pulls, np.clip(law.k * (elongation - drawn), 0.0, law.strength), 0.0)
     elongation = np.where(pulls, np.maximum(elongation, drawn), np.nan)
     spent = broken < math.inf or (ended is not None and ended.elongation > 0)
-    return TieMotion(elongation, drawn, force, tie.strength if spent else float(force.max()), broken)
+    return TieMotion(elongation, drawn, force, law.strength if spent else float(force.max()), broken)
 
 
-def elongation_of(case: Any, tie: Tie, pose: Array) -> Array:
+def elongation_of(case: Any, tie: Anchored, pose: Array) -> Array:
     """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack."""
     if pose.shape[2] == SPACE.nq:
-        held, anchor = held_at(tie), anchored_at(tie)
+        held = held_at(tie)
+        anchor = tie.anchor_of(held)
         between = held - anchor + _displaced(case, tie.block, held, pose)
         if tie.anchor_block is not None:
             between = between - _displaced(case, tie.anchor_block, anchor, pose)
-        return np.asarray(np.linalg.norm(between, axis=1) - tie.reach)
+        return np.asarray(np.linalg.norm(between, axis=1) - tie.law.reach)
     body, held, centroid = held_by(case, tie)
     arm, (x, z, theta) = held - centroid, pose[:, body].T
     sine, cosine = np.sin(theta), np.cos(theta)
     across = tie.length + x + arm[0] * (cosine - 1) + arm[1] * sine
     up = z - arm[0] * sine + arm[1] * (cosine - 1) - tie.rise
-    return np.asarray(np.hypot(across, up) - tie.reach)
+    return np.asarray(np.hypot(across, up) - tie.law.reach)
 
 
 def _displaced(case: Any, block: int, point: Array, pose: Array) -> Array:
@@ -109,7 +117,7 @@ def _displaced(case: Any, block: int, point: Array, pose: Array) -> Array:
     return np.asarray(moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned))
 
 
-def held_by(case: Any, tie: Tie) -> tuple[int, Array, Array]:
+def held_by(case: Any, tie: Anchored) -> tuple[int, Array, Array]:
     """The body that a tie holds, the point where it does and the centroid of the body, at rest [m]."""
     if isinstance(case, Case):
         wall = case.wall
@@ -126,11 +134,16 @@ def told_of_ties(plastic: Mapping[str, Plastic]) -> str:
     )
 
 
+def overdrawn(tie: Anchored, drawn: Plastic) -> bool:
+    """Whether a tie that never breaks was drawn out beyond PLAUSIBLE of its length."""
+    return tie.law.holds and tie.law.ultimate == math.inf and drawn.elongation > PLAUSIBLE * tie.span
+
+
 def warn_of_ties(case: Any, plastic: Mapping[str, Plastic]) -> None:
     """Warn of ties without an `ultimate` that were drawn out beyond PLAUSIBLE of their length."""
-    for tie, (name, drawn) in zip(case.each(Tie), plastic.items(), strict=False):
-        length = float(np.hypot(tie.length, tie.rise))
-        if tie.ultimate is None and drawn.elongation > PLAUSIBLE * length:
+    for name, drawn in plastic.items():
+        length = case.links[name].span
+        if overdrawn(case.links[name], drawn):
             warnings.warn(
                 f"{name} was drawn out by {1e3 * drawn.elongation:.3g} mm, {drawn.elongation / length:.1%} of its "
                 f"length of {length:g} m. A steel bar breaks at some {PLAUSIBLE:.0%}, and an anchor plate follows "

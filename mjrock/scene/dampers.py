@@ -9,8 +9,7 @@ and the explicit steps in `distinct.links`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -19,10 +18,7 @@ from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import Freedom, frames_of, push_body, take_frames
 from ..geometry.links import ends, parting
 from ..geometry.vectors import dot, scaled
-from ..problem.wall.damper import Damper
-from ..problem.wall.effects import Effect
 from ..quantities import Array, Integers
-from .arrays import GROUND
 
 
 class Dampers(NamedTuple):
@@ -42,25 +38,6 @@ class Dampers(NamedTuple):
     anchor_at: Array
     between: Array
     c: Array
-
-
-def damper_fields(
-    effects: Sequence[Effect], body: Callable[[Effect], int], x: Callable[[Effect], float], centroids: Array
-) -> dict[str, Any]:
-    """Fields of a scene for its dampers, named `damper_0` and so on; see `attachments`."""
-    dampers = [effect for effect in effects if isinstance(effect, Damper)]
-    if not dampers:
-        return {}
-    bodies = np.array([body(damper) for damper in dampers])
-    points = np.array([(x(damper), damper.height) for damper in dampers])
-    return {
-        "damper_names": tuple(f"damper_{i}" for i in range(len(dampers))),
-        "damper_body": bodies,
-        "damper_point": points - centroids[bodies],
-        "damper_anchor_body": np.full(len(dampers), GROUND),
-        "damper_anchor": points - [(damper.length, 0.0) for damper in dampers],
-        "damper_c": np.array([damper.c for damper in dampers]),
-    }
 
 
 @inlined

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -12,13 +11,14 @@ from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.statics import falling, friction_lacking, slippery
-from ..problem.wall.effects import Effect, Tie
+from ..problem.wall.effect import Effect
+from ..problem.wall.effects import links_of
 from ..quantities import Array, Integers, named, require_kind
-from .arrays import GROUND
+from .attachments import attachments
+from .checks import GROUND
 from .course import Course
-from .effects import attachments
-from .effects_in_space import attachments_in_space
 from .equilibrium import UnsettledError
+from .parts import Bodies, ContactPoints, Limits
 from .scene import Scene
 
 GONE = 0.1
@@ -40,7 +40,7 @@ def masonry_scene(case: MasonryCase) -> Scene:
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:
     """What happens to the scene of a case: it starts at rest, with the velocities of the case."""
-    still = np.zeros((len(scene.names), scene.freedom.nv))
+    still = np.zeros((len(scene.bodies.names), scene.freedom.nv))
     velocity = still if case.velocity is None else np.asarray(case.velocity)
     return Course(scene.at_rest, velocity, case.duration, case.motion, case.vertical, transverse=case.transverse)
 
@@ -61,7 +61,7 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
     """Raise ValueError with the names of the blocks that fall if rigid blocks cannot carry the weight without ties."""
     falls = falling(masonry, applied(masonry, effects))
-    if falls and not any(isinstance(one, Tie) for one in effects):
+    if falls and not any(link.law.holds for link in links_of(effects).values()):
         lacking = friction_lacking(masonry, applied(masonry, effects))
         remedy = "" if lacking is None else f"; joints that need friction of {lacking[0]:g}: {named(lacking[1])}"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
@@ -96,42 +96,36 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
     mass, centroids, inertia = laden(masonry, effects)
     origin = np.where(number[:, None] == GROUND, 0.0, centroids)
     middles = np.array([joint.middle for joint in masonry.joints])
-    limits: dict[str, Any] = {}
+    limits = Limits()
     if len(free) > 1:  # one block is stepped as a wall is
         corners = np.concatenate([blocks[i].corners for i in free])
         extent = max(float(np.abs(blocks[i].corners - centroids[i]).max()) for i in free)
-        limits = {
-            "reach": float(np.hypot.reduce(np.ptp(corners, axis=0))),
-            "overlap": 2 * extent,
-            "damped_joints": True,
-        }
+        limits = Limits(float(np.hypot.reduce(np.ptp(corners, axis=0))), 2 * extent, damped_joints=True)
     return Scene(
-        names=tuple(masonry.names[i] for i in free),
-        mass=mass[free],
-        inertia=inertia[free],
-        rest=centroids[free],
-        outlines=tuple(blocks[i].corners - centroids[i] for i in free),
-        length=max(float(np.ptp(blocks[i].corners[:, 1])) if masonry.in_space else blocks[i].length for i in free),
-        point_body=number[lines.body],
-        point=lines.at - centroids[lines.body],
-        face_body=number[lines.face],
-        face=middles[lines.joint] - origin[lines.face],
-        normal=lines.normal,
-        k=lines.k,
-        c=masonry.retardation[lines.joint] * lines.k,
-        friction=masonry.joint_friction[lines.joint],
-        group=tuple(masonry.joints[j].name for j in lines.joint),
-        **limits,
+        Bodies(
+            names=tuple(masonry.names[i] for i in free),
+            mass=mass[free],
+            inertia=inertia[free],
+            rest=centroids[free],
+            outlines=tuple(blocks[i].corners - centroids[i] for i in free),
+            length=max(float(np.ptp(blocks[i].corners[:, 1])) if masonry.in_space else blocks[i].length for i in free),
+        ),
+        ContactPoints(
+            body=number[lines.body],
+            at=lines.at - centroids[lines.body],
+            face_body=number[lines.face],
+            face_at=middles[lines.joint] - origin[lines.face],
+            normal=lines.normal,
+            k=lines.k,
+            c=masonry.retardation[lines.joint] * lines.k,
+            friction=masonry.joint_friction[lines.joint],
+            joint=lines.joint,
+            joints=tuple(joint.name for joint in masonry.joints),
+        ),
+        *attachments(effects, number, lambda effect: placed(masonry, effect), centroids[free]),
+        limits=limits,
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
-        **_held(masonry, effects, number, centroids[free]),
     )
-
-
-def _held(masonry: Masonry, effects: tuple[Effect, ...], number: Integers, centroids: Array) -> dict[str, Any]:
-    """Fields of a scene for ties, dampers, loads and thrusts; `number` is that of each block among the bodies."""
-    if masonry.in_space:
-        return attachments_in_space(effects, number, centroids)
-    return attachments(effects, lambda one: int(number[one.block]), lambda one: placed(masonry, one)[0], centroids)
 
 
 def _sorted(lines: Lines, number: Integers) -> Lines:

@@ -113,7 +113,7 @@ def _energies(
                 continue
             stretched, yielded = stretch(ties, i, frames, v[step], places.axes)
             parts[step, 2] += 0.5 * ties.k[i] * stretched * stretched
-            taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * stretched * yielded
+            taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * abs(stretched) * yielded
 
 
 def breaks(ties: Ties, q: Array, freedom: Freedom) -> Integers:

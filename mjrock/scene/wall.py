@@ -10,12 +10,12 @@ from ..method import METHOD, Method
 from ..problem.damping.contacts import Contacts
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
-from ..problem.wall.damper import Damper
-from ..problem.wall.effects import AddedMass, Effect, Tie
+from ..problem.wall.effect import Effect
 from ..quantities import Array, require_kind
-from .arrays import GROUND
+from .attachments import attachments
+from .checks import GROUND
 from .course import Course
-from .effects import attachments
+from .parts import Bodies, ContactPoints
 from .scene import Scene
 
 
@@ -90,46 +90,47 @@ def standing_wall(
     base = contacts.base
     centroid = np.array([wall.centroid_offset, wall.centroid_height])
     places = [(x - centroid[0], -centroid[1]) for x in base.positions]
-    faces, normals, groups = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, ["base"] * base.points
+    faces, normals, joint, joints = [(0.0, 0.0)] * base.points, [(0.0, 1.0)] * base.points, [0] * base.points, ["base"]
     k, c, friction = base.stiffness, base.damping, base_friction(wall, contacts, stop_top is not None, method)
     facts: dict[str, float | str] = {"k_n_base": base.k_n, "xi_base": base.xi}
     if stop_top is not None:
         side = contacts.side_up_to(stop_top)
         places += [(-wall.b - centroid[0], z) for z in side.positions + (0.5 * stop_top - centroid[1])]
         faces, normals = faces + [(-wall.b, 0.0)] * side.points, normals + [(1.0, 0.0)] * side.points
-        groups += ["side"] * side.points
+        joint, joints = joint + [1] * side.points, [*joints, "side"]
         k, c = np.concatenate([k, side.stiffness]), np.concatenate([c, side.damping])
         friction = np.concatenate([friction, np.full(side.points, side.friction or 0.0)])
         facts |= {"k_n_side": side.k_n, "xi_side": side.xi}
     facts |= {"reference_frequency": base.frequency, "law": contacts.law}
-    even = wall.centroid_offset == 0 and not set(map(type, effects)) - {AddedMass, Damper}
+
+    def place(effect: Effect) -> tuple[float, float]:
+        return -wall.b if effect.on_face else effect.offset, effect.height
+
+    links, forces = attachments(effects, np.zeros(1, dtype=np.int64), place, centroid[None])
+    even = wall.centroid_offset == 0 and not (links.bearing.names or forces.names)
     return Scene(
-        names=("wall",),
-        mass=np.array([wall.mass]),
-        inertia=np.array([wall.inertia]),
-        rest=centroid[None],
-        outlines=(wall.outline,),
-        length=wall.length,
-        point_body=np.zeros(len(places), dtype=np.int64),
-        point=np.array(places),
-        face_body=np.full(len(places), GROUND),
-        face=np.array(faces),
-        normal=np.array(normals),
-        k=k,
-        c=c,
-        friction=friction,
-        group=tuple(groups),
-        holds=np.array([group == "base" and base.friction is None for group in groups]),
+        Bodies(
+            ("wall",), np.array([wall.mass]), np.array([wall.inertia]), centroid[None], (wall.outline,), wall.length
+        ),
+        ContactPoints(
+            body=np.zeros(len(places), dtype=np.int64),
+            at=np.array(places),
+            face_body=np.full(len(places), GROUND),
+            face_at=np.array(faces),
+            normal=np.array(normals),
+            k=k,
+            c=c,
+            friction=friction,
+            joint=np.array(joint),
+            joints=tuple(joints),
+            holds=(np.array(joint) == 0) & (base.friction is None),
+        ),
+        links,
+        forces,
         settled=np.array([[0.0, -wall.weight / float(base.stiffness.sum()), 0.0]]) if even else None,
         title=_title(wall, stop_top),
         facts=facts,
-        **attachments(effects, lambda effect: 0, lambda effect: _place(effect, wall), centroid[None]),
     )
-
-
-def _place(effect: Effect, wall: Block) -> float:
-    """Where an effect acts, from the middle of the base outwards [m]: ties and dampers hold the inner face."""
-    return -wall.b if isinstance(effect, Tie | Damper) else getattr(effect, "offset", 0.0)
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

@@ -16,7 +16,6 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..problem.wall.effects import Tie
 from ..quantities import Implausible, keep, require_kind, shown, spelt
 from ..reference.compliant import solve_compliant
 from ..result.response import Response
@@ -130,8 +129,7 @@ class Analysis:
     @property
     def COLUMNS(self) -> tuple[str, ...]:
         """The columns of a row."""
-        ties = sum(isinstance(effect, Tie) for effect in self.case.effects)
-        own = tuple(f"tie_{i}_{name}" for i in range(ties) for name in TIE_COLUMNS)
+        own = tuple(f"{tie}_{name}" for tie in self.case.springs for name in TIE_COLUMNS)
         return (WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS) + own
 
     @property

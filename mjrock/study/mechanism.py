@@ -15,7 +15,6 @@ import numpy as np
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.spectrum import SHORTEST, response_spectrum
 from ..problem.wall.case import Case
-from ..problem.wall.effects import AddedMass
 from ..problem.wall.ties_on_wall import moment_at_strength
 from ..quantities import GRAVITY, Array, require_kind, require_real, require_within, shown
 from .pushover import pushover
@@ -175,9 +174,9 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
 
 def _masses(case: Case) -> tuple[Array, Array]:
     """Weights [N] and heights [m] of the wall and of the masses that the case adds to it."""
-    added = case.each(AddedMass)
-    weights = [case.block.mass, *(mass.mass for mass in added)]
-    heights = [case.block.centroid_height, *(mass.height for mass in added)]
+    added = [effect for effect in case.effects if effect.mass_added]
+    weights = [case.block.mass, *(effect.mass_added for effect in added)]
+    heights = [case.block.centroid_height, *(effect.height for effect in added)]
     return GRAVITY * np.array(weights), np.array(heights)
 
 

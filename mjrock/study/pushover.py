@@ -116,7 +116,7 @@ def pushover(
 def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:
     """Multiplier [-] and moment [N m] of a rigid wall at increasing rotations."""
     moment = case.restoring.outer.at(phi)
-    for pull, plastic in zip(case.pulls, yielded(case.pulls, phi).T, strict=True):
+    for pull, plastic in zip(case.resisting, yielded(case.resisting, phi).T, strict=True):
         elongation, lever = pulled(pull, phi, 1.0)
         moment = moment + pull.stiffness * np.maximum(elongation - plastic, 0.0) * lever
     wall = case.wall
@@ -133,7 +133,7 @@ def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
         parts += [np.linspace(rest, near, points // 8), np.geomspace(near, limit, points // 2)]
         # the uplift itself is known to second order in the rotation
         parts += [near * np.array([1 - 1e-3, 1 - 1e-4, 1 + 1e-6, 1 + 1e-4, 1 + 1e-3])]
-    for pull in case.pulls:
+    for pull in case.resisting:
         stretch = pull.strength / pull.stiffness
         for elongation in (0.0, stretch, stretch + pull.ultimate):
             beyond = np.flatnonzero(pulled(pull, fine, 1.0)[0] > elongation)

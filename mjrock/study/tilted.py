@@ -49,7 +49,7 @@ def tilted(scene: Scene, rotations: Array) -> Tilted:
     Returns:
         The poses up to the first at which ties lift the wall off its base; most often all of them.
     """
-    base = np.flatnonzero(np.array(scene.group) == "base")
+    base = np.flatnonzero(scene.contacts.joint == scene.contacts.joints.index("base"))
     ties = scene.ties._replace(reach=np.array(scene.ties.reach))
     potential = Potential(scene.structure._replace(ties=ties))
     pose = scene.at_rest[0].copy()
@@ -90,17 +90,17 @@ def _carried(scene: Scene, potential: Potential, pose: Array) -> tuple[Array, Ar
     Ties pull with no more than their strength. None where ties lift the wall off its base.
     """
     pose = scene.lowered(pose[None])[0]
-    contacts, weight = len(scene.k), GRAVITY * float(scene.mass[0])
+    contacts, weight = len(scene.contacts.k), GRAVITY * float(scene.bodies.mass[0])
     limits = np.append(np.full(contacts, np.inf), scene.ties.stretch)
     down = float(potential.load(pose)[1])
     for _ in range(ITERATIONS):
         rates, pressed = potential.rates(pose).toarray(), np.minimum(potential.pressed(pose), limits)
         springs = rates.T @ (potential.springs * pressed)
-        stiffness = float(scene.k[pressed[:contacts] > 0] @ rates[:contacts, 1][pressed[:contacts] > 0] ** 2)
+        stiffness = float(scene.contacts.k[pressed[:contacts] > 0] @ rates[:contacts, 1][pressed[:contacts] > 0] ** 2)
         if stiffness == 0:
             break
         lift = (down + springs[1]) / stiffness
-        if abs(lift) < 1e-15 * scene.extent or abs(down + springs[1]) < 1e-12 * weight:
+        if abs(lift) < 1e-15 * scene.bodies.extent or abs(down + springs[1]) < 1e-12 * weight:
             return pose, springs
         pose[1] += lift
     return None

@@ -13,7 +13,6 @@ import numpy as np
 
 from ..problem.damping.restitution import Restitution
 from ..problem.wall.case import Case
-from ..problem.wall.damper import Damper
 from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, describe
@@ -116,8 +115,11 @@ def _require_solvable(case: Case, e: Restitution) -> None:
         raise ValueError(
             f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{low}"
         )
-    if case.each(Damper):
-        raise ValueError("rocking theory has no dampers; simulate, solve_explicit and solve_compliant do")
+    for name, link in case.links.items():
+        if not link.law.holds:
+            raise ValueError(
+                f"rocking theory has no dampers, and {name} is one; simulate, solve_explicit and solve_compliant do"
+            )
     if case.restoring.outer.P <= 0:
         raise ValueError(
             "the thrust tilts the wall until its ties hold it, and rocking theory knows no rest but upright; "

@@ -134,7 +134,7 @@ def finely(case: mr.MasonryCase, timestep: float) -> Motion:
     scene, every, done, ended = mr.masonry_scene(case), round(SAMPLE / timestep), 0, False
     course = course_of(case, scene)
     setting = Setting.of(scene, course)
-    peaks, samples = np.zeros(len(scene.names)), []
+    peaks, samples = np.zeros(len(scene.bodies.names)), []
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(course)

@@ -98,7 +98,7 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
             model.opt.impratio = 1
         else:
             d = WITHIN[0]
-            for i, (k, c, W) in enumerate(zip(scene.k, scene.c, inverse_weights(scene), strict=True)):
+            for i, (k, c, W) in enumerate(zip(scene.contacts.k, scene.contacts.c, inverse_weights(scene), strict=True)):
                 model.pair_solref[i] = pair_values(k, c, inertia_of(d, W), W)[:2]
             model.pair_solimp[:, :2] = d
             held = model.pair_solreffriction[:, 1] < 0

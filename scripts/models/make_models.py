@@ -220,8 +220,8 @@ the law of the contacts: rocking theory and the SciPy solver of the package are 
         """What a slip [m/s] adds to the normal force of a line in the text, the most over what it bears at rest [-]."""
         scene = mr.masonry_scene(self.case)
         bears = scene.bears > 0
-        added = scene.friction * (scene.c / 2 + 0.25 * self.timestep * scene.k) * slip
-        return float((added[bears] / (scene.k * scene.bears)[bears]).max())
+        added = scene.contacts.friction * (scene.contacts.c / 2 + 0.25 * self.timestep * scene.contacts.k) * slip
+        return float((added[bears] / (scene.contacts.k * scene.bears)[bears]).max())
 
     def files(self) -> dict[str, str]:
         """File names and contents."""

@@ -137,7 +137,7 @@ def on_a_corner(masonry: mr.Masonry) -> tuple[Array, Array]:
     """Pose and velocity of the block at its release: tilted about a corner of its base, which carries it."""
     scene = mr.masonry_scene(mr.MasonryCase(masonry, 1.0))
     turn = Rotation.from_rotvec(TILT * np.array([-math.sin(PLAN), math.cos(PLAN), 0.0]))
-    away = np.array(scene.point) - turn.apply(np.array(scene.point))
+    away = np.array(scene.contacts.at) - turn.apply(np.array(scene.contacts.at))
     corner = away[int(away[:, 2].argmax())]
     return scene.lowered(np.array([[*corner, *np.roll(turn.as_quat(), 1)]])), np.zeros((1, 6))
 
@@ -252,7 +252,7 @@ def costs(study: Study) -> list[list[object]]:
             mr.MasonryCase(masonry(k_s), study.shaken, mr.GroundMotion.sine(amplitude, 0.3)) for k_s in (None, K_N)
         )
         scene = mr.masonry_scene(rigid)
-        points = len(scene.k)
+        points = len(scene.contacts.k)
         engine = mr.simulate(rigid).stats["stepping_time"] / study.shaken
         each = [
             1e9 * stats["stepping_time"] / stats["steps"] / points
@@ -260,7 +260,15 @@ def costs(study: Study) -> list[list[object]]:
         ]
         unit = f"{engine / points / scene.highest_frequency:.1e}"
         rows.append(
-            [name, f"{amplitude:g}", len(scene.names), points, f"{engine:.2g}", unit, *(f"{ns:.0f}" for ns in each)]
+            [
+                name,
+                f"{amplitude:g}",
+                len(scene.bodies.names),
+                points,
+                f"{engine:.2g}",
+                unit,
+                *(f"{ns:.0f}" for ns in each),
+            ]
         )
     return rows
 

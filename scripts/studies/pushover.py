@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.problem.wall.effects import Effect
+from mjrock.problem.wall.effect import Effect
 from scripts.shared import cli
 from scripts.shared.paper import DENSITY, FIGURE_3, K_N
 

@@ -107,7 +107,7 @@ def errors(answer: mr.Response, exact: Motion) -> tuple[float, float]:
 
 def point_of(answer: mr.Response, case: mr.MasonryCase, setting: str, exact: Motion | None = None) -> Point:
     """A run as a point."""
-    lines, seconds = len(mr.masonry_scene(case).k), answer.stats["stepping_time"] / case.duration
+    lines, seconds = len(mr.masonry_scene(case).contacts.k), answer.stats["stepping_time"] / case.duration
     wrong = (math.nan, math.nan) if exact is None else errors(answer, exact)
     return Point(len(case.masonry.free), lines, answer.solver, setting, answer.stats["steps"], seconds, *wrong)
 

@@ -287,7 +287,7 @@ def test_a_block_that_falls_is_named():
     run = solve(block((0.3, 0.3, 1.0)), 1.5, steady(-6.0, 2.0))
     assert list(run.fallen) == ["block"]
     assert "edges that cross" in run.message
-    assert standing(run.case.masonry)[0].names == ("block",)
+    assert standing(run.case.masonry)[0].bodies.names == ("block",)
 
 
 @pytest.mark.parametrize("askew", [False, True])

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import mujoco
 import numpy as np
 import pytest
-from scenes import course, fields, fixed_steps, two_blocks
+from scenes import changed, course, fixed_steps, two_blocks
 
 import mjrock as mr
 from mjrock.engine import run as engine_run
@@ -35,7 +35,7 @@ def taken_by_the_engine(model, data, scene, given, start, before, after, h):
         row, last = contact.efc_address, contact.efc_address + contact.dim
         law = max(0.0, (data.efc_aref[row] - acceleration[row]) / data.efc_R[row])
         taken[0, i] = -(data.efc_force[row:last] @ mean[row:last] - law * mean[row]) * width
-        spring = -scene.k[i] * (contact.dist + 0.25 * h**2 * acceleration[row])
+        spring = -scene.contacts.k[i] * (contact.dist + 0.25 * h**2 * acceleration[row])
         if law > 0:
             taken[1, i] = (spring - law) * mean[row] * width
     return taken
@@ -49,7 +49,7 @@ def test_the_accounts_are_the_work_of_the_engines_forces(friction):
     """
     h, blocks = 2e-4, two_blocks(k_n=5e6, friction=friction, xi=0.05)
     names = tuple(f"line {i}" for i in range(4))
-    scene = mr.Scene(**fields(blocks) | {"group": names})
+    scene = changed(blocks, contacts={"joint": range(4), "joints": names})
     thrown = np.array([[0.3, -0.1, 0.2], [1.0, -0.2, -0.4]])
     thrown = course(scene, thrown, 0.2)
     steps = fixed_steps(scene, thrown, h)
@@ -57,7 +57,7 @@ def test_the_accounts_are_the_work_of_the_engines_forces(friction):
     model = mujoco.MjModel.from_xml_string(released_mjcf(scene, thrown, h))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    springs = 0.5 * scene.k * np.minimum(gaps(scene.places, steps.windows.pose), 0) ** 2
+    springs = 0.5 * scene.contacts.k * np.minimum(gaps(scene.places, steps.windows.pose), 0) ** 2
     exact = np.zeros((len(steps.t) - 1, 2, 4))
     for n in range(len(exact)):
         before = data.qvel.copy()
@@ -148,7 +148,7 @@ def test_on_ice_a_pushed_block_has_the_energy_that_was_put_in(monkeypatch):
     assert np.abs(own - own[0]).max() < most
     for sign in (1, -1):  # the check finds no gain, and in the mirror image no loss
         mirrored = SimpleNamespace(
-            tie_strength=scene.tie_strength, accounts=lambda q, v, sign=sign: [sign * p for p in scene.accounts(q, v)]
+            links=scene.links, accounts=lambda q, v, sign=sign: [sign * p for p in scene.accounts(q, v)]
         )
         honest(mirrored, steps, sign * work, everywhere, most / engine_run.ENERGY_GAIN)
 
@@ -179,7 +179,7 @@ def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
             stored = np.append(0.0, np.cumsum(work))[marks]
             stored[-1] += gain
             accounts = stored[:, None], np.zeros((len(marks), 0))
-            made_up = SimpleNamespace(tie_strength=scene.tie_strength, accounts=lambda q, v: accounts)
+            made_up = SimpleNamespace(links=scene.links, accounts=lambda q, v: accounts)
             honest(made_up, steps, work, marks, scale)
 
         monkeypatch.setattr(engine_run, "require_no_gain", growing)

@@ -51,7 +51,7 @@ def test_the_estimate_knows_the_explicit_step(kind, k_s):
     masonry = arch if kind == "arch" else wall
     case = mr.MasonryCase(masonry, 0.001)
     scene, run = mr.masonry_scene(case), mr.solve_explicit(case)
-    each = explicit_seconds(scene, masonry) / len(scene.k) * SHARE * run.stats["stable_timestep"]
+    each = explicit_seconds(scene, masonry) / len(scene.contacts.k) * SHARE * run.stats["stable_timestep"]
     assert each == pytest.approx(RIGID if k_s is None else SPRUNG, rel=0.25)
 
 
@@ -69,7 +69,7 @@ def test_a_facade_in_space_is_sent_to_explicit_steps_and_a_column_is_not(k_s):
     scene, run = mr.masonry_scene(case), mr.solve_explicit(case)
     with pytest.warns(UserWarning, match="explicit steps would take"):
         warn_if_slow(scene, facade)
-    each = explicit_seconds(scene, facade) / len(scene.k) * SHARE * run.stats["stable_timestep"]
+    each = explicit_seconds(scene, facade) / len(scene.contacts.k) * SHARE * run.stats["stable_timestep"]
     assert each == pytest.approx(RIGID_IN_SPACE if k_s is None else SPRUNG_IN_SPACE, rel=0.3)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -119,7 +119,7 @@ def test_every_contact_point_sits_where_the_wall_touches(one_sided, contacts, wa
         found = {model.geom(c.geom[1]).name: c.dist for c in data.contact} | {
             model.geom(c.geom[0]).name: c.dist for c in data.contact
         }
-        for name, gap in zip(scene.point_names, gaps(scene.places, data.qpos[None].copy())[0], strict=True):
+        for name, gap in zip(scene.contacts.point_names, gaps(scene.places, data.qpos[None].copy())[0], strict=True):
             assert (name in found) == (gap < 0)
             if gap < 0:
                 assert found[name] == pytest.approx(gap, abs=1e-14)

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 import scenes
-from scenes import stock_takes
+from scenes import changed, stock_takes
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 from space_scenes import box, course, fitted, fixed
@@ -19,6 +19,7 @@ from mjrock.engine.model import Engine
 from mjrock.geometry.frames import SPACE
 from mjrock.geometry.poses import at_rest
 from mjrock.quantities import GRAVITY
+from mjrock.scene.parts import Bodies, ContactPoints
 
 BLOCK = (0.6, 0.4, 2.0)
 UPRIGHT = (0, 0, 0, 1, 0, 0, 0)
@@ -29,21 +30,19 @@ slow = pytest.mark.slow
 def tilted(scene, angle, plan):
     """Pose of a box turned by an angle [rad] towards a plan angle, its lowest corners where they were and pressed."""
     turn = Rotation.from_rotvec(angle * np.array([-math.sin(plan), math.cos(plan), 0.0]))
-    turned = turn.apply(np.array(scene.point))
+    turned = turn.apply(np.array(scene.contacts.at))
     lowest = int(turned[:, 2].argmin())
-    return scene.lowered(np.array([[*(scene.point - turned)[lowest], *np.roll(turn.as_quat(), 1)]]))
+    return scene.lowered(np.array([[*(scene.contacts.at - turned)[lowest], *np.roll(turn.as_quat(), 1)]]))
 
 
 def planar_block():
     """`box(BLOCK)` in the plane."""
     b, h, mass = 0.3, 1.0, 960.0
     k = np.full(2, 1e8 * 0.24 / 2)
-    return mr.Scene(
-        names=("block",), mass=[mass], inertia=[mass * (b**2 + h**2) / 3], rest=[(0, h)], length=0.4,
-        outlines=(np.array([(-b, -h), (b, -h), (b, h), (-b, h)]),), point_body=[0, 0], point=[(-b, -h), (b, -h)],
-        face_body=[-1, -1], face=[(0, 0)] * 2, normal=[(0, 1)] * 2, k=k, c=0.1 * np.sqrt(mass / k.sum()) * k,
-        friction=[0.6] * 2, group=("base",) * 2,
-    )  # fmt: skip
+    outline = np.array([(-b, -h), (b, -h), (b, h), (-b, h)])
+    ends = [0, 0], [(-b, -h), (b, -h)], [-1, -1], [(0, 0)] * 2, [(0, 1)] * 2
+    contacts = ContactPoints(*ends, k, 0.1 * np.sqrt(mass / k.sum()) * k, [0.6] * 2, [0, 0], ("base",))
+    return mr.Scene(Bodies(("block",), [mass], [mass * (b**2 + h**2) / 3], [(0, h)], (outline,), 0.4), contacts)
 
 
 def prisms(**options):
@@ -93,7 +92,7 @@ def spun(run):
     size, mu, w = (0.6, 0.4, 0.3), 0.4, 3.0
     scene = box(size, friction=mu)
     steps = run(scene, course(scene, 1.0, velocity=[0, 0, 0, 0, 0, w]))
-    slowing = mu * scene.mass[0] * GRAVITY * math.hypot(0.3, 0.2) / scene.inertia[0, 2, 2]
+    slowing = mu * scene.bodies.mass[0] * GRAVITY * math.hypot(0.3, 0.2) / scene.bodies.inertia[0, 2, 2]
     return 2 * math.atan2(steps.pose[-1, 6], steps.pose[-1, 3]) / (w**2 / (2 * slowing))
 
 
@@ -120,7 +119,7 @@ class TestText:
         mujoco.mj_forward(engine.model, engine.data)
         mass = np.zeros((6, 6))
         mujoco.mj_fullM(engine.model, engine.data, mass)
-        np.testing.assert_allclose(mass[3:, 3:], scene.inertia[0], rtol=0, atol=1e-10)
+        np.testing.assert_allclose(mass[3:, 3:], scene.bodies.inertia[0], rtol=0, atol=1e-10)
         np.testing.assert_allclose(mass[:3, :3], 960 * np.eye(3), atol=1e-10)
 
 
@@ -199,7 +198,8 @@ def torque_free(run):
     """Largest error of the angular velocity of a body in free flight [rad/s], and the energy that it has gained [-]."""
     moments = np.array([432.0, 1046.0, 1306.0])
     tensor, w = SKEW @ np.diag(moments) @ SKEW.T, SKEW @ (0.3, 1.0, 0.2)
-    scene = box((1.0, 1.5, 2.0), inertia=[tensor], mass=[3000.0], height=1e3, settled=[UPRIGHT], friction=0.0)
+    flying = box((1.0, 1.5, 2.0), tensor=tensor, height=1e3, settled=[UPRIGHT], friction=0.0)
+    scene = changed(flying, bodies={"mass": [3000.0]})
     steps = run(scene, course(scene, 1.0, velocity=[0, 0, 0, *w]))
 
     def rates(t, w):
@@ -253,13 +253,13 @@ def test_on_a_corner_it_keeps_energy_and_angular_momentum(timestep, error):
     scene = box(BLOCK, k_n=1e10, friction=5.0)
     pose = tilted(scene, 0.25, 0.4)
     turn = Rotation.from_quat(np.roll(pose[0, 3:], -1))
-    pivot = scene.point[int(turn.apply(np.array(scene.point))[:, 2].argmin())]
+    pivot = scene.contacts.at[int(turn.apply(np.array(scene.contacts.at))[:, 2].argmin())]
     velocity = np.cross((0, 0, 1.0), -turn.apply(np.array(pivot)))
     steps = fixed(scene, course(scene, 0.5, pose=pose, velocity=[*velocity, *turn.inv().apply((0, 0, 1.0))]), timestep)
     energy = scene.energy(steps.pose[:, None], steps.velocity[:, None])
     turns = Rotation.from_quat(np.roll(steps.pose[:, 3:], -1, axis=1))
-    momentum = turns.apply(steps.velocity[:, 3:] @ scene.inertia[0])
-    momentum += scene.mass[0] * np.cross(-turns.apply(np.array(pivot)), steps.velocity[:, :3])
+    momentum = turns.apply(steps.velocity[:, 3:] @ scene.bodies.inertia[0])
+    momentum += scene.bodies.mass[0] * np.cross(-turns.apply(np.array(pivot)), steps.velocity[:, :3])
     assert np.ptp(energy) < error * energy[0]
     assert np.ptp(momentum[:, 2]) < error * momentum[0, 2]
 

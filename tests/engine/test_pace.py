@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import course, fields, two_blocks
+from scenes import changed, course, two_blocks
 
 import mjrock as mr
 from mjrock.engine.pace import Pace, judged, resolves, short_step, while_loaded, while_taut
@@ -62,7 +62,7 @@ def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
         damped = wall_scene(case, dataclasses.replace(contacts, base=dataclasses.replace(contacts.base, xi=xi)))
         spring = math.sqrt(METHOD.short * 1e-3) / damped.highest_frequency
         # the least mass that a contact may feel is 1 / (6 W), a quarter of the wall's
-        dashpot = math.sqrt(METHOD.dashpot * 1e-3) * wall.mass / 4 / damped.c[0]
+        dashpot = math.sqrt(METHOD.dashpot * 1e-3) * wall.mass / 4 / damped.contacts.c[0]
         assert dashpot < spring
         assert bool(dashpot < spring / 8) is limited
         assert short_step(damped, 1e-3) == pytest.approx(spring / 8 if limited else dashpot)
@@ -106,8 +106,8 @@ def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
     assert while_taut(pace, ties, longer, 0.02) == pytest.approx(0.01)
     assert while_taut(pace._replace(short=0.015), ties, longer, 0.02) == 0.015
     assert while_taut(pace, ties, longer, 0.009) == 0.009
-    for changed in ((0.01, -0.3, 20.0, 10.0), (-0.01, 0.3, 20.0, 10.0)):  # slack, and shortening
-        assert while_taut(pace, ties, openings(5, {4: changed}), 0.02) == 0.02
+    for other in ((0.01, -0.3, 20.0, 10.0), (-0.01, 0.3, 20.0, 10.0)):  # slack, and shortening
+        assert while_taut(pace, ties, openings(5, {4: other}), 0.02) == 0.02
     elastic = ties._replace(stretch=np.array([math.inf]))
     assert while_taut(pace, elastic, longer, 0.02) == 0.02
     assert while_taut(pace._replace(taut=0.004), elastic, longer, 0.02) == 0.004
@@ -132,18 +132,19 @@ def test_steps_on_a_taut_tie(wall, contacts):
 def with_stops(scene):
     """Two blocks with a stop before each of them, one millimetre away, and one between them that meets no weight."""
     extra = {
-        "point_body": [0, 1, 1],
-        "point": [(-0.3, 0.0), (-0.3, 0.0), (0.0, -1.05)],
+        "body": [0, 1, 1],
+        "at": [(-0.3, 0.0), (-0.3, 0.0), (0.0, -1.05)],
         "face_body": [-1, -1, 0],
-        "face": [(-0.301, 0.0), (-0.301, 0.0), (0.0, 1.049)],
+        "face_at": [(-0.301, 0.0), (-0.301, 0.0), (0.0, 1.049)],
         "normal": [(1, 0), (1, 0), (0, 1)],
         "k": [1e7] * 3,
         "c": [0.0] * 3,
         "friction": [0.0] * 3,
-        "group": ("stop", "stop", "pin"),
+        "joint": [2, 2, 3],
+        "joints": ("stop", "pin"),
     }
-    parts = fields(scene) | {"holds": False}
-    return mr.Scene(**parts | {name: (*parts[name], *values) for name, values in extra.items()})
+    more = {name: (*getattr(scene.contacts, name), *values) for name, values in extra.items()}
+    return changed(scene, contacts={"holds": False} | more)
 
 
 def test_which_body_presses_what_bears_nothing_at_rest():
@@ -165,17 +166,12 @@ def test_joints_go_from_the_ground_upwards():
     """However the bodies are numbered; a body that stands on two others has none."""
     scene = two_blocks()
     assert Joints.of_scene(scene).body.tolist() == [0, 1]
-    parts = fields(scene)
-    turned = {
-        "rest": scene.rest[::-1],
-        "face_body": [1, 1, -1, -1],
-        "face": scene.face[::-1],
-    }
-    joints = Joints.of_scene(mr.Scene(**parts | turned))
+    faces = {"face_body": [1, 1, -1, -1], "face_at": scene.contacts.face_at[::-1]}
+    joints = Joints.of_scene(changed(scene, bodies={"rest": scene.bodies.rest[::-1]}, contacts=faces))
     assert joints.body.tolist() == [1, 0]
     assert joints.of.tolist() == [1, 1, 0, 0]
-    bridge = {"face_body": [-1, -1, 0, -1], "face": [(0, 0), (0, 0), (0, 1.05), (0, 2.1)]}
-    assert len(Joints.of_scene(mr.Scene(**parts | bridge)).body) == 0
+    bridge = {"face_body": [-1, -1, 0, -1], "face_at": [(0, 0), (0, 0), (0, 1.05), (0, 2.1)]}
+    assert len(Joints.of_scene(changed(scene, contacts=bridge)).body) == 0
 
 
 def test_the_deepest_point_of_a_joint():
@@ -199,7 +195,7 @@ def test_an_edge_rolls_about_the_place_of_friction(i):
     scene, turn = two_blocks(), 1e-4
     pose = np.array([0, -0.004, 0.0, 0, -0.007, 0.0])
     later = pose.copy()
-    later[3 * scene.point_body[i] + 2] += turn
+    later[3 * scene.contacts.body[i] + 2] += turn
     if i == 3:
         later[2] += 3 * turn  # the face turns as well, and only what is left turns the point against it
     depth = [-gap(scene.places, i, frames_of(q), q, q).value for q in (pose, later)]
@@ -231,6 +227,6 @@ def test_between_blocks_the_extra_dashpot_is_only_what_the_joint_lacks():
     for xi in (0.0, 1e-4, 0.05):
         scene = two_blocks(xi=xi)
         pace = Pace.of(scene, course(scene), 1e-3)
-        lacking = np.maximum(METHOD.ringing_borne - scene.c / scene.k / pace.longest, 0)
+        lacking = np.maximum(METHOD.ringing_borne - scene.contacts.c / scene.contacts.k / pace.longest, 0)
         np.testing.assert_allclose(pace.ringing[1], lacking)
         assert (lacking[0] == METHOD.ringing_borne, lacking[0] == 0) == (xi == 0, xi == 0.05)

@@ -22,7 +22,7 @@ WALL = mr.Block(b=0.3, h=1.2)
 def on_its_toe(scene, angle, plan):
     """Pose of a box tilted by an angle [rad] towards a plan angle, and the point on which it stands."""
     tilt = Rotation.from_rotvec(angle * np.array([-math.sin(plan), math.cos(plan), 0.0]))
-    at = np.array(scene.point)
+    at = np.array(scene.contacts.at)
     toe = int(tilt.apply(at)[:, 2].argmin())
     away = at[toe] - tilt.apply(at[toe])
     return scene.lowered(np.array([[*away, *np.roll(tilt.as_quat(), 1)]])), toe
@@ -40,7 +40,7 @@ def test_a_toe_stays_where_it_stuck(plan):
     """On a stiff base it rolls by less than 0.1 um. The twin: in a fixed step it drifts, to first order in the step."""
     scene = box(SIZE, k_n=1e11, friction=5.0)
     pose, toe = on_its_toe(scene, 0.12, plan)
-    start, at = course(scene, 0.3, pose=pose), scene.point[toe]
+    start, at = course(scene, 0.3, pose=pose), scene.contacts.at[toe]
     for accuracy in (1e-2, 1e-3, 1e-4):
         assert drift(fitted(scene, start, accuracy), at) < 1e-7
     coarse, fine = (drift(fixed(scene, start, h), at) for h in (2e-3, 1e-3))
@@ -70,7 +70,7 @@ def against_a_side(k_n):
             tuple(blocks), k_n, lambda joint: 0.0 if "side" in joint.name else 5.0, xi=0.02, frequency=100.0
         )
         scene = mr.masonry_scene(mr.MasonryCase(masonry, 1.0))
-        yield masonry, (scene.lowered(np.array(pose)), np.zeros((1, len(scene.masses))))
+        yield masonry, (scene.lowered(np.array(pose)), np.zeros((1, len(scene.bodies.masses))))
 
 
 def test_rebounds_from_a_side_are_those_of_the_plane():
@@ -94,10 +94,10 @@ def test_a_point_rolls_as_its_body_turns_over_its_face():
     motion[3:6], motion[9:12] = turns
     pose = moved(start, motion, SPACE)
     step = Moved(start, frames_of(start, SPACE), pose, frames_of(pose, SPACE))
-    for i in (int(np.flatnonzero(scene.point_body == body)[0]) for body in (0, 1)):
+    for i in (int(np.flatnonzero(scene.contacts.body == body)[0]) for body in (0, 1)):
         meets = meeting(scene.places, i, step.frames)
         pressed = 0.5 * (depth(scene.places, i, step.from_frames) + depth(scene.places, i, step.frames))
-        relative = turns[0] if scene.point_body[i] == 0 else turns[1] - turns[0]
+        relative = turns[0] if scene.contacts.body[i] == 0 else turns[1] - turns[0]
         expected = -0.5 * pressed * np.cross(relative, meets.normal)
         ways = ways_along(scene.places, i, step.frames, scene.places.axes)
         np.testing.assert_allclose([*ways, meets.normal] @ np.transpose([*ways, meets.normal]), np.eye(3), atol=1e-14)

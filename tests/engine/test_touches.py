@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import course, fields
+from scenes import changed, course
 
 import mjrock as mr
 from mjrock.engine.loop import fitted_loop
@@ -18,6 +18,7 @@ from mjrock.engine.sticking import Joints
 from mjrock.engine.touches import Openings, Springs, Touches, hardest, predict
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
+from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.wall import wall_scene
 
 BLOCK = mr.Block.from_size(2.0, 2.0)
@@ -47,7 +48,7 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
         sliding = Sliding.of(setting.points, coulomb=True)
         state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
-        record = Record.of(1, (3, 3), len(scene.k))
+        record = Record.of(1, (3, 3), len(scene.contacts.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
         before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         values, n = fitted_loop(engine.memory, setting, pace, state, before, record)
@@ -75,7 +76,7 @@ def test_a_faint_touch_is_not_met(ice, share):
     the dashpot.
     """
     h = 2 * short_step(ice, ACCURACY)
-    misplaced = (0.25 * ice.k[-1] * h + ice.c[-1]) * h * SPEED**2
+    misplaced = (0.25 * ice.contacts.k[-1] * h + ice.contacts.c[-1]) * h * SPEED**2
     after, _ = one_step(ice, 0.5 * h * SPEED, h, share * misplaced / (METHOD.faded * ACCURACY))
     assert after.touches == (1 if share < 1 else 0)
 
@@ -92,7 +93,7 @@ def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
     """The stop takes a share of `abrupt` of the speed of the last touch in one step. Speeds weigh with the masses."""
     h = short_step(ice, ACCURACY)
     _, record = one_step(ice, -1e-4, h)
-    change = ice.masses @ (record.after[0] - record.before[0]) ** 2
+    change = ice.bodies.masses @ (record.after[0] - record.before[0]) ** 2
     after, _ = one_step(ice, -1e-4, h, change / (share * METHOD.abrupt) ** 2)
     assert bool(after.abrupt) is (share > 1)
 
@@ -123,19 +124,8 @@ def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():
     """A block on ice is pulled against a tie, stretches it for good, springs back, and is pulled against it again."""
     contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05, friction=0.0)
     standing = wall_scene(mr.Case(BLOCK, 0.0, 1.0, side_stop=False), contacts)
-    parts = fields(standing)
-    tie = {
-        "tie_names": ("tie",),
-        "tie_body": [0],
-        "tie_point": [(0.0, 0.0)],
-        "anchor_body": [-1],
-        "anchor": [(-5.0, BLOCK.h)],
-        "tie_k": [2e6],
-        "tie_length": [5.02],
-        "tie_strength": [2e4],
-    }
-    pull = {"force_names": ("pull",), "force_body": [0], "force_point": [(0.0, 0.0)], "force": [(4e3, 0.0)]}
-    scene = mr.Scene(**parts | tie | pull)
+    tie = Links(("tie",), [0], [(0.0, 0.0)], [-1], [(-5.0, BLOCK.h)], k=[2e6], reach=[5.02], strength=[2e4])
+    scene = changed(standing, links=tie, forces=ConstantForces(("pull",), [0], [(0.0, 0.0)], [(4e3, 0.0)]))
     pulled = course(scene, [[SPEED, 0.0, 0.0]], 1.0)
     with engine_of(scene) as engine:
         engine.place(pulled)

@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from scenes import fields, two_blocks
+from scenes import changed, two_blocks
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
@@ -28,6 +28,7 @@ from mjrock.geometry.kinematics import (
 )
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
 from mjrock.scene.ground import Ground, push_ground
+from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.potential import Potential
 from mjrock.scene.structure import Structure, energies
 
@@ -65,21 +66,16 @@ def in_space(scene):
             reach=np.array(ties.reach), **{name: lifted(getattr(ties, name)) for name in ("at", "anchor_at", "between")}
         ),
         forces._replace(at=lifted(forces.at), force=lifted(forces.force)),
-        np.column_stack([scene.mass] * 3 + [scene.inertia] * 3).ravel(),
+        np.column_stack([scene.bodies.mass] * 3 + [scene.bodies.inertia] * 3).ravel(),
     )
 
 
 def held_blocks():
     """Two blocks with a tie between them, one to the ground, and a force, none of them along an axis."""
     scene = two_blocks()
-    parts = fields(scene)
-    held = {
-        "tie_names": ("between", "down"), "tie_body": [1, 1], "tie_point": [(0.3, 1.0), (-0.2, 0.7)],
-        "anchor_body": [0, -1], "anchor": [(-0.2, -0.6), (-2.0, 0.1)],
-        "tie_k": [2e6, 3e6], "tie_length": [2.0, 3.0], "tie_strength": [1e5, math.inf],
-        "force_names": ("pull",), "force_body": [1], "force_point": [(0.1, 0.9)], "force": [(3e3, -1e4)],
-    }  # fmt: skip
-    return mr.Scene(**parts | held)
+    ends = ("between", "down"), [1, 1], [(0.3, 1.0), (-0.2, 0.7)], [0, -1], [(-0.2, -0.6), (-2.0, 0.1)]
+    ties = Links(*ends, k=[2e6, 3e6], reach=[2.0, 3.0], strength=[1e5, math.inf])
+    return changed(scene, links=ties, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e3, -1e4)]))
 
 
 def arch():
@@ -88,7 +84,7 @@ def arch():
 
 def moves(rng, scene, count):
     """Poses of the plane, velocities and accelerations."""
-    bodies = len(scene.mass)
+    bodies = len(scene.bodies.mass)
     poses = rng.normal(0, [0.02, 0.02, 0.2] * bodies, (count, 3 * bodies))
     return zip(poses, *rng.normal(0, 1, (2, count, 3 * bodies)), strict=True)
 
@@ -111,7 +107,7 @@ def tumbling():
     ends, anchors = rng.normal(0, 0.7, (2, 3, 3))
     between = origin(held) + ends - origin(anchor_body) - anchors
     k, reach = np.array([2e4, 3e4, 1e4]), np.array([0.5, 0.9, 9.0])
-    ties = Ties(held, ends, anchor_body, anchors, between, k, reach, *np.full((2, 3), math.inf))
+    ties = Ties(held, ends, anchor_body, anchors, between, k, reach, *np.full((2, 3), math.inf), np.zeros(3))
     forces = Forces(np.array([0, 1]), *rng.normal(0, [[[0.5]], [[300.0]]], (2, 2, 3)))
     masses = np.array([40.0, 40.0, 40.0, 2.0, 3.0, 4.0, 25.0, 25.0, 25.0, 1.0, 2.5, 1.5])
     return rest, Structure(places, np.array([1e5, 2e5, 3e5, 1e5, 2e5]), ties, forces, masses)
@@ -265,7 +261,7 @@ class TestThePlaneInSpace:
         flat, places = scene.places, in_space(scene).places
         for q, v, a in moves(np.random.default_rng(5), scene, 10):
             one, other = frames_of(q), frames_of(pose_in_space(q), SPACE)
-            for i in range(len(scene.k)):
+            for i in range(len(scene.contacts.k)):
                 mine = gap(places, i, other, velocity_in_space(v), velocity_in_space(a))
                 np.testing.assert_allclose(mine, gap(flat, i, one, v, a), rtol=0, atol=1e-13)
                 assert depth(places, i, other) == -mine.value
@@ -282,10 +278,10 @@ class TestThePlaneInSpace:
 
     def test_what_a_contact_does_to_two_bodies(self, scene):
         """Along the normal and along the face: x, z and the moment about y are those of the plane, all else is none."""
-        flat, places, bodies = scene.places, in_space(scene).places, len(scene.mass)
+        flat, places, bodies = scene.places, in_space(scene).places, len(scene.bodies.mass)
         for q, _, _ in moves(np.random.default_rng(7), scene, 5):
             one, other = frames_of(q), frames_of(pose_in_space(q), SPACE)
-            for i in range(len(scene.k)):
+            for i in range(len(scene.contacts.k)):
                 for acts in (lambda _, meets: meets, where_friction_acts):
                     meets, mine = acts(flat, meeting(flat, i, one)), acts(places, meeting(places, i, other))
                     assert mine.gap == pytest.approx(meets.gap, abs=1e-14)

@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from scenes import fields, two_blocks
+from scenes import changed, two_blocks
 
 import mjrock as mr
 from mjrock.geometry.frames import PLANE, frames_of, swung
@@ -14,6 +14,7 @@ from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
 from mjrock.scene.equilibrium import settled
 from mjrock.scene.of_case import course_of, scene_of
+from mjrock.scene.parts import Links
 from scripts.shared.paper import K_N
 
 
@@ -33,9 +34,9 @@ def poses(rng, count, bodies):
 def test_the_released_wall_is_carried_by_its_springs(wall, points, share):
     contacts = mr.Contacts.from_damping(wall, k_base=K_N, xi_base=0.05, points=points)
     course, scene = course_and_scene(mr.Case(wall, share * wall.alpha, 1.0, side_stop=False), contacts)
-    forces = -scene.k * np.minimum(gaps(scene.places, course.pose), 0)
+    forces = -scene.contacts.k * np.minimum(gaps(scene.places, course.pose), 0)
     # rounding leaves some eps h of a gap, which is a small difference of lengths like h, and k times that of the force
-    assert forces.sum() == pytest.approx(wall.weight, abs=10 * np.finfo(float).eps * wall.h * scene.k.sum())
+    assert forces.sum() == pytest.approx(wall.weight, abs=10 * np.finfo(float).eps * wall.h * scene.contacts.k.sum())
     assert not course.velocity.any()
 
 
@@ -70,7 +71,7 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
     rng = np.random.default_rng(5)
     t = 1e-4
     for q, v, a in zip(*poses(rng, 20, 2), strict=True):
-        for i in range(len(scene.k)):
+        for i in range(len(scene.contacts.k)):
             before, after = (
                 gap(scene.places, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a) for s in (-t, t)
             )
@@ -84,18 +85,8 @@ def test_rates_are_derivatives_also_of_a_face_that_turns():
 def tied_blocks():
     """The two blocks with one tie between them and one to the ground, neither along an axis."""
     scene = two_blocks()
-    parts = fields(scene)
-    ties = {
-        "tie_names": ("between", "down"),
-        "tie_body": [1, 1],
-        "tie_point": [(0.3, 1.0), (-0.2, 0.7)],
-        "anchor_body": [0, -1],
-        "anchor": [(-0.2, -0.6), (-2.0, 0.1)],
-        "tie_k": [2e6, 3e6],
-        "tie_length": [2.0, 3.0],
-        "tie_strength": [1e5, math.inf],
-    }
-    return mr.Scene(**parts | ties)
+    ends = ("between", "down"), [1, 1], [(0.3, 1.0), (-0.2, 0.7)], [0, -1], [(-0.2, -0.6), (-2.0, 0.1)]
+    return changed(scene, links=Links(*ends, k=[2e6, 3e6], reach=[2.0, 3.0], strength=[1e5, math.inf]))
 
 
 def test_ties_between_bodies_that_turn():
@@ -108,13 +99,16 @@ def test_ties_between_bodies_that_turn():
             return np.array(local)
         x, z, theta = q[3 * body : 3 * body + 3]
         c, s = math.cos(theta), math.sin(theta)
-        return scene.rest[body] + [x + local[0] * c + local[1] * s, z - local[0] * s + local[1] * c]
+        return scene.bodies.rest[body] + [x + local[0] * c + local[1] * s, z - local[0] * s + local[1] * c]
 
     for q, v, a in zip(*poses(np.random.default_rng(9), 20, 2), strict=True):
         for i in range(2):
-            ends = world(q, scene.tie_body[i], scene.tie_point[i]), world(q, scene.anchor_body[i], scene.anchor[i])
+            ends = (
+                world(q, scene.links.sprung.body[i], scene.links.sprung.at[i]),
+                world(q, scene.links.sprung.anchor_body[i], scene.links.sprung.anchor_at[i]),
+            )
             now = slack(scene.ties, i, frames_of(q), v, a, axes)
-            assert now.value == pytest.approx(scene.tie_length[i] - math.dist(*ends), abs=1e-12)
+            assert now.value == pytest.approx(scene.links.sprung.reach[i] - math.dist(*ends), abs=1e-12)
             before, after = (
                 slack(scene.ties, i, frames_of(q + s * v + 0.5 * s * s * a), v + s * a, a, axes) for s in (-t, t)
             )
@@ -144,7 +138,7 @@ def test_a_place_along_a_face_moves_with_its_rate():
     """The position along the face from its origin, its rate by central differences, and depth as the gap reversed."""
     scene, t = two_blocks(), 1e-5
     for q, v, _ in zip(*poses(np.random.default_rng(10), 20, 2), strict=True):
-        for i in range(len(scene.k)):
+        for i in range(len(scene.contacts.k)):
             before, after = (along(scene.places, i, frames_of(q + s * v), v).place for s in (-t, t))
             assert (after - before) / (2 * t) == pytest.approx(along(scene.places, i, frames_of(q), v).rate, abs=1e-7)
             assert depth(scene.places, i, frames_of(q)) == pytest.approx(
@@ -163,25 +157,25 @@ def test_slip_is_the_relative_velocity_where_friction_acts():
     def world(q, body, local):
         x, z, theta = q[3 * body : 3 * body + 3]
         c, s = math.cos(theta), math.sin(theta)
-        return scene.rest[body] + [x + local[0] * c + local[1] * s, z - local[0] * s + local[1] * c]
+        return scene.bodies.rest[body] + [x + local[0] * c + local[1] * s, z - local[0] * s + local[1] * c]
 
     def local_to(q, body, place):
         x, z, theta = q[3 * body : 3 * body + 3]
         c, s = math.cos(theta), math.sin(theta)
-        dx, dz = place - scene.rest[body] - [x, z]
+        dx, dz = place - scene.bodies.rest[body] - [x, z]
         return np.array([dx * c - dz * s, dx * s + dz * c])
 
     t = 1e-5
     for q, v, _ in zip(*poses(rng, 20, 2), strict=True):
-        for i in range(len(scene.k)):
+        for i in range(len(scene.contacts.k)):
             g = gap(scene.places, i, frames_of(q), v, v).value
-            face = scene.face_body[i]
+            face = scene.contacts.face_body[i]
             turn = q[3 * face + 2] if face >= 0 else 0.0
-            nx, nz = scene.normal[i]
+            nx, nz = scene.contacts.normal[i]
             n = np.array([nx * math.cos(turn) + nz * math.sin(turn), nz * math.cos(turn) - nx * math.sin(turn)])
-            place = world(q, scene.point_body[i], scene.point[i]) - (0.5 * g + scene.radius) * n
+            place = world(q, scene.contacts.body[i], scene.contacts.at[i]) - (0.5 * g + scene.radius) * n
             relative = np.zeros(2)
-            for body, sign in ((scene.point_body[i], 1), (face, -1)):
+            for body, sign in ((scene.contacts.body[i], 1), (face, -1)):
                 if body >= 0:
                     own = local_to(q, body, place)
                     relative += sign * (world(q + t * v, body, own) - world(q - t * v, body, own)) / (2 * t)
@@ -216,7 +210,7 @@ def test_gaps_and_slip_are_those_of_the_engine():
                 assert jacobian[row] @ v == pytest.approx(rate, rel=1e-9, abs=1e-9)
                 slips = jacobian[row + 1 : row + contact.dim] @ v
                 assert np.hypot(*slips) == pytest.approx(abs(along(scene.places, i, frames_of(q), v).bodies), abs=1e-9)
-    assert seen == set(range(len(scene.k)))
+    assert seen == set(range(len(scene.contacts.k)))
 
 
 def test_energy_is_none_at_rest_and_the_rigid_one_at_release(wall, contacts):
@@ -234,9 +228,9 @@ def test_energies_of_bodies_that_move():
     q, v, _ = poses(np.random.default_rng(8), 5, 2)
     found, taken = scene.accounts(q, v)
     assert (found.shape, taken.shape) == ((5, 3), (5, 0))
-    np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.masses))
-    np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.mass))
-    np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.places, q), 0) ** 2 @ scene.k)
+    np.testing.assert_allclose(found[:, 0], 0.5 * (v**2 @ scene.bodies.masses))
+    np.testing.assert_allclose(found[:, 1], mr.GRAVITY * (q[:, 1::3] @ scene.bodies.mass))
+    np.testing.assert_allclose(found[:, 2], 0.5 * np.minimum(gaps(scene.places, q), 0) ** 2 @ scene.contacts.k)
 
 
 @pytest.mark.parametrize("side_stop", [True, False])
@@ -248,11 +242,11 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    np.testing.assert_allclose(settled(scene.potential, scene.friction), scene.at_rest, atol=1e-15)
-    np.testing.assert_allclose(scene.bears, wall.weight / scene.k[:2].sum() * np.array([1, 1, 0, 0]))
+    np.testing.assert_allclose(settled(scene.potential, scene.contacts.friction), scene.at_rest, atol=1e-15)
+    np.testing.assert_allclose(scene.bears, wall.weight / scene.contacts.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
-    force = -blocks.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)
-    weights = mr.GRAVITY * blocks.mass
+    force = -blocks.contacts.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)
+    weights = mr.GRAVITY * blocks.bodies.mass
     np.testing.assert_allclose([force[2:].sum(), force[:2].sum()], [weights[1], weights.sum()], rtol=1e-9)
 
 

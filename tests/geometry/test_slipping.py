@@ -18,9 +18,9 @@ def test_rates_are_those_of_the_kinematics(scene):
     """Of the gap at the arms to the place of friction too: along the normal a body moves there as at the point."""
     rng, places = np.random.default_rng(1), scene.places
     for _ in range(20):
-        pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.masses.shape)
+        pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.bodies.masses.shape)
         velocity, frames = rng.normal(size=pose.shape), frames_of(pose)
-        for i in range(len(scene.k)):
+        for i in range(len(scene.contacts.k)):
             meets = where_friction_acts(places, meeting(places, i, frames))
             between = gap(places, i, frames, velocity, velocity)
             assert meets.gap == pytest.approx(between.value, abs=1e-14)
@@ -34,9 +34,9 @@ def test_rates_are_those_of_the_kinematics(scene):
 @pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
 def test_the_power_of_a_force_along_a_face_is_force_times_slip(scene):
     rng, places = np.random.default_rng(2), scene.places
-    pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.masses.shape)
+    pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.bodies.masses.shape)
     velocity, frames = rng.normal(size=pose.shape), frames_of(pose)
-    for i in range(len(scene.k)):
+    for i in range(len(scene.contacts.k)):
         meets, applied = where_friction_acts(places, meeting(places, i, frames)), np.zeros_like(pose)
         push_apart(places, i, meets, frames, scaled(-3.0, tangent(meets.normal)), applied)
         power = -3.0 * slipping(places, i, meets, frames, velocity).speed
@@ -47,9 +47,9 @@ def test_the_power_of_a_force_along_a_face_is_force_times_slip(scene):
 @pytest.mark.parametrize("scene", [two_blocks(), ARCH], ids=["stack", "arch"])
 def test_the_power_of_a_force_out_of_a_face_is_force_times_rate(scene):
     rng, places = np.random.default_rng(3), scene.places
-    pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.masses.shape)
+    pose = scene.at_rest.ravel() + rng.normal(0, 0.2, scene.bodies.masses.shape)
     velocity, frames = rng.normal(size=pose.shape), frames_of(pose)
-    for i in range(len(scene.k)):
+    for i in range(len(scene.contacts.k)):
         meets, applied = meeting(places, i, frames), np.zeros_like(pose)
         push_apart(places, i, meets, frames, scaled(5.0, meets.normal), applied)
         rate = gap(places, i, frames, velocity, velocity).rate

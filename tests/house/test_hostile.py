@@ -219,6 +219,13 @@ CALLS = OF_NUMBERS | {
     "Damper, space": (
         mr.Damper, {"at": (0, 0, 1), "c": 1e6, "anchor": (1, 0, 1), "anchor_block": None, "height": None},
     ),
+    "FrictionDamper, space": (
+        mr.FrictionDamper,
+        {
+            "at": (0, 0, 1), "stiffness": 1e6, "slip_force": 1e3, "anchor": (1, 0, 1), "anchor_block": None,
+            "height": None,
+        },
+    ),
     "Thrust, space": (mr.Thrust, {"at": (0, 0, 1), "force": 1e3, "direction": (0, 1, 0), "height": None}),
     "Masonry": (
         mr.Masonry,

@@ -37,7 +37,7 @@ HELD = "<Contacts, law given, 2 lines a face: base k_n = 5e+08 N/m3, xi = 0.05; 
         (mr.PUBLISHED, "<DampingLaw PUBLISHED: h/b 4 to 15, k_n 5e+07 to 3e+09 N/m3>"),
         (mr.CALIBRATED, "<DampingLaw CALIBRATED: h/b 4 to 15, k_n 5e+07 to 1e+11 N/m3, 2 lines a face>"),
         (mr.Grid(dict, slenderness=[5, 7], scale=[1, 2, 3]), "<Grid of 6 cases: slenderness (2), scale (3)>"),
-        (mr.wall_scene(CASE, CONTACTS), "<Scene of 1 bodies, 4 contacts, 0 ties>"),
+        (mr.wall_scene(CASE, CONTACTS), "<Scene of 1 bodies, 4 contacts, 0 links>"),
         (
             mr.Analysis(CASE, contacts=CONTACTS, options={"accuracy": 1e-4}),
             f"<Analysis by MuJoCo of {CASE!r}, {HELD}, accuracy = 0.0001>",

@@ -73,4 +73,4 @@ def test_both_solvers_of_the_contact_law_agree(side_stop):
     np.testing.assert_allclose(engine.restitution[:2], law.restitution[:2], atol=1e-3)
     wanted = e.base if not side_stop else abs(e.lumped)
     assert engine.restitution[0] == pytest.approx(wanted, rel=1e-2)
-    assert mr.wall_scene(case, contacts).point[:2, 0].tolist() == [-wall.half_base, wall.half_base]
+    assert mr.wall_scene(case, contacts).contacts.at[:2, 0].tolist() == [-wall.half_base, wall.half_base]

@@ -142,9 +142,11 @@ def test_rates_of_lines_are_those_of_the_engine():
     scene = standing_masonry(masonry)
     flat = np.zeros(9)
     mine = {}
-    for i in range(len(scene.k)):
+    for i in range(len(scene.contacts.k)):
         columns_ = [gap(scene.places, i, frames_of(flat), one, flat).rate for one in np.eye(9)]
-        mine[scene.group[i], *np.round(scene.rest[scene.point_body[i]] + scene.point[i], 9)] = columns_
+        mine[
+            scene.contacts.group[i], *np.round(scene.bodies.rest[scene.contacts.body[i]] + scene.contacts.at[i], 9)
+        ] = columns_
     opening = rates(masonry.blocks, masonry.lines, masonry.lines.normal).toarray()
     for row, joint, at in zip(opening, masonry.lines.joint, masonry.lines.at, strict=True):
         assert row == pytest.approx(mine[masonry.joints[joint].name, *np.round(at, 9)], abs=1e-12)

@@ -85,10 +85,10 @@ def test_the_dashpots_take_what_the_law_says(contacts):
     scene = mr.wall_scene(case, contacts)
     gap = gaps(scene.places, law.pose[:, 0])
     rate = np.gradient(gap, law.t, axis=0)
-    force = -(scene.k * gap + scene.c * rate)
-    power = np.where(force > 0, scene.c * rate, -scene.k * gap) * rate * (gap < 0)
+    force = -(scene.contacts.k * gap + scene.contacts.c * rate)
+    power = np.where(force > 0, scene.contacts.c * rate, -scene.contacts.k * gap) * rate * (gap < 0)
     taken = power.sum(axis=0) * 1e-5
-    exact = {name: taken[np.array(scene.group) == name].sum() for name in ("base", "side")}
+    exact = {name: taken[np.array(scene.contacts.group) == name].sum() for name in ("base", "side")}
     assert exact["side"] > 0.5 * case.release_energy
     for name, energy in exact.items():
         assert book.dashpots[name][-1] == pytest.approx(energy, rel=2e-2), name

@@ -29,7 +29,7 @@ def measured(masonry):
     try:
         pose = scene.at_rest
         closed = scene.potential.openings(pose.ravel()) < 0
-        stands = is_stable(scene.potential, scene.friction, closed, pose.ravel())
+        stands = is_stable(scene.potential, scene.contacts.friction, closed, pose.ravel())
     except UnsettledError:
         pose, stands = np.zeros((len(masonry.free), 3)), False
     lowest = lowest_frequency(masonry.blocks, masonry.lines, masonry.joint_friction)

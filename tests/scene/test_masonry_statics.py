@@ -135,11 +135,11 @@ def test_what_settles_is_in_equilibrium():
     """Springs carry the weight of an arch, and symmetric abutments half of it each."""
     masonry = mr.Masonry.arch(5.0, 0.75, voussoirs=16, points=3)
     scene = standing_masonry(masonry)
-    pressed = scene.k * scene.bears
-    turned = scene.normal * pressed[:, None]
-    left = np.array([name.startswith("left") for name in scene.group])
-    right = np.array([name.startswith("right") for name in scene.group])
-    weight = scene.mass.sum() * mr.GRAVITY
+    pressed = scene.contacts.k * scene.bears
+    turned = scene.contacts.normal * pressed[:, None]
+    left = np.array([name.startswith("left") for name in scene.contacts.group])
+    right = np.array([name.startswith("right") for name in scene.contacts.group])
+    weight = scene.bodies.mass.sum() * mr.GRAVITY
     assert turned[left, 1].sum() == pytest.approx(weight / 2, rel=1e-4)  # the springings are level
     assert turned[right, 1].sum() == pytest.approx(weight / 2, rel=1e-4)
     assert scene.at_rest[:, 0] == pytest.approx(-scene.at_rest[::-1, 0], abs=1e-8)
@@ -154,9 +154,9 @@ def test_a_wall_with_openings_settles(height, storeys, gap, monkeypatch):
     openings = (two_storeys.Opening(2.0, 3.2, 0.0, 2.2), two_storeys.Opening(2.0, 3.2, 4.0, 5.2))[:storeys]
     scene = standing_masonry(two_storeys.wall(replace(two_storeys.QUICK, length=5.2, height=height, openings=openings)))
     pose, potential = scene.at_rest.ravel(), scene.potential
-    residual = potential.load(pose) + potential.rates(pose).T @ (scene.k * potential.pressed(pose))
+    residual = potential.load(pose) + potential.rates(pose).T @ (scene.contacts.k * potential.pressed(pose))
     closed = potential.openings(pose) < 0
-    slips = held_slips(potential, scene.friction, closed, pose).toarray()
+    slips = held_slips(potential, scene.contacts.friction, closed, pose).toarray()
     missing = residual - slips.T @ np.linalg.lstsq(slips.T, residual, rcond=None)[0]
-    assert np.abs(missing).max() < 1e-8 * mr.GRAVITY * scene.mass.max()
+    assert np.abs(missing).max() < 1e-8 * mr.GRAVITY * scene.bodies.mass.max()
     assert np.abs(scene.at_rest).max() < 0.01

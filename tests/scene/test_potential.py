@@ -2,25 +2,22 @@
 
 import numpy as np
 import pytest
-from scenes import fields, two_blocks
+from scenes import changed, two_blocks
 from scipy.linalg import null_space
 
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import along
 from mjrock.scene.equilibrium import held_slips
+from mjrock.scene.parts import ConstantForces, Links
 
 
 @pytest.fixture
 def held():
     """Two blocks with a tie between them and a force on the upper one, away from its centroid."""
     scene = two_blocks()
-    changed = {
-        "tie_names": ("tie",), "tie_body": [1], "tie_point": [(0.3, 0.7)], "anchor_body": [0], "anchor": [(-0.3, 0.2)],
-        "tie_k": [3e6], "tie_length": [0.5], "tie_strength": [np.inf],
-        "force_names": ("pull",), "force_body": [1], "force_point": [(0.1, 0.9)], "force": [(3e4, -1e4)],
-    }  # fmt: skip
-    return mr.Scene(**fields(scene) | changed)
+    tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], k=[3e6], reach=[0.5])
+    return changed(scene, links=tie, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e4, -1e4)]))
 
 
 def test_derivatives_of_the_energy(held):
@@ -28,7 +25,7 @@ def test_derivatives_of_the_energy(held):
     potential, pose = held.potential, np.array([0.01, -2e-3, 0.02, 0.04, -6e-3, 0.05])
     assert (potential.openings(pose) < 0).sum() >= 3  # springs of both kinds are pressed, and one contact is open
     assert (potential.openings(pose) > 0).any()
-    k = np.append(held.k, held.tie_k)
+    k = np.append(held.contacts.k, held.links.k)
     np.testing.assert_array_equal(potential.springs, k)
     np.testing.assert_array_equal(potential.pressed(pose), np.maximum(-potential.openings(pose), 0))
     pressed = np.maximum(-potential.openings(pose), 0) * k
@@ -77,16 +74,15 @@ def test_rates_are_derivatives_of_openings_and_places(held):
 
 def test_at_rest_only_friction_holds_what_springs_do_not(held):
     """The tie and the force would make the blocks slide: along all other ways the springs balance them."""
-    parts = fields(held) | {"force": [(3e3, -1e4)]}
     for length, taut in ((0.75, True), (3.0, False)):
-        scene = mr.Scene(**parts | {"tie_length": [length]})
+        scene = changed(held, links={"reach": [length]}, forces={"force": [(3e3, -1e4)]})
         pose = scene.at_rest.ravel()
         assert (scene.potential.pressed(pose)[4] > 0) == taut
         closed = scene.potential.openings(pose) < 0
-        free = null_space(held_slips(scene.potential, scene.friction, closed, pose).toarray())
+        free = null_space(held_slips(scene.potential, scene.contacts.friction, closed, pose).toarray())
         left = scene.potential.gradient(pose)
         assert free.shape == (6, 4)  # friction holds the slip of two joints
-        np.testing.assert_allclose(free.T @ left, 0, rtol=0, atol=1e-8 * scene.mass[0] * mr.GRAVITY)
+        np.testing.assert_allclose(free.T @ left, 0, rtol=0, atol=1e-8 * scene.bodies.mass[0] * mr.GRAVITY)
         assert np.abs(left).max() > 1e3  # which carries some of the force
         assert np.linalg.eigvalsh(free.T @ (scene.potential.hessian(pose) @ free))[0] > 0
 

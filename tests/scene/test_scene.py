@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from scenes import course, fields, fixed_steps, stock_takes, two_blocks
+from scenes import changed, course, fixed_steps, stock_takes, two_blocks
 
 import mjrock as mr
 from mjrock.engine.mjcf import scene_mjcf
@@ -17,31 +17,34 @@ from mjrock.scene.wall import wall_scene
 
 
 @pytest.mark.parametrize(
-    ("changed", "complaint"),
+    ("parts", "complaint"),
     [
-        ({"mass": [1.0]}, r"mass has the shape \(1,\); \(2,\) is needed"),
-        ({"mass": [1.0, -1.0]}, "mass = -1 is outside the valid range mass > 0"),
-        ({"k": [1.0, math.nan, 1.0, 1.0]}, "k holds a value that is not finite"),
-        ({"k": [1.0, 0.0, 1.0, 1.0]}, "k = 0 is outside the valid range k > 0"),
-        ({"c": [-1.0, 0.0, 0.0, 0.0]}, "c = -1 is outside the valid range, which starts at 0"),
-        ({"friction": [0.0, 0.0, -0.5, 0.0]}, "friction = -0.5 is outside the valid range"),
-        ({"point_body": [0, 0, 1, 2]}, "point_body is outside the valid range 0 to 1"),
-        ({"face_body": [-1, -1, 1, 0]}, "face_body is another body, 0 to 1, or -1 for the ground"),
-        ({"normal": [(0, 2), (0, 1), (0, 1), (0, 1)]}, "normal holds a vector that is not of unit length"),
-        ({"group": ("foot", "foot", "lower", "lower")}, "lower names two things of the scene"),
+        ({"bodies": {"mass": [1.0]}}, r"mass of the bodies has the shape \(1,\); \(2,\) is needed"),
+        ({"bodies": {"mass": [1.0, -1.0]}}, "mass of the bodies = -1 is outside the valid range, which is above 0"),
+        ({"contacts": {"k": [1.0, math.nan, 1.0, 1.0]}}, "k of the contacts holds a value that is not finite"),
+        ({"contacts": {"k": [1.0, 0.0, 1.0, 1.0]}}, "k of the contacts = 0 is outside the valid range, which is above"),
+        ({"contacts": {"c": [-1.0, 0.0, 0.0, 0.0]}}, "c of the contacts = -1 is outside the valid range, which starts"),
+        ({"contacts": {"friction": [0.0, 0.0, -0.5, 0.0]}}, "friction of the contacts = -0.5 is outside the valid"),
+        ({"contacts": {"body": [0, 0, 1, 2]}}, "body of the contacts is outside the valid range 0 to 1"),
+        ({"contacts": {"face_body": [-1, -1, 2, 0]}}, "face_body of the contacts is outside the valid range -1 to 1"),
+        ({"contacts": {"face_body": [-1, -1, 1, 0]}}, "face_body of the contacts is another body, or -1 for the gro"),
+        ({"contacts": {"joint": [0, 0, 1, 2]}}, "joint of the contacts is outside the valid range 0 to 1"),
+        ({"contacts": {"at": np.zeros((4, 3))}}, r"at of the contacts has the shape \(4, 3\); \(4, 2\) is needed"),
+        ({"contacts": {"normal": [(0, 2), (0, 1), (0, 1), (0, 1)]}}, "normal of the contacts holds a vector that is"),
+        ({"contacts": {"joints": ("foot", "lower")}}, "lower names two things of the scene"),
     ],
 )
-def test_what_cannot_be_is_refused(changed, complaint):
+def test_what_cannot_be_is_refused(parts, complaint):
     with pytest.raises(ValueError, match=complaint):
-        mr.Scene(**fields(two_blocks()) | changed)
+        changed(two_blocks(), **parts)
 
 
 def test_bodies_that_do_not_stand_are_refused():
     """The upper block rests on two points of its left half: it turns over."""
     scene = two_blocks()
-    points = scene.point.copy()
+    points = scene.contacts.at.copy()
     points[3, 0] = -0.1
-    tipping = mr.Scene(**fields(scene) | {"point": points})
+    tipping = changed(scene, contacts={"at": points})
     with pytest.raises(ValueError, match="do not stand on their contacts"):
         _ = tipping.at_rest
 
@@ -60,7 +63,7 @@ def test_the_text_of_many_bodies():
     for i in range(4):
         pair = model.pair(i)
         found = mr.contact_stiffness(tuple(pair.solref), tuple(pair.solimp), inverse_weight=weight[i])
-        assert found == pytest.approx((scene.k[i], scene.c[i]), rel=1e-12)
+        assert found == pytest.approx((scene.contacts.k[i], scene.contacts.c[i]), rel=1e-12)
     assert weight[3] == pytest.approx(2 * weight[0])
 
 
@@ -76,7 +79,7 @@ def test_a_body_that_is_no_box_is_drawn_as_a_prism():
     """MuJoCo keeps the outline, where it is; the inertia stays the one given."""
     scene = two_blocks()
     trapezium = np.array([(-0.3, -1.05), (0.3, -1.05), (0.2, 1.05), (-0.2, 1.05)])
-    shaped = mr.Scene(**fields(scene) | {"outlines": (trapezium, scene.outlines[1])})
+    shaped = changed(scene, bodies={"outlines": (trapezium, scene.bodies.outlines[1])})
     model = mujoco.MjModel.from_xml_string(scene_mjcf(shaped, 1e-3))
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -86,8 +89,8 @@ def test_a_body_that_is_no_box_is_drawn_as_a_prism():
     for corner in trapezium:
         assert np.abs(placed[:, [0, 2]] - corner).sum(axis=1).min() < 1e-6
     assert geom.type[0] == mujoco.mjtGeom.mjGEOM_MESH
-    assert model.body("lower").mass[0] == scene.mass[0]
-    assert model.body_invweight0[1, 0] == pytest.approx(2 / (3 * scene.mass[0]))
+    assert model.body("lower").mass[0] == scene.bodies.mass[0]
+    assert model.body_invweight0[1, 0] == pytest.approx(2 / (3 * scene.bodies.mass[0]))
 
 
 def test_a_face_that_is_not_level_ground_is_a_plane_of_its_own(one_sided, contacts):
@@ -113,7 +116,9 @@ def test_walls_that_differ_in_release_alone_share_a_model(wall, contacts, monkey
     runs = [mr.simulate(mr.Case(wall, 0.02, 0.3, motion=m), contacts) for m in (None, motion, motion.reversed())]
     softer = mr.Contacts.from_damping(wall, k_base=4e8, xi_base=0.02, k_side=5e8, xi_side=0.01)
     mr.simulate(mr.Case(wall, 0.02, 0.3), softer)  # springs and dashpots are set with every step
-    assert len(compiled) == 1 or (len(compiled) == 2 and compiled[0].friction[0] != compiled[1].friction[0])
+    assert len(compiled) == 1 or (
+        len(compiled) == 2 and compiled[0].contacts.friction[0] != compiled[1].contacts.friction[0]
+    )
     monkeypatch.setattr(model, "_idle", model.OrderedDict())
     assert mr.simulate(runs[1].case, contacts) == runs[1]  # in a model of its own
 

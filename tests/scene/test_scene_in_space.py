@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import fields
+from scenes import changed
 from scipy.optimize import approx_fprime
 from scipy.spatial.transform import Rotation
 from space_scenes import box
@@ -15,6 +15,7 @@ from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.geometry.poses import angles, at_rest, coordinate_rates, from_rates, moved, turned
 from mjrock.quantities import GRAVITY
 from mjrock.scene.masses import coupling, products_of
+from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.rest_in_space import settled_in_space
 
 SKEW = Rotation.from_euler("xyz", (0.4, -0.3, 0.7)).as_matrix()
@@ -22,13 +23,9 @@ SKEW = Rotation.from_euler("xyz", (0.4, -0.3, 0.7)).as_matrix()
 
 def pulled(**parts):
     """A box with a tie and a force, none of them along an axis."""
-    held = {
-        "tie_names": ("stay",), "tie_body": [0], "tie_point": [(0.3, 0.1, 0.9)], "anchor_body": [-1],
-        "anchor": [(-1.5, -0.8, 0.2)], "tie_k": [2e6], "tie_length": [2.633], "tie_strength": [math.inf],
-        "force_names": ("pull",), "force_body": [0], "force_point": [(-0.2, 0.15, 0.7)],
-        "force": [(900.0, -700.0, -3e3)],
-    }  # fmt: skip
-    return box((0.6, 0.4, 2.0), **held | parts)
+    stay = Links(("stay",), [0], [(0.3, 0.1, 0.9)], [-1], [(-1.5, -0.8, 0.2)], k=[2e6], reach=[2.633])
+    pull = ConstantForces(("pull",), [0], [(-0.2, 0.15, 0.7)], [(900.0, -700.0, -3e3)])
+    return box((0.6, 0.4, 2.0), **{"links": stay, "forces": pull} | parts)
 
 
 class TestPoses:
@@ -57,11 +54,11 @@ class TestPoses:
 class TestMasses:
     def test_energy_of_a_body_that_turns_about_skew_axes(self):
         tensor = SKEW @ np.diag((3.0, 4.0, 5.0)) @ SKEW.T
-        scene = box((0.6, 0.4, 2.0), inertia=[tensor], settled=at_rest(1, SPACE))
+        scene = box((0.6, 0.4, 2.0), tensor=tensor, settled=at_rest(1, SPACE))
         v = np.array([1.0, -2.0, 0.5, 0.3, 0.7, -0.4])
-        half = 0.5 * (scene.mass[0] * v[:3] @ v[:3] + v[3:] @ tensor @ v[3:])
+        half = 0.5 * (scene.bodies.mass[0] * v[:3] @ v[:3] + v[3:] @ tensor @ v[3:])
         assert scene.accounts(at_rest(1, SPACE)[None], v[None])[0][0, 0] == pytest.approx(half, rel=1e-14)
-        assert coupling(scene.products, v) == pytest.approx(v[3:] @ (tensor - np.diag(np.diag(tensor))) @ v[3:])
+        assert coupling(scene.bodies.products, v) == pytest.approx(v[3:] @ (tensor - np.diag(np.diag(tensor))) @ v[3:])
 
     def test_frequencies_do_not_depend_on_the_axes(self):
         block = box((0.6, 0.4, 2.0))
@@ -73,7 +70,7 @@ class TestMasses:
         rates = np.array([0.3 + 1.5, 0.1 + 0.8, 1.9 - 0.2])
         way = rates / np.linalg.norm(rates)
         turning = np.cross((0.3, 0.1, 0.9), way)
-        inverse = 1 / 960 + turning @ np.linalg.solve(tall.inertia[0], turning)
+        inverse = 1 / 960 + turning @ np.linalg.solve(tall.bodies.inertia[0], turning)
         assert tall.tie_frequency == pytest.approx(math.sqrt(2e6 * inverse), rel=1e-12)
 
     def test_products_that_are_rounding(self):
@@ -91,7 +88,7 @@ class TestMasses:
     )
     def test_tensors_that_no_body_has(self, inertia, message):
         with pytest.raises(ValueError, match=message):
-            box((0.6, 0.4, 2.0), inertia=[inertia])
+            box((0.6, 0.4, 2.0), tensor=inertia)
 
 
 @pytest.fixture
@@ -124,10 +121,10 @@ class TestPotential:
         """Of two drums that have turned as one, the upper of them spun and slid on its joint, which does not open."""
         column = mr.masonry_scene(mr.MasonryCase(mr.Masonry.column(0.5, 1.0, 2, k_n=1e9, friction=0.6), 1.0))
         turn = Rotation.from_euler("xyz", (0.2, -0.1, 0.3))
-        places = turn.apply(column.rest + np.array([(0, 0, 0), (0.02, -0.01, 0)])) - column.rest
+        places = turn.apply(column.bodies.rest + np.array([(0, 0, 0), (0.02, -0.01, 0)])) - column.bodies.rest
         drums = np.column_stack([places, np.tile(np.roll(turn.as_quat(), 1), (2, 1))]).ravel()
         potential, pose, h = column.potential, moved(drums, 0.4 * np.eye(12)[11], SPACE), 1e-6
-        on_joint = column.face_body >= 0
+        on_joint = column.contacts.face_body >= 0
         for j, way in enumerate(h * np.eye(12)):
             ends = (potential.slips(moved(pose, sign * way, SPACE)) for sign in (1, -1))
             slid = np.subtract(*ends) / (2 * h)
@@ -138,14 +135,16 @@ class TestPotential:
 class TestRest:
     def test_friction_within_its_cones_holds_what_springs_do_not(self):
         scene = pulled()
-        pose, drag = settled_in_space(scene.potential, scene.friction)
+        pose, drag = settled_in_space(scene.potential, scene.contacts.friction)
         left = scene.potential.gradient(pose.ravel())
         assert np.linalg.norm(left) > 100.0
         held = sum(
             rates.T @ along for rates, along in zip(scene.potential.slip_rates(pose.ravel()), drag.T, strict=True)
         )
         np.testing.assert_allclose(left, held, rtol=0, atol=1e-5)
-        assert (np.linalg.norm(drag, axis=1) <= scene.friction * scene.k * scene.bears * (1 + 1e-9)).all()
+        assert (
+            np.linalg.norm(drag, axis=1) <= scene.contacts.friction * scene.contacts.k * scene.bears * (1 + 1e-9)
+        ).all()
 
     def test_a_block_that_is_too_tall_for_its_base_falls(self):
         """Upright all forces balance. The corners resist a tilt by k_n w t (t / 2)^2, and m g h drives it."""
@@ -167,14 +166,13 @@ class TestRest:
         lifted = ((1.001, 3),) if 0 < degrees < 90 else ()  # on two corners alone it would not stand
         for times, closed in ((0.999, 4), *lifted):
             push = times * share * 960 * GRAVITY * np.array([math.cos(phi), math.sin(phi), 0.0])
-            forces = {"force_names": ("push",), "force_body": [0], "force_point": [(0, 0, 0)], "force": [push]}
-            scene = box((0.6, 0.4, 2.0), k_n=1e12, **forces)
+            scene = box((0.6, 0.4, 2.0), k_n=1e12, forces=ConstantForces(("push",), [0], [(0, 0, 0)], [push]))
             assert (scene.bears > 0).sum() == closed
 
     def test_scenes_of_plane_and_space_do_not_mix(self):
         scene = box((0.6, 0.4, 2.0))
-        with pytest.raises(ValueError, match=r"face has the shape \(4, 2\); \(4, 3\) is needed"):
-            mr.Scene(**fields(scene) | {"face": np.zeros((4, 2))})
+        with pytest.raises(ValueError, match=r"face_at of the contacts has the shape \(4, 2\); \(4, 3\) is needed"):
+            changed(scene, contacts={"face_at": np.zeros((4, 2))})
 
     def test_masonry_of_prisms_is_at_rest_as_in_the_plane(self):
         """Two drums that lean on each other by an inclined joint."""
@@ -199,7 +197,7 @@ class TestRest:
         assert shear < 2e-4 * np.abs(wanted[:, 2]).max()
         there = space.accounts(wanted.reshape(1, -1), np.zeros((1, 12)))[0][0]
         np.testing.assert_allclose(there, planar.rest_energies, rtol=1e-9, atol=1e-9)
-        assert space.masses[[0, 2, 4]] == pytest.approx(planar.masses[:3])
+        assert space.bodies.masses[[0, 2, 4]] == pytest.approx(planar.bodies.masses[:3])
 
     def test_effects_act_where_they_are(self):
         ground = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
@@ -211,13 +209,13 @@ class TestRest:
             mr.Thrust(block=1, at=(0.3, 0.1, 1.0), force=100.0, direction=(0.0, 1.0, 0.0)),
         )
         scene = mr.masonry_scene(mr.MasonryCase(mr.Masonry([ground, wall, low], k_n=1e9), 1.0, effects=effects))
-        np.testing.assert_allclose(scene.rest[0], (0.02, 0.04, 1.1))
-        np.testing.assert_allclose(scene.rest[0] + scene.tie_point[0], (0.3, 0.0, 1.8))
-        np.testing.assert_allclose(scene.rest[1] + scene.anchor[0], (1.0, 0.0, 1.0))
-        assert scene.anchor_body[0] == 1
-        assert scene.tie_length[0] == pytest.approx(math.hypot(0.7, 0.8) + 0.01)
-        np.testing.assert_allclose(scene.force, [(0, 100, 0)])
+        np.testing.assert_allclose(scene.bodies.rest[0], (0.02, 0.04, 1.1))
+        np.testing.assert_allclose(scene.bodies.rest[0] + scene.links.sprung.at[0], (0.3, 0.0, 1.8))
+        np.testing.assert_allclose(scene.bodies.rest[1] + scene.links.sprung.anchor_at[0], (1.0, 0.0, 1.0))
+        assert scene.links.sprung.anchor_body[0] == 1
+        assert scene.links.sprung.reach[0] == pytest.approx(math.hypot(0.7, 0.8) + 0.01)
+        np.testing.assert_allclose(scene.forces.force, [(0, 100, 0)])
         apart = np.array((0.1, 0.2, 0.5))
         added = 960 * 240 / 1200 * (apart @ apart * np.eye(3) - np.outer(apart, apart))
-        np.testing.assert_allclose(scene.inertia[0], wall.inertia + added)
+        np.testing.assert_allclose(scene.bodies.inertia[0], wall.inertia + added)
         assert dataclasses.replace(scene, title="another").key == scene.key

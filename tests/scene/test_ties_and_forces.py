@@ -5,39 +5,32 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from scenes import course, fields, fixed_steps, stock_takes
+from scenes import changed, course, fixed_steps, stock_takes
 
 import mjrock as mr
 from mjrock.engine.energy_work import ledger
 from mjrock.engine.mjcf import scene_mjcf
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fitted_steps
+from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.wall import wall_scene
 
 
-def scene_with(scene, **changed):
+def scene_with(scene, **parts):
     """A scene with other parts, which settles anew."""
-    return mr.Scene(**fields(scene) | {"settled": None} | changed)
+    return changed(scene, settled=None, **parts)
 
 
 def tie(anchor, held, *, k=2e6, slack=0.0, strength=math.inf, name="tie"):
-    """The fields of a tie from the ground to a point of the first body, at rest at `held` about its centroid."""
+    """The link of a tie from the ground to a point of the first body, at rest at `held` about its centroid."""
     (point, rest), length = held, math.dist(anchor, np.add(*held))
     assert rest is not None
-    return {
-        "tie_names": (name,),
-        "tie_body": [0],
-        "tie_point": [point],
-        "anchor_body": [-1],
-        "anchor": [anchor],
-        "tie_k": [k],
-        "tie_length": [length + slack],
-        "tie_strength": [strength],
-    }
+    law = {"k": [k], "reach": [length + slack], "strength": [strength]}
+    return {"links": Links((name,), [0], [point], [-1], [anchor], **law)}
 
 
 def pull(force, point, name="pull"):
-    return {"force_names": (name,), "force_body": [0], "force_point": [point], "force": [force]}
+    return {"forces": ConstantForces((name,), [0], [point], [force])}
 
 
 def run(scene, course, accuracy=1e-3, timestep=None):
@@ -62,8 +55,10 @@ def standing(wall, contacts):
 @pytest.fixture
 def sliding(standing):
     """The wall on a base without friction, tied to an anchor 5 m behind its centroid."""
-    rest = standing.rest[0]
-    return scene_with(standing, friction=[0.0, 0.0], **tie((-5.0, rest[1]), ((0.0, 0.0), rest), slack=0.02))
+    rest = standing.bodies.rest[0]
+    return scene_with(
+        standing, contacts={"friction": [0.0, 0.0]}, **tie((-5.0, rest[1]), ((0.0, 0.0), rest), slack=0.02)
+    )
 
 
 def test_what_is_not_there_is_not_in_the_text(standing):
@@ -78,7 +73,7 @@ def test_what_is_not_there_is_not_in_the_text(standing):
 def test_a_tie_stops_a_mass_as_a_spring_does(sliding, accuracy):
     """After the slack, half a sine: x = slack + v/omega sin(omega t)."""
     steps = run(sliding, away(sliding), accuracy)
-    x, omega = steps.pose[:, 0], math.sqrt(2e6 / sliding.mass[0])
+    x, omega = steps.pose[:, 0], math.sqrt(2e6 / sliding.bodies.mass[0])
     inside = steps.t - 0.02 / 0.5
     pulled = (inside > 0) & (inside < math.pi / omega)
     exact = np.where(pulled, 0.02 + 0.5 / omega * np.sin(omega * inside), 0.5 * steps.t)
@@ -92,24 +87,24 @@ def test_a_tie_stops_a_mass_as_a_spring_does(sliding, accuracy):
 def test_a_yielding_tie_takes_its_strength_times_its_plastic_elongation(sliding, accuracy):
     """m v^2/2 = T^2/(2 k) + T u at the farthest, and T^2/(2 k) is given back."""
     strength = 2e4
-    scene = mr.Scene(**fields(sliding) | {"tie_strength": [strength]})
+    scene = changed(sliding, links={"strength": [strength]})
     steps = run(scene, away(scene), accuracy)
     books = ledger(scene, away(scene), steps)
-    given = 0.5 * scene.mass[0] * 0.5**2
+    given = 0.5 * scene.bodies.mass[0] * 0.5**2
     elastic = strength**2 / (2 * 2e6)
     assert books.ties["tie"][-1] == pytest.approx(given - elastic, rel=2 * accuracy)
     farthest = 0.02 + strength / 2e6 + (given - elastic) / strength
     assert steps.pose[:, 0].max() == pytest.approx(farthest, rel=accuracy)
-    assert 0.5 * scene.mass[0] * steps.record.before[-1, 0] ** 2 == pytest.approx(elastic, rel=20 * accuracy)
+    assert 0.5 * scene.bodies.mass[0] * steps.record.before[-1, 0] ** 2 == pytest.approx(elastic, rel=20 * accuracy)
     assert np.abs(books.residual).max() < 3 * accuracy * given
 
 
 def test_stock_mujoco_yields_as_the_ledger_says(sliding):
     """The text alone has the tie, its slack and its strength: MuJoCo's own plastic state is the ledger's."""
-    scene = mr.Scene(**fields(sliding) | {"tie_strength": [2e4]})
+    scene = changed(sliding, links={"strength": [2e4]})
     steps = run(scene, away(scene), timestep=1e-4)
     data = stock_takes(steps.pose, released_mjcf(scene, away(scene), 1e-4), 1e-12)
-    elongation = float(np.ravel(data.plastic)[1]) - scene.tie_length[0]
+    elongation = float(np.ravel(data.plastic)[1]) - scene.links.sprung.reach[0]
     assert ledger(scene, away(scene), steps).ties["tie"][-1] == pytest.approx(2e4 * elongation, rel=1e-6)
     assert elongation > 0.02
 
@@ -121,7 +116,7 @@ def test_a_force_keeps_its_direction_and_follows_its_point(standing, wall):
     force = share * wall.weight * wall.b / (2 * wall.h)
     pushed = scene_with(standing, **pull((force, 0.0), top))
     lean = pushed.at_rest[0, 2]
-    k, weight = standing.k[0], wall.weight
+    k, weight = standing.contacts.k[0], wall.weight
     stiffness = 2 * k * wall.b**2 - weight * wall.h
     assert lean == pytest.approx(force * 2 * wall.h / stiffness, rel=1e-4)
     steps = run(pushed, course(pushed))
@@ -139,13 +134,13 @@ def test_the_multiplier_at_which_rocking_starts(standing, wall, share, rocks):
         with pytest.raises(ValueError, match="do not stand"):
             _ = pushed.at_rest
     else:
-        assert 0 < pushed.at_rest[0, 2] < 10 * wall.alpha * wall.weight / (2 * standing.k[0] * wall.b)
+        assert 0 < pushed.at_rest[0, 2] < 10 * wall.alpha * wall.weight / (2 * standing.contacts.k[0] * wall.b)
 
 
 def test_energy_of_forces_and_ties_adds_up(standing, wall):
     """A wall tilted, pushed and tied, in free rocking: what dashpots and friction do not take is still there."""
     parts = pull((-4e2, -5e3), (0.1, wall.h)) | tie(
-        (-4.0, 3.0), ((wall.b, wall.h - 1.0), standing.rest[0]), k=5e6, slack=0.01
+        (-4.0, 3.0), ((wall.b, wall.h - 1.0), standing.bodies.rest[0]), k=5e6, slack=0.01
     )
     scene = scene_with(standing, **parts)
     tilted = scene.lowered(wall.pose(np.array([-0.4 * wall.alpha])))
@@ -160,30 +155,36 @@ def test_energy_of_forces_and_ties_adds_up(standing, wall):
 
 
 @pytest.mark.parametrize(
-    ("changed", "complaint"),
+    ("parts", "complaint"),
     [
-        ({"tie_k": [0.0]}, "tie_k = 0 is outside the valid range tie_k > 0"),
-        ({"tie_strength": [-1.0]}, "tie_strength = -1 is outside"),
-        ({"tie_strength": [math.nan]}, "tie_strength holds a value that is not finite"),
-        ({"tie_length": [math.inf]}, "tie_length holds a value that is not finite"),
-        ({"anchor_body": [0]}, "anchor_body is another body"),
-        ({"tie_body": [1]}, "tie_body is outside the valid range 0 to 0"),
-        ({"tie_point": [(0.0,)]}, r"tie_point has the shape \(1, 1\)"),
-        ({"tie_names": ("wall",)}, "wall names two things"),
-        (pull((1.0, 0.0), (0.0, 0.0)) | {"force": [(math.nan, 0.0)]}, "force holds a value that is not finite"),
-        (pull((1.0, 0.0), (0.0, 0.0), "tie"), "tie names two things"),
+        ({"k": [-1.0]}, "k of the links = -1 is outside the valid range, which starts at 0"),
+        ({"strength": [-1.0]}, "strength of the links = -1 is outside"),
+        ({"strength": [math.nan]}, "strength of the links holds a value that is not finite"),
+        ({"reach": [math.inf]}, "reach of the links is infinite for a link with a spring"),
+        ({"push": [math.inf]}, "push of the links holds a value that is not finite"),
+        ({"anchor_body": [0]}, "anchor_body of the links is another body"),
+        ({"body": [1]}, "body of the links is outside the valid range 0 to 0"),
+        ({"at": [(0.0,)]}, r"anchor_at of the links has the shape \(1, 2\); \(1, 1\) is needed"),
+        ({"names": ("wall",)}, "wall names two things"),
     ],
 )
-def test_what_cannot_be_is_refused(sliding, changed, complaint):
+def test_links_that_cannot_be_are_refused(sliding, parts, complaint):
     with pytest.raises(ValueError, match=complaint):
-        mr.Scene(**fields(sliding) | changed)
+        changed(sliding, links=parts)
+
+
+def test_forces_that_cannot_be_are_refused(sliding):
+    with pytest.raises(ValueError, match="force of the forces holds a value that is not finite"):
+        pull((math.nan, 0.0), (0.0, 0.0))
+    with pytest.raises(ValueError, match="tie names two things"):
+        changed(sliding, **pull((1.0, 0.0), (0.0, 0.0), "tie"))
 
 
 def test_names_of_ties_and_forces_in_the_text(standing, wall):
-    held = tie((-5.0, 1.0), ((0.0, 0.0), standing.rest[0]), strength=1e4)
+    held = tie((-5.0, 1.0), ((0.0, 0.0), standing.bodies.rest[0]), strength=1e4)
     scene = scene_with(standing, **held, **pull((1.0, 2.0), (0.0, wall.h)))
     model = mujoco.MjModel.from_xml_string(scene_mjcf(scene, 1e-3))
-    assert model.tendon_lengthspring[0].tolist() == [0.0, scene.tie_length[0]]
+    assert model.tendon_lengthspring[0].tolist() == [0.0, scene.links.sprung.reach[0]]
     assert model.actuator_gear[0, :3].tolist() == [1.0, 0.0, 2.0]
     assert (model.tendon(0).name, model.actuator(0).name) == ("tie", "pull")
     assert (model.ntendon, model.nu, model.nplastic) == (1, 1, 2)

@@ -1,17 +1,17 @@
 """Ties that break: closed forms of the energy, the motion after the break, and what is told of it."""
 
-import dataclasses
 import math
 
 import numpy as np
 import pytest
-from scenes import course
+from scenes import changed, course
 
 import mjrock as mr
 from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import engine_of
 from mjrock.engine.stepping import fitted_steps
 from mjrock.problem.wall.ties_on_wall import taken, yielded
+from mjrock.scene.parts import Links
 from mjrock.scene.structure import breaks
 from mjrock.scene.wall import wall_scene
 
@@ -23,11 +23,9 @@ K, STRENGTH, ULTIMATE, SLACK, SPEED = 2e6, 2e4, 0.01, 0.02, 0.5
 def sliding(wall, contacts):
     """The wall on a base without friction, tied to an anchor 5 m behind its centroid, and half a second of it."""
     standing = wall_scene(mr.Case(wall, 0.0, 1.0, side_stop=False), contacts)
-    height = standing.rest[0, 1]
-    given = {field.name: getattr(standing, field.name) for field in dataclasses.fields(standing)}
-    held = {"tie_names": ("tie",), "tie_body": [0], "tie_point": [(0.0, 0.0)], "anchor_body": [-1]}
-    tie = {"anchor": [(-5.0, height)], "tie_k": [K], "tie_length": [5.0 + SLACK], "tie_strength": [STRENGTH]}
-    scene = mr.Scene(**given | held | tie | {"tie_ultimate": [ULTIMATE], "friction": [0.0, 0.0], "settled": None})
+    ends = ("tie",), [0], [(0.0, 0.0)], [-1], [(-5.0, standing.bodies.rest[0, 1])]
+    tie = Links(*ends, k=[K], reach=[5.0 + SLACK], strength=[STRENGTH], ultimate=[ULTIMATE])
+    scene = changed(standing, links=tie, contacts={"friction": [0.0, 0.0]}, settled=None)
     return scene, course(scene, [[SPEED, 0.0, 0.0]], 0.5)
 
 
@@ -52,7 +50,7 @@ def test_a_mass_that_breaks_its_tie(sliding, accuracy):
     with engine_of(scene) as engine:
         engine.place(away)
         steps = fitted_steps(engine, scene, away, accuracy)
-    mass, books = scene.mass[0], ledger(scene, away, steps)
+    mass, books = scene.bodies.mass[0], ledger(scene, away, steps)
     elastic = STRENGTH**2 / (2 * K)
     left = math.sqrt(SPEED**2 - 2 * (STRENGTH * ULTIMATE + elastic) / mass)
     assert steps.record.after[-1, 0] == pytest.approx(left, rel=accuracy)

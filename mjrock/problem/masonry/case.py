@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from ...quantities import Array, Implausible, keep, require_array, require_kind, require_whole, require_within
 from ..ground.motion import GroundMotion
-from ..wall.effects import KINDS, Carrying, Effect, Load
+from ..wall.effect import Effect
+from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import LATER, require_in_plane
 from .effects import require_in_space
 from .masonry import Masonry

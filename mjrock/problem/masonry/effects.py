@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...quantities import GRAVITY, Array, require_whole
-from ..wall.damper import Damper
-from ..wall.effects import AddedMass, Effect, Load, Thrust, Tie
+from ..wall.effect import Anchored, Effect
 from .masonry import Masonry
 from .polyhedron import Polyhedron
 
@@ -19,9 +18,8 @@ def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
     if masonry.in_space:
         return tuple(held_at(effect).tolist())
     block = masonry.blocks[effect.block]
-    if isinstance(effect, Tie | Damper):
-        return block.left_at(effect.height), effect.height
-    return float(block.centroid[0]) + getattr(effect, "offset", 0.0), effect.height
+    x = block.left_at(effect.height) if effect.on_face else float(block.centroid[0]) + effect.offset
+    return x, effect.height
 
 
 def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
@@ -31,9 +29,7 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     """
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        force = force_of(effect)
-        if isinstance(effect, AddedMass):
-            force = np.array([0.0, 0.0, -GRAVITY * effect.mass])
+        force = np.array(effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added))
         arm, row = np.array(placed(masonry, effect)) - masonry.centroids[effect.block], masonry.free.index(effect.block)
         if masonry.in_space:
             total[row] += [*force, *np.cross(arm, force)]
@@ -47,13 +43,14 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
     mass, inertia = (np.array([getattr(block, name) for block in masonry.blocks]) for name in ("mass", "inertia"))
     centroids = np.array(masonry.centroids)
     for effect in effects:
-        if isinstance(effect, AddedMass) and effect.mass > 0:
+        added = effect.mass_added
+        if added > 0:
             i = effect.block
-            apart, total = np.array(placed(masonry, effect)) - centroids[i], mass[i] + effect.mass
+            apart, total = np.array(placed(masonry, effect)) - centroids[i], mass[i] + added
             square = float(apart @ apart)
             second = square * np.eye(3) - np.outer(apart, apart) if masonry.in_space else square
-            inertia[i] += mass[i] * effect.mass / total * second
-            centroids[i] += effect.mass / total * apart
+            inertia[i] += mass[i] * added / total * second
+            centroids[i] += added / total * apart
             mass[i] = total
     return mass, centroids, inertia
 
@@ -67,12 +64,12 @@ def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
         raise ValueError(
             f"{name}, height = {effect.height:g} m is for masonry in the plane; in space give at=(x, y, z)"
         )
-    if getattr(effect, "offset", 0.0):
-        raise ValueError(f"{name}, offset = {effect.offset:g} m is for masonry in the plane; at has it")  # type: ignore[union-attr]
+    if effect.offset:
+        raise ValueError(f"{name}, offset = {effect.offset:g} m is for masonry in the plane; at has it")
     block: Polyhedron = masonry.blocks[effect.block]
-    if not isinstance(effect, AddedMass):
+    if effect.on_block:
         _require_on(f"{name}, at", effect.at, block)
-    if isinstance(effect, Tie | Damper):
+    if isinstance(effect, Anchored):
         number = effect.anchor_block
         if number is not None:
             require_whole(f"{name}, anchor_block", number, 0, len(masonry.blocks) - 1)
@@ -81,7 +78,7 @@ def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
             if effect.anchor is None:
                 raise ValueError(f"{name}, anchor_block = {number} needs anchor=(x, y, z)")
             _require_on(f"{name}, anchor", effect.anchor, masonry.blocks[number])
-        if np.linalg.norm(held_at(effect) - anchored_at(effect)) < 1e-2:
+        if np.linalg.norm(held_at(effect) - effect.anchor_of(held_at(effect))) < 1e-2:
             raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
 
 
@@ -94,20 +91,3 @@ def _require_on(name: str, point: tuple[float, ...], block: Polyhedron) -> None:
 def held_at(effect: Effect) -> Array:
     """The point where an effect acts, at rest [m], shape (3,)."""
     return np.array(effect.at)
-
-
-def anchored_at(effect: Tie | Damper) -> Array:
-    """The anchor of a tie or damper at rest [m], shape (3,)."""
-    if effect.anchor is not None:
-        return np.array(effect.anchor)
-    rise = effect.rise if isinstance(effect, Tie) else 0.0
-    return np.asarray(held_at(effect) + np.array([-effect.length, 0.0, rise]))
-
-
-def force_of(effect: Effect) -> Array:
-    """The constant force of a load or a thrust [N], zero of any other effect, shape (3,)."""
-    if isinstance(effect, Load):
-        return np.array([0.0, 0.0, -effect.force])
-    if isinstance(effect, Thrust):
-        return np.array([effect.force * part for part in effect.direction or (1.0, 0.0, 0.0)])
-    return np.zeros(3)

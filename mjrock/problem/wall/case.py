@@ -22,7 +22,8 @@ from ...quantities import (
 )
 from ..ground.motion import GroundMotion
 from .block import Block
-from .effects import KINDS, AddedMass, Carrying, Effect, Load, SideStop, Thrust, Tie
+from .effect import Effect
+from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
@@ -164,19 +165,25 @@ class Case(Carrying):
 
     def _forces(self, level: float, half_base: float) -> list[Restoring]:
         """Restoring moments of loads and thrusts about two edges at a height and a distance from the middle [m]."""
-        loads, thrusts = self.each(Load), self.each(Thrust)
-        forces = [of_force(load.offset, load.height - level, 0.0, load.force, half_base) for load in loads]
-        return forces + [of_force(0.0, thrust.height - level, thrust.force, 0.0, half_base) for thrust in thrusts]
+        return [
+            of_force(force.offset, force.height - level, across, -up, half_base)
+            for force, (across, _, up) in forces_of(self.effects).values()
+        ]
 
     @cached_property
     def pulls(self) -> tuple[Pull, ...]:
         """The ties, in the geometry of the wall."""
-        return tuple(Pull.of(tie, self.block.b, self.block.half_base) for tie in self.each(Tie))
+        return tuple(pull for pull, tie in zip(self.resisting, self.springs.values(), strict=True) if tie.law.holds)
+
+    @cached_property
+    def resisting(self) -> tuple[Pull, ...]:
+        """All that resists a push outwards with a spring: ties, which bring the wall back, and what slips both ways."""
+        return tuple(Pull.of(tie, self.block.b, self.block.half_base) for tie in self.springs.values())
 
     @property
     def pressing(self) -> float:
         """Weight and loads that press on the base [N]."""
-        return self.wall.weight + sum(load.force for load in self.each(Load))
+        return self.wall.weight - sum(up for _, (_, _, up) in forces_of(self.effects).values())
 
     @property
     def shaken(self) -> bool:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 from ...quantities import keep, require_within
-from .in_space import LATER, Point, keep_place, written
+from .effect import Anchored, LinkLaw
+from .in_space import LATER, Point, keep_place
 
 
-@dataclass(frozen=True)
-class Damper:
+@dataclass(frozen=True, repr=False)
+class Damper(Anchored):
     """A linear viscous damper that runs horizontally from the inner face to an anchor behind the wall.
 
     It resists both ways with c times the rate of its length. A wall at rest does not feel it.
@@ -27,6 +29,10 @@ class Damper:
         ValueError: for a value outside its range.
     """
 
+    label: ClassVar[str] = "damper"
+    arguments: ClassVar[str] = "height, c, length"
+    colour: ClassVar[str] = "#3f8f5b"
+    dashes: ClassVar[Literal["-", "--", "-."]] = "-."
     height: float = None  # type: ignore[assignment]
     c: float = None  # type: ignore[assignment]
     length: float = 5.0
@@ -35,8 +41,6 @@ class Damper:
     anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
     anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
 
-    __repr__ = written
-
     def __post_init__(self) -> None:
         keep_place(self, "damper")
         keep(
@@ -44,3 +48,13 @@ class Damper:
             c=require_within("coefficient c of the damper", self.c, 0.0, 1e9, "N s/m"),
             length=require_within("length of the damper", self.length, 0.01, 1000.0, "m"),
         )
+
+    @property
+    def law(self) -> LinkLaw:
+        """A dashpot."""
+        return LinkLaw(c=self.c)
+
+    @property
+    def said(self) -> str:
+        """For sketch and report."""
+        return f"z = {self.height:g} m, c = {self.c / 1e3:g} kN s/m"

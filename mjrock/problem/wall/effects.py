@@ -10,102 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
-from ...quantities import keep, require_real, require_within, shown
+from ...quantities import keep, require_within, shown
 from .damper import Damper
+from .effect import Anchored, Effect
+from .friction_damper import FrictionDamper
 from .in_space import HIGHEST, LATER, Point, keep_place, point_or_none, written
+from .tie import Tie
 
 
-@dataclass(frozen=True)
-class Tie:
-    """A tie that holds the inner face of the wall back: it pulls, never pushes, yields plastically, and may break.
-
-    The tie runs horizontally from the inner face to an anchor behind the wall, unless `anchor_height` says otherwise.
-    Its force is min(strength, stiffness times elongation), the elongation beyond the slack and beyond what has yielded.
-    A tie that has yielded by `ultimate` breaks: it pulls no more, and its elastic energy is lost.
-
-    Args:
-        height: where it holds the wall [m].
-        stiffness: E A over its length [N/m], 1 to 1e12.
-        slack: elongation before it pulls [m], 0 to 10.
-        strength: force at which it yields [N], above 0; infinite for one that does not.
-        length: distance from the inner face to the anchor [m], 0.01 to 1000.
-        anchor_height: height of the anchor [m]; None is that of the tie.
-        block: the block that it holds.
-        ultimate: plastic elongation at which it breaks [m], 0 to 10, such as the slip at which an anchor plate is
-            pulled through; 0 for one that breaks as it begins to yield. None never breaks.
-        at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
-        anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
-        anchor_block: in space, the block that the other end is fixed to and moves with; None is the ground.
-
-    Raises:
-        ValueError: for a value outside its range, or an `ultimate` without a finite strength.
-    """
-
-    height: float = None  # type: ignore[assignment]
-    stiffness: float = None  # type: ignore[assignment]
-    slack: float = 0.0
-    strength: float = math.inf
-    length: float = 5.0
-    anchor_height: float | None = None
-    block: int = 0
-    ultimate: float | None = None
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
-
-    __repr__ = written
-
-    def __post_init__(self) -> None:
-        keep_place(self, "tie")
-        keep(
-            self,
-            stiffness=require_within("stiffness of the tie", self.stiffness, 1.0, 1e12, "N/m"),
-            slack=require_within("slack of the tie", self.slack, 0.0, 10.0, "m"),
-            strength=require_real("strength of the tie", self.strength),
-            length=require_within("length of the tie", self.length, 0.01, 1000.0, "m"),
-        )
-        if not self.strength > 0:
-            raise ValueError(
-                f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
-            )
-        if self.anchor_height is not None:
-            anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
-            keep(self, anchor_height=anchored)
-        if self.ultimate is not None:
-            keep(self, ultimate=require_within("ultimate of the tie", self.ultimate, 0.0, 10.0, "m"))
-            if self.strength == math.inf:
-                raise ValueError(
-                    f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield and "
-                    "never breaks; give it a strength [N], or leave ultimate out"
-                )
-
-    @property
-    def rise(self) -> float:
-        """How much higher the anchor is than the point that is held [m]."""
-        return 0.0 if self.anchor_height is None else self.anchor_height - self.height
-
-    @property
-    def reach(self) -> float:
-        """Length up to which the tie is slack [m]."""
-        if self.at is not None and self.anchor is not None:
-            return math.dist(self.at, self.anchor) + self.slack
-        return math.hypot(self.length, self.rise) + self.slack
-
-    @property
-    def stretch(self) -> float:
-        """Elastic elongation at which it yields [m]."""
-        return self.strength / self.stiffness
-
-    @property
-    def breaks_at(self) -> float:
-        """Plastic elongation at which it breaks [m], infinite for one that never does."""
-        return math.inf if self.ultimate is None else self.ultimate
-
-
-@dataclass(frozen=True)
-class Thrust:
+@dataclass(frozen=True, repr=False)
+class Thrust(Effect):
     """A horizontal force that keeps its size and direction: the thrust of an arch, a vault or a rafter.
 
     Args:
@@ -119,13 +35,13 @@ class Thrust:
         ValueError: for a value outside its range.
     """
 
+    label: ClassVar[str] = "thrust"
+    arguments: ClassVar[str] = "height, force"
     height: float = None  # type: ignore[assignment]
     force: float = None  # type: ignore[assignment]
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
     direction: Point | None = field(default=None, kw_only=True, metadata=LATER)
-
-    __repr__ = written
 
     def __post_init__(self) -> None:
         if (given := point_or_none("direction of the thrust", self.direction)) is not None:
@@ -137,9 +53,22 @@ class Thrust:
         keep_place(self, "thrust")
         keep(self, force=require_within("force of the thrust", self.force, -1e9, 1e9, "N"))
 
+    @property
+    def force_vector(self) -> Point:
+        """Along its direction."""
+        if self.direction is None:
+            return self.force, 0.0, 0.0
+        x, y, z = self.direction
+        return self.force * x, self.force * y, self.force * z
 
-@dataclass(frozen=True)
-class Load:
+    @property
+    def said(self) -> str:
+        """For sketch and report."""
+        return f"z = {self.height:g} m, {self.force / 1e3:g} kN outwards"
+
+
+@dataclass(frozen=True, repr=False)
+class Load(Effect):
     """A vertical force on the wall that has weight but no mass of its own here: a floor or roof that rests on it.
 
     Args:
@@ -153,13 +82,13 @@ class Load:
         ValueError: for a value outside its range.
     """
 
+    label: ClassVar[str] = "load"
+    arguments: ClassVar[str] = "force, height, offset"
     force: float
     height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-
-    __repr__ = written
 
     def __post_init__(self) -> None:
         keep_place(self, "load")
@@ -169,9 +98,19 @@ class Load:
             offset=require_within("offset of the load", self.offset, -10.0, 10.0, "m"),
         )
 
+    @property
+    def force_vector(self) -> Point:
+        """Downwards."""
+        return 0.0, 0.0, -self.force
 
-@dataclass(frozen=True)
-class AddedMass:
+    @property
+    def said(self) -> str:
+        """For sketch and report."""
+        return f"z = {self.height:g} m, x = {self.offset:g} m,\n{self.force / 1e3:g} kN downwards"
+
+
+@dataclass(frozen=True, repr=False)
+class AddedMass(Effect):
     """A mass that moves with the wall: a cornice, a balcony, a roof that is fixed to it.
 
     Args:
@@ -185,13 +124,14 @@ class AddedMass:
         ValueError: for a value outside its range.
     """
 
+    label: ClassVar[str] = "mass"
+    arguments: ClassVar[str] = "mass, height, offset"
+    on_block: ClassVar[bool] = False
     mass: float
     height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
     at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-
-    __repr__ = written
 
     def __post_init__(self) -> None:
         keep_place(self, "added mass")
@@ -200,6 +140,16 @@ class AddedMass:
             mass=require_within("added mass", self.mass, 0.0, 1e8, "kg"),
             offset=require_within("offset of the added mass", self.offset, -13.0, 13.0, "m"),
         )
+
+    @property
+    def mass_added(self) -> float:
+        """The mass."""
+        return self.mass
+
+    @property
+    def said(self) -> str:
+        """For sketch and report."""
+        return f"z = {self.height:g} m, x = {self.offset:g} m, {self.mass:g} kg"
 
 
 @dataclass(frozen=True)
@@ -221,11 +171,29 @@ class SideStop:
         keep(self, top=require_within("top of the side stop", self.top, 0.01, HIGHEST, "m"))
 
 
-Effect = Tie | Thrust | Load | AddedMass | Damper
-"""What `Case.effects` may hold."""
-KINDS = (Tie, Thrust, Load, AddedMass, Damper)
-"""The same, as classes."""
-Kind = TypeVar("Kind", Tie, Thrust, Load, AddedMass, Damper)
+KINDS = (Tie, Load, Thrust, Damper, FrictionDamper, AddedMass)
+"""The kinds of effects, in the order in which scenes, pictures and reports name them."""
+Kind = TypeVar("Kind", bound=Effect)
+
+
+def named_effects(effects: Sequence[Effect]) -> dict[str, Effect]:
+    """Effects by name: `tie_0`, `load_0` and so on, each kind in its order."""
+    return {
+        f"{kind.label}_{i}": effect
+        for kind in KINDS
+        for i, effect in enumerate(effect for effect in effects if isinstance(effect, kind))
+    }
+
+
+def links_of(effects: Sequence[Effect]) -> dict[str, Anchored]:
+    """The effects that are links, by name."""
+    return {name: effect for name, effect in named_effects(effects).items() if isinstance(effect, Anchored)}
+
+
+def forces_of(effects: Sequence[Effect]) -> dict[str, tuple[Effect, Point]]:
+    """The effects that bring a constant force, by name, and the force [N]."""
+    named = ((name, effect, effect.force_vector) for name, effect in named_effects(effects).items())
+    return {name: (effect, force) for name, effect, force in named if force is not None}
 
 
 class Carrying:
@@ -237,9 +205,25 @@ class Carrying:
         """The effects of one kind, in their order."""
         return tuple(effect for effect in self.effects if isinstance(effect, kind))
 
+    @property
+    def named(self) -> dict[str, Effect]:
+        """The effects by name, see `named_effects`."""
+        return named_effects(self.effects)
+
+    @property
+    def links(self) -> dict[str, Anchored]:
+        """The effects that are links, by name."""
+        return links_of(self.effects)
+
+    @property
+    def springs(self) -> dict[str, Anchored]:
+        """The links with a spring, by name."""
+        return {name: effect for name, effect in self.links.items() if effect.law.k > 0}
+
     def _keep_sequence(self) -> None:
         """Keep the effects, or a single one, as a tuple."""
         given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
-            raise TypeError(f"effects = {shown(self.effects)} is no sequence of Tie, Thrust, Load, AddedMass or Damper")
+            names = [kind.__name__ for kind in KINDS]
+            raise TypeError(f"effects = {shown(self.effects)} is no sequence of {', '.join(names[:-1])} or {names[-1]}")
         keep(self, effects=tuple(given))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...compiled import jitable
 from ...quantities import Array
-from .effects import Tie
+from .effect import Anchored
 
 
 class Pull(NamedTuple):
@@ -36,10 +36,11 @@ class Pull(NamedTuple):
     ultimate: float
 
     @classmethod
-    def of(cls, tie: Tie, b: float, half_base: float) -> Pull:
+    def of(cls, tie: Anchored, b: float, half_base: float) -> Pull:
         """A tie that holds the inner face of a wall of half thickness `b` and half base `half_base` [m]."""
-        shape = -b, tie.height, tie.length, tie.rise, half_base, tie.reach
-        return cls(*shape, tie.stiffness, tie.strength, tie.breaks_at)
+        law = tie.law
+        shape = -b, tie.height, tie.length, tie.rise, half_base, law.reach
+        return cls(*shape, law.k, law.strength, law.ultimate)
 
     def moment(self, phi: Array) -> Array:
         """Restoring moment at rotations about the outer toe, stretched for the first time [N m], shape (n,)."""

@@ -1,0 +1,142 @@
+"""What every effect says of itself, so that nobody has to ask which kind it is.
+
+An effect has a link, a constant force or a mass, or several of them. A scene, the solvers, pictures and reports take
+these, and a new effect is a class of its own with one entry in `mjrock.problem.wall.effects.KINDS`.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import accumulate
+from typing import ClassVar, Literal, NamedTuple
+
+import numpy as np
+
+from ...quantities import Array
+from .in_space import Point, written
+
+
+class LinkLaw(NamedTuple):
+    """The law of a link between a point and an anchor: its force from its length and the rate of its length.
+
+    A spring with a slider, and a dashpot beside it. The spring pulls from the length `reach` on. Beyond `strength` the
+    slider moves, and the link yields. Below `reach` the link is slack, or pushes up to the force `push` and yields
+    then.
+
+    Args:
+        k: stiffness of the spring [N/m], zero for none.
+        reach: length up to which it is slack, or at which it bears nothing [m]; infinite without a spring.
+        strength: force at which it yields as it gets longer [N], infinite for one that does not.
+        push: force at which it yields as it gets shorter [N], zero for one that only pulls.
+        ultimate: plastic elongation at which it breaks [m], infinite for one that never does.
+        c: damping coefficient [N s/m], zero for none.
+    """
+
+    k: float = 0.0
+    reach: float = math.inf
+    strength: float = math.inf
+    push: float = 0.0
+    ultimate: float = math.inf
+    c: float = 0.0
+
+    @property
+    def yields(self) -> bool:
+        """Whether a force is known at which it yields."""
+        return self.strength < math.inf
+
+    @property
+    def holds(self) -> bool:
+        """Whether it may hold what stands: it has a spring that pulls at rest. One that pushes too bears nothing
+        there."""
+        return self.k > 0 and self.push == 0
+
+    def drawn(self, elongation: Array) -> Array:
+        """How far the slider has moved along elongations beyond the slack [m], shape (n,), if nothing breaks."""
+        stretch, squeeze = self.strength / self.k, self.push / self.k
+        if squeeze == 0:
+            return np.maximum.accumulate(np.maximum(elongation - stretch, 0.0))
+        slid = accumulate(
+            elongation.tolist(), lambda at, length: min(max(at, length - stretch), length + squeeze), initial=0.0
+        )
+        return np.array(list(slid)[1:])
+
+
+class Effect:
+    """An effect: where it acts, and what it brings.
+
+    Attributes:
+        label: its name, to which its number among those of its kind is added.
+        arguments: names of its arguments as they stand in a sketch.
+        on_face: whether it holds the inner face, else it acts at `offset` from the middle of the base or the block.
+        on_block: whether its point has to lie on its block.
+        offset: from there, outwards [m].
+    """
+
+    label: ClassVar[str]
+    arguments: ClassVar[str]
+    on_face: ClassVar[bool] = False
+    on_block: ClassVar[bool] = True
+    height: float
+    block: int
+    at: Point | None
+    offset: float = 0.0
+
+    __repr__ = written
+
+    @property
+    def mass_added(self) -> float:
+        """The mass that it brings [kg]."""
+        return 0.0
+
+    @property
+    def force_vector(self) -> Point | None:
+        """The constant force that it brings, along x, y and z [N], or None."""
+        return None
+
+    @property
+    def said(self) -> str:
+        """Where it is and what it does, for sketch and report."""
+        raise NotImplementedError
+
+
+class Anchored(Effect):
+    """An effect that is a link, from the point that it holds to its anchor.
+
+    Attributes:
+        colour, dashes: how its line is drawn, in the ways of matplotlib.
+        length: distance from the inner face to the anchor [m].
+        anchor, anchor_block: in space, the anchor at rest [m], and the block that it moves with; None is `length`
+            behind the point, and the ground.
+    """
+
+    on_face = True
+    colour: ClassVar[str] = "#12406b"
+    dashes: ClassVar[Literal["-", "--", "-."]] = "-"
+    length: float
+    anchor: Point | None
+    anchor_block: int | None
+
+    @property
+    def law(self) -> LinkLaw:
+        """Its force."""
+        raise NotImplementedError
+
+    @property
+    def rise(self) -> float:
+        """How much higher the anchor is than the point that is held [m]."""
+        return 0.0
+
+    @property
+    def span(self) -> float:
+        """Distance from the point that is held to the anchor at rest [m]."""
+        if self.at is not None and self.anchor is not None:
+            return math.dist(self.at, self.anchor)
+        return math.hypot(self.length, self.rise)
+
+    def anchor_of(self, held: Array) -> Array:
+        """The anchor at rest [m] from the point that is held, in the plane or in space, shape (2,) or (3,)."""
+        if self.anchor is not None:
+            return np.array(self.anchor)
+        behind = np.zeros(len(held))
+        behind[0], behind[-1] = -self.length, self.rise
+        return np.asarray(held + behind)

@@ -1,0 +1,253 @@
+"""The parts of a scene: bodies, contacts, links, constant forces and limits. Each checks its own shapes and values.
+
+Vectors have d = 2 numbers in the plane and 3 in space.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ..geometry.frames import PLANE, SPACE, Freedom
+from ..problem.wall.effect import LinkLaw
+from ..quantities import Array, Flags, Integers, frozen
+from .checks import keep_array, require_inertia, require_others
+from .masses import mass_diagonals, principal, products_of
+from .names import face_names, point_names
+
+
+def _none() -> NDArray[Any]:
+    """An array without values."""
+    return np.empty(0)
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Rigid bodies.
+
+    Args:
+        names: names of the n bodies.
+        mass: masses [kg], shape (n,).
+        inertia: moments of inertia about the centroids [kg m2], shape (n,), and in space the tensors, shape (n, 3, 3).
+        rest: positions of the centroids at rest, the contacts undeformed [m], shape (n, d). It says whether the scene
+            is one of the plane or of space.
+        outlines: vertices of each body about its centroid, for pictures [m], n arrays of shape (vertices, d).
+        length: length out of the plane, for pictures [m]. It makes no difference in space.
+    """
+
+    names: tuple[str, ...]
+    mass: Array
+    inertia: Array
+    rest: Array
+    outlines: tuple[Array, ...]
+    length: float
+
+    def __post_init__(self) -> None:
+        n, directions = len(self.names), 3 if np.shape(self.rest)[-1:] == (3,) else 2
+        keep_array(self, "mass", (n,), above=0.0)
+        keep_array(self, "inertia", (n,) if directions == 2 else (n, 3, 3))
+        keep_array(self, "rest", (n, directions))
+        require_inertia(self.inertia)
+
+    @property
+    def freedom(self) -> Freedom:
+        """How the bodies may move: in the plane or in space."""
+        return PLANE if self.rest.shape[1] == 2 else SPACE
+
+    @cached_property
+    def extent(self) -> float:
+        """The largest coordinate of a vertex from the centroid of its body [m]."""
+        return max(float(np.abs(outline).max()) for outline in self.outlines)
+
+    @cached_property
+    def masses(self) -> Array:
+        """Generalised masses: m, m, I of each body, and in space m, m, m, Ixx, Iyy, Izz, shape (n nv,)."""
+        return frozen(mass_diagonals(self.mass, self.inertia))
+
+    @cached_property
+    def products(self) -> Array:
+        """Products of inertia of the bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), else (0, 3)."""
+        return frozen(products_of(self.inertia))
+
+    @cached_property
+    def principal(self) -> tuple[csr_array, Array]:
+        """Velocities of the bodies along their principal axes, and the masses of each, see `masses.principal`."""
+        return principal(self.mass, self.inertia)
+
+    def between(self, body: Integers, at: Array, other: Integers, start: Array) -> Array:
+        """Vectors at rest from points of other bodies or of the ground to points of bodies [m], shape (k, d)."""
+        if not len(body):
+            return frozen(np.empty((0, self.rest.shape[1])))
+        return frozen(self.rest[body] + at - np.where(other[:, None] < 0, 0.0, self.rest[other]) - start)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoints:
+    """Compliant contacts between points on bodies and plane faces of other bodies or of the ground.
+
+    Args:
+        body: the body that carries each of the m contact points, shape (m,).
+        at: position of each point from the centroid of its body [m], shape (m, d).
+        face_body: the body whose face each point meets, or -1 for the ground, shape (m,).
+        face_at: a point of that face, from the centroid of its body or from the origin of the world [m], shape (m, d).
+        normal: unit vector out of that face, shape (m, d).
+        k, c: spring [N/m] and dashpot [N s/m] of each contact, shape (m,).
+        friction: coefficient of friction of each contact, zero for none [-], shape (m,).
+        joint: number of the joint that each contact belongs to, shape (m,). Its points are numbered in the model.
+        joints: names of the joints. The ledger has an account for each.
+        holds: which contacts stand for a base that holds, shape (m,), or one answer for all. Their coefficient of
+            friction is a number that holds it, and no law of sliding.
+    """
+
+    body: Integers
+    at: Array
+    face_body: Integers
+    face_at: Array
+    normal: Array
+    k: Array
+    c: Array
+    friction: Array
+    joint: Integers
+    joints: tuple[str, ...]
+    holds: Flags | bool = False
+
+    def __post_init__(self) -> None:
+        m, directions = len(self.k), np.shape(self.normal)[-1] if np.size(self.normal) else 2
+        keep_array(self, "k", (m,), above=0.0)
+        for name in ("c", "friction"):
+            keep_array(self, name, (m,), least=0.0)
+        for name in ("body", "face_body", "joint"):
+            keep_array(self, name, (m,), kind=np.int64)
+        for name in ("at", "face_at", "normal"):
+            keep_array(self, name, (m, directions))
+        require_others(self, "face_body")
+        if not np.allclose(np.hypot.reduce(self.normal, axis=1), 1.0):
+            raise ValueError("normal of the contacts holds a vector that is not of unit length")
+        if not ((self.joint >= 0) & (self.joint < len(self.joints))).all():
+            raise ValueError(f"joint of the contacts is outside the valid range 0 to {len(self.joints) - 1}")
+        object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), (m,))))
+
+    @property
+    def group(self) -> tuple[str, ...]:
+        """Name of the joint of each contact."""
+        return tuple(self.joints[joint] for joint in self.joint)
+
+    @cached_property
+    def point_names(self) -> tuple[str, ...]:
+        """Name of each contact point: its joint and its number in it."""
+        return point_names(self.group)
+
+    @cached_property
+    def face_names(self) -> tuple[str, ...]:
+        """Name of the face that each point meets: its joint, with a number where the points of a joint meet several."""
+        return face_names(self.group, self.face_body, self.face_at, self.normal)
+
+
+@dataclass(frozen=True, eq=False)
+class Links:
+    """Links between points of bodies and anchors on the ground or on other bodies, by their law, see `LinkLaw`.
+
+    Args:
+        names: names of the links.
+        body, at: the body that each link holds, and where, from its centroid [m], shapes (t,) and (t, d).
+        anchor_body, anchor_at: the body of the other end, or -1 for the ground, and the end, as of a face, shapes (t,)
+            and (t, d).
+        k, reach, strength, push, ultimate, c: the law of each, shape (t,); what is left out is as in `LinkLaw`.
+    """
+
+    names: tuple[str, ...] = ()
+    body: Integers = field(default_factory=_none)
+    at: Array = field(default_factory=_none)
+    anchor_body: Integers = field(default_factory=_none)
+    anchor_at: Array = field(default_factory=_none)
+    k: Array = field(default_factory=_none)
+    reach: Array = field(default_factory=_none)
+    strength: Array = field(default_factory=_none)
+    push: Array = field(default_factory=_none)
+    ultimate: Array = field(default_factory=_none)
+    c: Array = field(default_factory=_none)
+
+    def __post_init__(self) -> None:
+        t, directions = len(self.names), np.shape(self.at)[-1] if np.size(self.at) else 2
+        for name in ("body", "anchor_body"):
+            keep_array(self, name, (t,), kind=np.int64)
+        for name in ("at", "anchor_at"):
+            keep_array(self, name, (t, directions))
+        for name, usual in LinkLaw._field_defaults.items():
+            if not np.size(getattr(self, name)):
+                object.__setattr__(self, name, np.full(t, usual))
+        for name in ("k", "push", "c"):
+            keep_array(self, name, (t,), least=0.0)
+        for name in ("reach", "strength"):
+            keep_array(self, name, (t,), above=0.0, infinite=True)
+        keep_array(self, "ultimate", (t,), least=0.0, infinite=True)
+        require_others(self, "anchor_body")
+        if not ((self.push == 0) | (self.push == self.strength)).all():
+            raise ValueError("push of the links is neither zero nor the strength")
+        if not np.isfinite(self.reach[self.k > 0]).all():
+            raise ValueError("reach of the links is infinite for a link with a spring; give it a length")
+
+    def of(self, some: Flags) -> Links:
+        """Some of the links."""
+        chosen = np.flatnonzero(some)
+        arrays = {entry.name: getattr(self, entry.name)[chosen] for entry in fields(self) if entry.name != "names"}
+        return Links(names=tuple(self.names[i] for i in chosen), **arrays)
+
+    @cached_property
+    def sprung(self) -> Links:
+        """The links with a spring."""
+        return self.of(self.k > 0)
+
+    @cached_property
+    def bearing(self) -> Links:
+        """The links with a spring that may bear something at rest: those that only pull."""
+        return self.of((self.k > 0) & (self.push == 0))
+
+    @cached_property
+    def damped(self) -> Links:
+        """The links with a dashpot, and those without a spring."""
+        return self.of((self.c > 0) | (self.k == 0))
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantForces:
+    """Forces that keep size and direction and follow their points.
+
+    Args:
+        names: names of the f forces.
+        body, at: the body that each acts on, and where, from its centroid [m], shapes (f,) and (f, d).
+        force: its components [N], shape (f, d).
+    """
+
+    names: tuple[str, ...] = ()
+    body: Integers = field(default_factory=_none)
+    at: Array = field(default_factory=_none)
+    force: Array = field(default_factory=_none)
+
+    def __post_init__(self) -> None:
+        f, directions = len(self.names), np.shape(self.at)[-1] if np.size(self.at) else 2
+        keep_array(self, "body", (f,), kind=np.int64)
+        for name in ("at", "force"):
+            keep_array(self, name, (f, directions))
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How far a run follows its bodies.
+
+    Args:
+        reach, overlap: largest gap and deepest penetration of a contact that a run follows [m]; beyond them a body has
+            gone too far.
+        damped_joints: whether the dashpots of contacts that bear weight matter in long steps too, as those between flat
+            blocks do; see `mjrock.engine.pace`.
+    """
+
+    reach: float = math.inf
+    overlap: float = math.inf
+    damped_joints: bool = False
