@@ -11,7 +11,6 @@ that cross do not meet.
 
 from __future__ import annotations
 
-
 import numpy as np
 
 from ..problem.masonry.lines import free_numbers

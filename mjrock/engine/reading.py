@@ -109,7 +109,7 @@ class AskedMasonry:
         drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
-        quiet = is_quiet(scene, float(energy[-1]), steps.velocity[-1].reshape(len(scene.names), -1))
+        quiet = is_quiet(scene, float(energy[-1]), steps.velocity[-1].reshape(len(scene.bodies.names), -1))
         return Reading(
             *masonry_ending(fallen, quiet, min(float(t[-1]), course.duration)),
             marks=np.linspace(0, count - 1, min(count, MARKS)).astype(int),

@@ -113,9 +113,6 @@ def _section(ax: Axes, case: Case) -> None:
     for artist in ax.get_children():
         artist.set_animated(False)
     half = case.block.b
-    for damper in case.each(Damper):
-        ends = [-half - min(damper.length, case.block.h), -half]
-        ax.plot(ends, [damper.height] * 2, color="#3f8f5b", linestyle="-.", marker="|", zorder=4)
     _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
     if case.stop_top is not None and case.stop_top < height:
         at = -half - 0.12 * height

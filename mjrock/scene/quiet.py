@@ -18,6 +18,6 @@ def is_quiet(scene: Scene, energy: float, velocity: Array) -> bool:
         energy: at the end, above the scene at rest [J].
         velocity: at the end, shape (bodies, nv).
     """
-    springs = float(scene.rest_energies[2])
-    moving = kinetic_energies(scene.masses, scene.products, velocity) / scene.mass
-    return abs(energy) < springs and bool((moving < springs / scene.mass.sum()).all())
+    springs, bodies = float(scene.rest_energies[2]), scene.bodies
+    moving = kinetic_energies(bodies.masses, bodies.products, velocity) / bodies.mass
+    return abs(energy) < springs and bool((moving < springs / bodies.mass.sum()).all())

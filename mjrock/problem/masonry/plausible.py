@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..wall.effects import Tie
 from ..wall.plausible import IN_G, Whole, of_effects, of_motion
+from ..wall.tie import Tie
 from .collapse import collapse_multiplier
-from .effects import anchored_at, held_at
+from .effects import held_at
 from .masonry import Masonry
 
 FEW = 40
@@ -43,6 +43,6 @@ def _multiplier(masonry: Masonry) -> float:
 
 def _room(masonry: Masonry, tie: Tie) -> tuple[float, float]:
     """Largest extent of the block that a tie holds, and of all free blocks along the tie [m]."""
-    way = held_at(tie) - anchored_at(tie) if masonry.in_space else np.array([tie.length, -tie.rise])
+    way = held_at(tie) - tie.anchor_of(held_at(tie)) if masonry.in_space else np.array([tie.length, -tie.rise])
     along = np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ (way / np.linalg.norm(way))
     return 2 * masonry.blocks[tie.block].size, float(np.ptp(along))

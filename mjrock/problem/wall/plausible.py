@@ -11,7 +11,9 @@ import numpy as np
 
 from ...quantities import GRAVITY, Implausible
 from ..ground.motion import GroundMotion
-from .effects import AddedMass, Effect, Load, Thrust, Tie
+from .effect import Effect
+from .effects import AddedMass, Load, Thrust
+from .tie import Tie
 from .ties_on_wall import moment_at_strength, pulled
 
 NEGLIGIBLE = 1e-4
