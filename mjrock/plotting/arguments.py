@@ -20,6 +20,7 @@ from ..quantities import (
     require_kind,
     require_real,
     require_reals,
+    require_row,
     require_text,
     require_whole,
     require_within,
@@ -45,6 +46,11 @@ def row(name: str, value: Any) -> None:
     given = require_reals(name, value, "a row of at least one real number")
     if given.ndim != 1 or not given.size:
         raise ValueError(f"{name} has the shape {given.shape}; a row of at least one real number is needed")
+
+
+def finite_row(name: str, value: Any) -> None:
+    """A row of at least one finite number."""
+    require_row(name, value, "number")
 
 
 def table(name: str, value: Any) -> None:

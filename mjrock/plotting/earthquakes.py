@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from ..study.fragility import Fragility
-from .arguments import mapping, picture, row, table
+from .arguments import finite_row, mapping, picture, row, table
 from .style import STYLES, folded, legend_below
 
 MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
@@ -21,7 +21,7 @@ MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns w
 PEAK = r"peak rotation $\theta_{max}/\alpha$ [-]"
 
 
-@picture(frequency=row, amplitude=row, mode=table)
+@picture(frequency=finite_row, amplitude=finite_row, mode=table)
 def overturning_map(ax: Axes, frequency: ArrayLike, amplitude: ArrayLike, mode: ArrayLike) -> Axes:
     """Overturning spectrum of a pulse: `mode` (an index into MODES) over frequency and amplitude, shape (n_a, n_f)."""
     shape = len(amplitude), len(frequency)  # type: ignore[arg-type]

@@ -60,6 +60,13 @@ class PageWriter(HTMLWriter):
         self.stage.picture().save(file, "PNG")
         self._saved_frames.append(base64.encodebytes(file.getvalue()).decode("ascii"))  # type: ignore[attr-defined]
 
+    def finish(self) -> None:
+        """Write the page, and remove the folder for frames also where the disk is full."""
+        try:
+            super().finish()
+        finally:
+            self._tmpdir.cleanup()  # type: ignore[attr-defined]
+
 
 ICONS = {
     "fa-minus": "&#8722;",

@@ -39,6 +39,9 @@ def damping_curves(
 def parity(ax: Axes, matched: ArrayLike, predicted: ArrayLike, color: ArrayLike) -> Axes:
     """Predicted against matched damping ratios, on logarithmic axes, coloured by the softness of the base."""
     x, y, softness = equal_rows(matched=matched, predicted=predicted, color=color)
+    least = min(x.min(), y.min(), softness.min())
+    if not least > 0:
+        raise ValueError(f"matched, predicted and color hold {least:g}; the valid range is above 0")
     limits = 0.8 * min(x.min(), y.min()), 1.25 * max(x.max(), y.max())
     ax.loglog(limits, limits, color="0.5", linewidth=0.8)
     ax.scatter(x, y, c=np.log10(softness), s=6, cmap="viridis", linewidth=0)

@@ -158,7 +158,8 @@ class Runner:
                         again.extend(self.left(jobs, error, refused))
                 if not flying:
                     return
-                for future in wait(flying, return_when=FIRST_COMPLETED).done:
+                done = wait(flying, return_when=FIRST_COMPLETED).done
+                for future in [future for future in flying if future in done]:  # in the order of the tasks
                     jobs = flying.pop(future)
                     try:
                         rows = future.result()

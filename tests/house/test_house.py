@@ -9,7 +9,8 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
-    ("_version", "compiled", "files", "method", "quantities"),
+    ("_version", "interrupts"),
+    ("compiled", "files", "method", "quantities"),
     ("geometry", "linear"),
     ("problem.ground",),
     ("problem.wall",),

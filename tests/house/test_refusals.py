@@ -202,6 +202,8 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: drawn(plotting.acceleration, CASE, math.nan), "until = nan is outside the valid range"),
         (lambda: drawn(plotting.pushover, {"a": 1}), r"curves\['a'\] = 1 of type int is not a PushoverCurve"),
         (lambda: drawn(plotting.pairs, [[1.0, 2.0]], ("a", "b"), (0.0, 1.0)), "limits = .* two positive numbers"),
+        (lambda: drawn(plotting.parity, [1.0], [1.0], [0.0]), "matched, predicted and color hold 0; the valid range"),
+        (lambda: drawn(plotting.overturning_map, [math.inf], [1.0], [[0]]), "frequency holds a value that is not fin"),
         (lambda: drawn(plotting.incremental, [1.0], [[1.0, 2.0]], "a"), r"peaks has the shape \(1, 2\)"),
         (lambda: drawn(plotting.convergence, [1.0], {"a": [1.0, 2.0]}, 2), r"errors has the shape \(2,\)"),
         (lambda: plotting.panels([]), r"drawings = \[\] of type list is no sequence of at least one"),
