@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse.linalg import lsmr
 
 from ..geometry.vectors import tangents
-from ..problem.masonry.joint_law import normal_force, shear_limit
+from ..problem.masonry.joint_law import resting, shear_limit
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
@@ -147,7 +147,7 @@ def friction_at_rest(system: System, pose: Array) -> Array:
     """
     bodies, lines = system.bodies, system.lines
     normal, along = (line_rates(lines, way, len(bodies)) for way in ways_of(lines))
-    push = normal_force(lines, normal @ pose.ravel(), 0.0)
+    push, _ = resting(np.ascontiguousarray(lines["k"]), normal @ pose.ravel())
     force = normal.T @ push
     force[1::3] -= GRAVITY * bodies["mass"]
     for row in system.forces:

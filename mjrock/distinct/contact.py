@@ -35,7 +35,7 @@ from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, carried, list_rigid, sprung_friction
 from .rows import Row, Rows
 from .system import Books, Supports, System
-from .turning import in_body, in_world, rotation_change
+from .turning import in_body, in_world, may_face_away, rotation_change
 
 OPEN = 1.0
 """Gap of a line that has left its face [m]."""
@@ -69,9 +69,10 @@ def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
     body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
     change = rotation_change(body, at)
     arm, across = plus(at, change), plus(components(line.between, axes), plus(components(body.place, axes), change))
-    face_arm = arm
+    face_arm, turned = arm, may_face_away(body, axes)
     if line.face >= 0:
         face, origin = system.bodies[line.face], components(line.origin, axes)
+        turned = turned or may_face_away(face, axes)
         change = rotation_change(face, origin)
         across = minus(across, plus(components(face.place, axes), change))
         face_arm = plus(plus(origin, change), across)
@@ -82,7 +83,7 @@ def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
     if line.corner > 0:
         return cornered(system, line, across, Meeting(gap, normal, arm, face_arm, False))
     if gap < 0:
-        if dot(normal, in_world(body, components(line.normal, axes))) < 0:
+        if turned and dot(normal, in_world(body, components(line.normal, axes))) < 0:
             return Meeting(TURNED_OVER, normal, arm, face_arm, True)
         if dot(across, across) - gap * gap > line.margin:
             return at_the_end(system, line, across, Meeting(gap, normal, arm, face_arm, False))
@@ -169,7 +170,7 @@ def closed_share(line: Row, gap: float, opened: float) -> float:
 def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
     """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
     its spring holds less, and has not done as work while the gap grew by some length [m]."""
-    if not (meet.past or line.past == 1) or line.depth == 0 or 0 <= meet.gap < OPEN:
+    if line.depth == 0 or 0 <= meet.gap < OPEN:
         return 0.0
     mean = 0.5 * (normal_force(line, -line.depth, 0.0) + normal_force(line, meet.gap, 0.0))
     lost: float = stored(line, -line.depth) - stored(line, meet.gap) - mean * opened
@@ -204,7 +205,8 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
         rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
-        books.ends[min(line.corner, 1)] += lost_at_the_end(line, meet, h * rate)
+        if meet.past or line.past == 1:
+            books.ends[min(line.corner, 1)] += lost_at_the_end(line, meet, h * rate)
         last, drag = spin_components(line.dragged, axes), no_spin(axes)
         if push == 0:
             put(line.grip, drag)

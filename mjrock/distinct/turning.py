@@ -33,6 +33,8 @@ PASSES = 3
 """Passes of the search for the angular velocity in the middle of a step. Each gains the order of h w."""
 SLOW, PASSES_OF_SLOW = 1e-3, 2
 """Rotation in a step below which fewer passes are enough [rad]: they leave less than its third power."""
+EIGHTH = 1 - math.sqrt(0.5)
+"""1 - cos of an eighth of a turn."""
 SMALL = 1e-4
 """Angle below which sines and cosines are taken from their series [rad]. The first term left out is below rounding."""
 
@@ -48,6 +50,15 @@ def rotation_change(body: Row, a: Vector) -> Vector:
         turn[1, 0] * a[0] + turn[1, 1] * a[1] + turn[1, 2] * a[2],
         turn[2, 0] * a[0] + turn[2, 1] * a[1] + turn[2, 2] * a[2],
     )
+
+
+@inlined
+def may_face_away(body: Row, axes: Vector) -> bool:
+    """Whether a body has turned by more than an eighth of a turn. Two bodies that have not can not face away."""
+    turn = body.turn
+    if len(axes) == 2:
+        return bool(turn[1] > EIGHTH)
+    return bool(turn[0, 0] + turn[1, 1] + turn[2, 2] < -2 * EIGHTH)
 
 
 @inlined

@@ -28,7 +28,7 @@ from ..geometry.kinematics import (
 from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, sprung
-from ..problem.masonry.joint_law import Law, normal_force, stored
+from ..problem.masonry.joint_law import resting
 from ..quantities import GRAVITY, Array, Integers
 from .structure import Structure, force_energy, weight_energy
 
@@ -56,14 +56,9 @@ class Potential:
         pressed: Array = np.maximum(-self.openings(pose), 0.0)
         return pressed
 
-    @property
-    def law(self) -> Law:
-        """The law of contacts and ties at rest, along their normals."""
-        return Law(k=self.springs)
-
     def pushes(self, pose: Array) -> Array:
         """Force of each spring that is pressed or stretched [N], zero where it is open, shape (m + t,)."""
-        return np.asarray(normal_force(self.law, self.openings(pose), 0.0))
+        return resting(self.springs, self.openings(pose))[0]
 
     def rates(self, pose: Array) -> csr_array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
@@ -119,7 +114,7 @@ class Potential:
     def energy(self, pose: Array) -> float:
         """Energy of springs, weight and constant forces [J]."""
         places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
-        elastic = float(stored(self.law, self.openings(pose)).sum())
+        elastic = float(resting(self.springs, self.openings(pose))[1].sum())
         weight = weight_energy(masses, pose, places.axes)
         return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom), places.axes))
 

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import splu
 from ..geometry.frames import SPACE
 from ..geometry.poses import moved, turned
 from ..linear import is_definite, sprung
-from ..problem.masonry.joint_law import Law, normal_force, shear_limit
+from ..problem.masonry.joint_law import Law, resting, shear_limit
 from ..quantities import Array, Flags
 from .equilibrium import FLAT, LEANING, TURNED, UnsettledError, tolerance, touching
 from .potential import Potential
@@ -97,7 +97,7 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
     m, openings, closed = len(friction), potential.openings(pose), touching(potential, pose)
     slider = np.zeros((m, 2))
     for tried in range(poses):
-        rates, push = potential.rates(pose), normal_force(potential.law, openings, 0.0)
+        rates, push = potential.rates(pose), resting(k, openings)[0]
         limit = np.where(closed[:m] & (friction > 0), shear_limit(Law(friction=friction), push[:m]), -np.inf)
         grips = grips_at(potential, pose, limit, (shear * k[:m], slider))
         held = grips.rates[0].T @ grips.drag[:, 0] + grips.rates[1].T @ grips.drag[:, 1]

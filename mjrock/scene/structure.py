@@ -42,8 +42,7 @@ class Structure(NamedTuple):
 @jitable
 def spring_energy(places: Places, k: Array, i: int, frames: Array) -> float:
     """Energy in the spring of contact i [J]."""
-    energy: float = stored(Law(k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
-    return energy
+    return stored(Law(k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
 
 
 @inlined

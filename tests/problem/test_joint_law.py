@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.problem.masonry import joint_law
-from mjrock.problem.masonry.joint_law import Law, normal_force, shear_limit, stored, stored_along
+from mjrock.problem.masonry.joint_law import Law, normal_force, resting, shear_limit, stored, stored_along
 
 LAW = Law(k=100.0, c=2.0, k_s=50.0, friction=0.6)
 
@@ -19,12 +19,10 @@ def test_a_joint_pushes_and_never_pulls(gap, rate, force):
 
 
 def test_arrays_and_numbers_have_one_law():
-    gaps, rates = np.array([-0.1, 0.1, -0.2]), np.array([0.0, -1.0, 5.0])
-    many = Law(*(np.full(3, value) for value in LAW))
-    np.testing.assert_allclose(
-        normal_force(many, gaps, rates), [normal_force(LAW, g, v) for g, v in zip(gaps, rates, strict=True)]
-    )
-    np.testing.assert_allclose(stored(many, gaps), [stored(LAW, gap) for gap in gaps])
+    gaps = np.array([-0.1, 0.1, -0.2])
+    force, energy = resting(np.full(3, LAW.k), gaps)
+    np.testing.assert_allclose(force, [normal_force(LAW, gap, 0.0) for gap in gaps])
+    np.testing.assert_allclose(energy, [stored(LAW, gap) for gap in gaps])
 
 
 def test_the_force_is_the_slope_of_what_is_stored():

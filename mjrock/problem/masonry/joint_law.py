@@ -3,19 +3,21 @@
 A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps and their ledger, the search for the
 pose of rest and limit analysis all take the law from here. MuJoCo has the same law in its rows, see `engine.rows`.
 
-A row is anything with these numbers by name: a row of compiled steps, or `Law` with a number or an array for each.
+A row is anything with these numbers by name: a row of compiled steps, or a `Law`.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ...compiled import inlined
+import numpy as np
+
+from ...compiled import compiled, inlined
 from ...quantities import Array
 
 
 class Law(NamedTuple):
-    """The numbers of the law, each an array or one for all contacts.
+    """The numbers of the law.
 
     Args:
         k, c: spring and dashpot along the normal [N/m, N s/m].
@@ -23,20 +25,19 @@ class Law(NamedTuple):
         friction: coefficient of friction [-].
     """
 
-    k: Array | float = 0.0
-    c: Array | float = 0.0
-    k_s: Array | float = 0.0
-    friction: Array | float = 0.0
+    k: Any = 0.0
+    c: Any = 0.0
+    k_s: Any = 0.0
+    friction: Any = 0.0
 
 
 @inlined
-def normal_force(row: Any, gap: Any, rate: Any) -> Any:
+def normal_force(row: Any, gap: float, rate: float) -> float:
     """Force that presses the two sides apart [N], at a gap [m] that grows at a rate [m/s].
 
     It is that of spring and dashpot while the gap is negative, and never a tension.
     """
-    force = -(row.k * gap + row.c * rate)
-    return force * ((gap < 0) & (force > 0))
+    return max(-(row.k * gap + row.c * rate), 0.0) if gap < 0 else 0.0
 
 
 @inlined
@@ -46,12 +47,28 @@ def shear_limit(row: Any, push: Any) -> Any:
 
 
 @inlined
-def stored(row: Any, gap: Any) -> Any:
+def stored(row: Any, gap: float) -> float:
     """Energy in the spring along the normal [J]."""
-    return 0.5 * row.k * gap**2 * (gap < 0)
+    energy: float = 0.5 * row.k * min(gap, 0.0) ** 2
+    return energy
 
 
 @inlined
-def stored_along(row: Any, square: Any) -> Any:
+def stored_along(row: Any, square: float) -> float:
     """Energy in the spring along the face [J], from the square of its stretch [m2]."""
-    return 0.5 * row.k_s * square
+    energy: float = 0.5 * row.k_s * square
+    return energy
+
+
+def resting(k: Array, gap: Array) -> tuple[Array, Array]:
+    """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each."""
+    force, energy = np.empty(len(gap)), np.empty(len(gap))
+    _resting(k, gap, force, energy)
+    return force, energy
+
+
+@compiled
+def _resting(k: Array, gap: Array, force: Array, energy: Array) -> None:
+    for i in range(len(gap)):
+        row = Law(k[i], 0.0, 0.0, 0.0)
+        force[i], energy[i] = normal_force(row, gap[i], 0.0), stored(row, gap[i])
