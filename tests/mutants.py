@@ -40,8 +40,8 @@ OTHERS = (
 """Modules of the method without compiled functions."""
 TOOLS = ("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model")
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
-STEPS = ("contact", "friction", "links", "loop")
-"""Modules of the explicit steps, in the plane and in space, whose tests are their own."""
+STEPS = ("contact", "faces", "friction", "links", "loop", "turning")
+"""Modules of the explicit steps, whose tests are their own."""
 OWN = {
     **{f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing") for name in TOOLS},
     "geometry/frames.py": ("frames", "kinematics"),
@@ -55,10 +55,11 @@ OWN = {
     "scene/potential.py": ("potential", "kinematics", "masonry_statics", "scene_in_space"),
     "scene/masses.py": ("scene_in_space",),
     "geometry/poses.py": ("scene_in_space",),
-    **{f"distinct/{name}.py": ("explicit", "encounters") for name in STEPS},
-    "distinct/encounters.py": ("encounters",),
-    **{f"distinct/space/{name}.py": ("explicit_in_space",) for name in (*STEPS, "system", "turning")},
-    "distinct/space/encounters.py": ("encounters_in_space",),
+    **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
+    "distinct/links.py": ("breaks_inside_a_step", "explicit_in_space", "explicit"),
+    "distinct/encounters.py": ("encounters", "encounters_in_space"),
+    "distinct/looking.py": ("encounters", "encounters_in_space"),
+    "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry"),
     "result/joint_motion_in_space.py": ("masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),

@@ -27,10 +27,10 @@ def free_body(mass, inertia, spin):
 
 def followed(system, duration, h, every):
     """The samples of a system that is followed without being changed."""
-    count = round(duration / (h * every)) + 1
-    system, books = copied(system), Books.of(system, 1)
-    samples = Samples.of(count, len(system.bodies), books, SPACE)
-    advance(system, books, samples, Clock(0, h, every, 0, count, math.inf))
+    last = every * round(duration / (h * every))
+    system, books = copied(system), Books.empty(system, 1)
+    samples = Samples.room(last // every + 1, len(system.bodies), books, SPACE)
+    advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf))
     return samples, system
 
 

@@ -115,7 +115,7 @@ def started(system: System, pose: Array, velocity: Array | None = None) -> Syste
 
 def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
     """The system with supports that move fixed blocks."""
-    numbers = {support.block: i for i, support in enumerate(supports)}
+    numbers = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
     below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
     of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)

@@ -30,7 +30,7 @@ from ..geometry.vectors import (
     spun,
     vector,
 )
-from ..problem.masonry.joint_law import normal_force
+from ..problem.masonry.joint_law import normal_force, stored
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, carried, list_rigid, sprung_friction
 from .rows import Row, Rows
@@ -53,12 +53,14 @@ class Meeting(NamedTuple):
         normal: out of the face.
         arm: from the centroid of the body to the line [m].
         face_arm: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
+        past: whether the line is past the end of the face.
     """
 
     gap: float
     normal: Vector
     arm: Vector
     face_arm: Vector
+    past: bool
 
 
 @inlined
@@ -78,13 +80,13 @@ def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
         across = minus(across, vector(system.supports.moved, line.support, axes))
     gap = dot(normal, across)
     if line.corner > 0:
-        return cornered(system, line, across, Meeting(gap, normal, arm, face_arm))
+        return cornered(system, line, across, Meeting(gap, normal, arm, face_arm, False))
     if gap < 0:
         if dot(normal, in_world(body, components(line.normal, axes))) < 0:
-            return Meeting(TURNED_OVER, normal, arm, face_arm)
+            return Meeting(TURNED_OVER, normal, arm, face_arm, True)
         if dot(across, across) - gap * gap > line.margin:
-            return at_the_end(system, line, across, Meeting(gap, normal, arm, face_arm))
-    return Meeting(gap, normal, arm, face_arm)
+            return at_the_end(system, line, across, Meeting(gap, normal, arm, face_arm, False))
+    return Meeting(gap, normal, arm, face_arm, False)
 
 
 @jitable
@@ -106,7 +108,7 @@ def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meet
         gap = OPEN
     normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
     normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
-    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along))
+    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
 
 
 @jitable
@@ -120,7 +122,7 @@ def cornered(system: System, line: Row, across: Vector, meet: Meeting) -> Meetin
         place = plus(components(line.origin, across), within)
         line.corner = BESIDE if is_beside(system.edges, line.first, line.last, place) else THROUGH
     if line.corner == BESIDE:
-        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm)
+        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm, True)
     return meet
 
 
@@ -146,15 +148,32 @@ def add_force(body: Row, arm: Vector, force: Vector) -> None:
 
 
 @inlined
-def push_apart(bodies: Rows, line: Row, meet: Meeting, force: Vector, turning: Vector) -> None:
-    """Add a force and a moment on the body of a line, and their reaction on the body of the face."""
-    body = bodies[line.body]
-    add_force(body, meet.arm, force)
-    increase(body.moment, turning)
-    if line.face >= 0:
-        face = bodies[line.face]
-        add_force(face, meet.face_arm, scaled(-1.0, force))
-        increase(face.moment, scaled(-1.0, turning))
+def where_friction_rubs(meet: Meeting) -> Meeting:
+    """The same meeting with arms to halfway into the overlap. The force along the normal turns the bodies alike there,
+    and the gap has the same rate."""
+    halfway = scaled(-0.5 * min(meet.gap, 0.0), meet.normal)
+    return Meeting(meet.gap, meet.normal, plus(meet.arm, halfway), plus(meet.face_arm, halfway), meet.past)
+
+
+@inlined
+def closed_share(line: Row, gap: float, opened: float) -> float:
+    """Share of the last step in which a line was closed [-], whose gap has grown by some length in it [m]."""
+    if line.depth > 0 and gap < 0:
+        return 1.0
+    depth = max(line.depth, -gap)
+    share: float = depth / abs(opened) if depth < abs(opened) else 1.0
+    return share
+
+
+@inlined
+def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
+    """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
+    its spring holds less, and has not done as work while the gap grew by some length [m]."""
+    if not (meet.past or line.past == 1) or line.depth == 0 or 0 <= meet.gap < OPEN:
+        return 0.0
+    mean = 0.5 * (normal_force(line, -line.depth, 0.0) + normal_force(line, meet.gap, 0.0))
+    lost: float = stored(line, -line.depth) - stored(line, meet.gap) - mean * opened
+    return lost
 
 
 @jitable
@@ -175,37 +194,39 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
     for p in range(len(lines)):
         line = lines[p]
         meet = meeting(system, line, axes)
-        if meet.gap == TURNED_OVER:
-            line.k = line.c = line.friction = 0.0
-        elif meet.gap >= 0:
+        if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, meet.gap)
-            if line.push == 0 and line.pressed == 0:  # nor was there friction
+            if line.depth == 0:  # nor did it press in the last step
                 put(line.grip, no_spin(axes))
                 continue
+        meet = where_friction_rubs(meet)
         velocity = relative(bodies, line, supports, meet, axes)
-        rate = dot(meet.normal, velocity)
-        slip = along_face(meet.normal, velocity)
+        rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
-        put_in += 0.5 * h * (line.push + push) * carried(line, supports, meet.normal)
-        line.push, line.pressed = push, push - sprung
+        books.ends[min(line.corner, 1)] += lost_at_the_end(line, meet, h * rate)
         last, drag = spin_components(line.dragged, axes), no_spin(axes)
-        middle = scaled(-0.5 * min(meet.gap, 0.0), meet.normal)  # friction rubs halfway into the overlap
         if push == 0:
             put(line.grip, drag)
         elif line.k_s < math.inf:
             drag = sprung_friction(bodies, line, meet.normal, slip, push, h)
         elif line.friction > 0:
             books.active[active] = p
-            arms = plus(meet.arm, middle), plus(meet.face_arm, middle)
-            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, arms[0], arms[1])
+            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, meet.arm, meet.face_arm)
             active += 1
-        put(line.dragged, drag)
         mean = scaled(0.5 * h, plus(last, drag))
         rubbed -= dot(mean, slip)
-        put_in += carried(line, supports, as_vector(meet.normal, mean))
-        rubbing = as_vector(meet.normal, drag)
-        push_apart(bodies, line, meet, plus(scaled(push, meet.normal), rubbing), moment(middle, rubbing))
+        if line.support >= 0:
+            work = plus(scaled(0.5 * h * (line.push + push), meet.normal), as_vector(meet.normal, mean))
+            put_in += closed_share(line, meet.gap, h * rate) * carried(line, supports, work)
+        line.push, line.pressed, line.depth, line.past = push, push - sprung, max(-meet.gap, 0.0), meet.past
+        put(line.dragged, drag)
+        if meet.gap == TURNED_OVER:
+            line.k = line.c = line.friction = 0.0
+        force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
+        add_force(bodies[line.body], meet.arm, force)
+        if line.face >= 0:
+            add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
     books.totals[0].friction += rubbed
     books.totals[0].ground += put_in
     return active

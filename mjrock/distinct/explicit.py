@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from typing import Any
 
@@ -13,10 +12,11 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_size, require_within
 from ..result.response import Response, State
+from ..result.samples import required_spacing
 from ..result.start import required_start
+from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
-from .following import follow, steps_of
-from .loop import Clock
+from .following import Stepping, follow, warn_if_long
 from .reading import Run, response_of
 from .setup import setup_of
 from .system import Books, Samples
@@ -27,7 +27,7 @@ def solve_explicit(
     contacts: Contacts | None = None,
     timestep: float | None = None,
     *,
-    output_step: float = 1e-3,
+    output_step: float | None = None,
     ledger: bool = False,
     start: State | None = None,
 ) -> Response:
@@ -45,8 +45,9 @@ def solve_explicit(
         contacts: the interfaces of the wall; masonry has its own joints.
         timestep: length of a step [s]; None takes 0.4 of the longest stable one for masonry and 0.005 of it for a wall,
             whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
-        output_step: spacing of the returned samples [s]. A given timestep is kept, and the spacing is a whole number of
-            steps.
+        output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
+            sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
+            may be shorter, and the run ends with the step that is nearest to the duration.
         ledger: whether to account for every part of the energy.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. It does not go
             with ties that yield.
@@ -55,41 +56,47 @@ def solve_explicit(
         ValueError: if the contacts do not fit the case, if the masonry does not stand, for a step that is not stable,
             or for a value outside its range.
         RuntimeError: if more energy appears than was there and was put in.
+
+    Warns:
+        UserWarning: of steps that would take more than some ten seconds, and how long.
+        Implausible: of a given timestep that is far below what the contacts need.
     """
     begun = time.perf_counter()
     require_case(case, contacts)
     require_flag("ledger", ledger)
     if timestep is not None:
-        timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
-    output_step = require_within("output_step", output_step, 1e-9, 1e3, "s")
+        timestep = require_within("timestep", timestep, 1e-9, min(1.0, case.duration), "s")
+    spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
     setup = setup_of(case, contacts, state)
     scene, limit = setup.scene, setup.limit
-    spacing = min(output_step, setup.course.duration, setup.spacing)
-    h, every = steps_of(timestep, setup.share * limit, limit, spacing)
-    count = math.floor(setup.course.duration / (h * every) * (1 + 1e-12)) + 1
+    steps = Stepping.of(setup, timestep, spacing)
+    count = steps.samples
     require_size(
         "the samples of this answer", count * len(scene.bodies.names), "raise output_step or follow it for less"
     )
-    books = Books.of(
+    books = Books.empty(
         setup.system, len(scene.contacts.joints) + 1, 0 if setup.encounters is None else setup.encounters.most
     )
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    samples = Samples.of(count, len(scene.bodies.names), books, scene.freedom, ledger=ledger)
+    samples = Samples.room(count, len(scene.bodies.names), books, scene.freedom, ledger=ledger)
+    if timestep is not None:
+        warn_if_tiny(timestep, setup.share * limit)
+    warn_if_long(setup, steps)
     stepping = time.perf_counter()
-    system, steps, kept = follow(setup, books, samples, Clock(0, h, every, 0, count, setup.ends))
+    system, made, kept = follow(setup, books, samples, steps)
     took = time.perf_counter() - stepping
     stats: dict[str, Any] = {
-        "steps": steps,
-        "timestep": h,
+        "steps": made,
+        "timestep": steps.h,
         "stable_timestep": limit,
-        "share": h / limit,
+        "share": steps.h / limit,
         "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
         "stepping_time": took,
     }
     samples = samples.taken(slice(kept))
-    run = Run(case, contacts, scene, setup.course, system, books, samples, h * every)
-    response = response_of(run, ledger=ledger, stride=max(1, round(output_step / (h * every))), stats=stats)
+    run = Run(case, contacts, scene, setup.course, system, books, samples, steps.times()[:kept])
+    response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response

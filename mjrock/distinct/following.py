@@ -3,49 +3,127 @@
 from __future__ import annotations
 
 import math
+import time
+import warnings
+from typing import NamedTuple
 
+import numpy as np
 from tqdm import tqdm
 
+from ..quantities import Array
+from ..result.samples import intervals
+from ..scene.explicit_step import stepping_seconds
 from .loop import Clock, advance
 from .setup import Setup
 from .system import Books, Samples, System
 
-AT_ONCE = 2e7
-"""Steps of a line that are made before the progress bar moves and Ctrl-C is heard: about a second."""
+FIRST = 100_000
+"""Steps of a line that the first call of the compiled steps makes."""
+HEARD = 0.3
+"""Time that later calls take, after which the progress bar moves and Ctrl-C is heard [s]."""
 LOOK = 5e-3
 """Longest time between two looks for blocks that meet others [s]."""
+WORTH_SAYING = 10.0
+"""Time that steps may take before that is spoken of [s]."""
+DAMPED = 10.0
+"""How many times shorter dashpots make a step than springs alone before that is spoken of [-]."""
 
 
-def steps_of(timestep: float | None, taken: float, limit: float, spacing: float) -> tuple[float, int]:
-    """Length of a step [s], and how many lie between two samples; a ValueError says if it is not stable."""
-    if timestep is None:
-        every = max(1, math.ceil(spacing / taken))
-        return spacing / every, every
-    if timestep > limit:
-        raise ValueError(
-            f"timestep = {timestep:.3g} s is not stable; the valid range is up to {limit:.3g} s, which the stiffest "
-            "contacts and the strongest dashpots allow"
-        )
-    return timestep, max(1, round(spacing / timestep))
+class Stepping(NamedTuple):
+    """The steps of a run.
+
+    Args:
+        h: length of a step [s].
+        every: steps from one sample to the next.
+        stride: samples from one that is returned to the next.
+        last: number of the last step, of which there is a sample too.
+        end: when it is made [s].
+    """
+
+    h: float
+    every: int
+    stride: int
+    last: int
+    end: float
+
+    @classmethod
+    def of(cls, setup: Setup, timestep: float | None, output_step: float) -> Stepping:
+        """Steps that end with the duration: in equal parts of it no longer than `output_step`.
+
+        A given step is kept, and the run ends with the one that is nearest to the duration.
+
+        Raises:
+            ValueError: if the given step is not stable.
+        """
+        duration = setup.course.duration
+        if timestep is None:
+            count = intervals(duration, output_step)
+            parts = intervals(duration / count, setup.spacing)
+            every = intervals(duration / (count * parts), setup.share * setup.limit)
+            last = count * parts * every
+            return cls(duration / last, every, parts, last, duration)
+        if timestep > setup.limit:
+            raise ValueError(
+                f"timestep = {timestep:.3g} s is not stable; the valid range is up to {setup.limit:.3g} s, which the "
+                "stiffest contacts and the strongest dashpots allow"
+            )
+        every = max(1, round(min(output_step, setup.spacing) / timestep))
+        last = max(1, round(duration / timestep))
+        return cls(timestep, every, max(1, round(output_step / (timestep * every))), last, last * timestep)
+
+    @property
+    def samples(self) -> int:
+        """How many samples there are."""
+        return -(-self.last // self.every) + 1
+
+    def times(self) -> Array:
+        """Times of the samples [s], shape (samples,)."""
+        t = self.h * self.every * np.arange(self.samples)
+        t[-1] = self.end
+        return np.asarray(t)
 
 
-def follow(setup: Setup, books: Books, samples: Samples, clock: Clock) -> tuple[System, int, int]:
+def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> tuple[System, int, int]:
     """Make the steps, with a progress bar where they take more than some seconds.
+
+    Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
 
     Returns:
         The system at the end, how many steps it took, and of how many samples.
     """
-    system, encounters = setup.system, setup.encounters
-    total, sample, ended = clock.rows, clock.every * clock.h, False
-    with tqdm(total=total, desc="explicit", unit="sample", delay=3, disable=None, leave=False) as bar:
-        while clock.row < total and not ended:
-            rows = max(1, int(AT_ONCE / (clock.every * max(1, len(system.lines)))))
-            if encounters is not None:
-                rows = min(rows, max(1, int(LOOK / sample)))
+    system, encounters, stop = setup.system, setup.encounters, stepping.last + 1
+    clock = Clock(0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends)
+    at_once, look, ended = max(1, FIRST // max(1, len(system.lines))), stop, False
+    with tqdm(total=stepping.end, desc="explicit", unit="s", delay=3, disable=None, leave=False) as bar:
+        while clock.step < stop and not ended:
+            if encounters is not None and (clock.step == look or clock.step == 0):
+                look = clock.step + max(1, int(LOOK / clock.h))
                 loose = encounters.loose(system)
                 if loose.any():
-                    system = encounters.looked_for(system, loose, rows * sample)
-            step, row, ended = advance(system, books, samples, clock._replace(rows=min(rows, total - clock.row)))
-            bar.update(row - clock.row)
+                    system = encounters.looked_for(system, loose, (look - clock.step) * clock.h)
+            begun = time.perf_counter()
+            clock = clock._replace(stop=min(stop, look, clock.step + at_once))
+            step, row, ended = advance(system, books, samples, clock)
+            took = time.perf_counter() - begun
+            at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
+            bar.update((step - clock.step) * clock.h)
             clock = clock._replace(step=step, row=row)
     return system, clock.step, clock.row
+
+
+def warn_if_long(setup: Setup, stepping: Stepping) -> None:
+    """Warn of steps that take long, and of dashpots that make them many."""
+    lines = setup.system.lines
+    sprung = bool(np.isfinite(lines["k_s"]).any())
+    seconds = stepping_seconds(stepping.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
+    if seconds < WORTH_SAYING:
+        return
+    said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"
+    slowest = float((lines["c"] / lines["k"]).max())
+    shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
+    if shorter > DAMPED:
+        said += (
+            f". The dashpots, c/k = {slowest:.2g} s, make each step {shorter:.2g} times shorter than the springs need: "
+            "lower xi, or raise the frequency that it refers to"
+        )
+    warnings.warn(f"explicit steps would take some {seconds:.2g} s: {said}", stacklevel=3)

@@ -65,20 +65,20 @@ def elongation(tie: Row, length: float) -> float:
     return elastic if tie.push > 0 else max(0.0, elastic)
 
 
-@jitable
-def let_yield(tie: Row, length: float, books: Books, i: int, t: float) -> None:
-    """Let link i yield at its length [m], break where it has been drawn out as far as it can be, and book it."""
-    beyond, shorter = length - tie.reach - tie.strength / tie.k, tie.reach - length - tie.push / tie.k
-    if beyond > 0:
-        left = tie.ultimate - tie.drawn
-        tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
-        books.ties[i] += tie.strength * min(beyond, left)
-        if beyond >= left:
-            tie.broken = t
-            books.broken[i] = 0.5 * tie.strength**2 / tie.k
-    elif tie.push > 0 and shorter > 0:
-        tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter
-        books.ties[i] += tie.push * shorter
+@inlined
+def since_broken(over: float, rate: float, h: float) -> float:
+    """How long before the pose a tie broke that is longer than it can be by `over` [s], within the step of length h."""
+    return min(over / rate, h) if rate > 0 else 0.0
+
+
+@inlined
+def pulled_until_broken(tie: Row, since: float, h: float) -> float:
+    """Force at the pose after a tie broke, in place of none [N].
+
+    That of the pose before acts on the velocity up to the middle of the step. What the tie pulled after the middle and
+    before it broke is still to act, and what it pulled in the middle after it had broken is to be taken back.
+    """
+    return tie.strength * (0.5 - since / h) if h > 0 else 0.0
 
 
 @jitable
@@ -90,9 +90,21 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
         if t >= tie.broken:
             continue
         now = pull(tie, bodies, axes)
-        let_yield(tie, now.length, books, i, t)
-        if tie.broken > t:
-            act(tie, bodies, now, -tie.k * elongation(tie, now.length))
+        beyond = now.length - tie.reach - tie.strength / tie.k
+        if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
+            left = tie.ultimate - tie.drawn
+            tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
+            books.ties[i] += tie.strength * min(beyond, left)
+            if beyond >= left:
+                since = since_broken(beyond - left, lengthening(tie, bodies, now, axes), h)
+                tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
+                act(tie, bodies, now, -pulled_until_broken(tie, since, h))
+                continue
+        shorter = tie.reach - now.length - tie.push / tie.k
+        if tie.push > 0 and shorter > 0:  # it slips as it gets shorter
+            tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter
+            books.ties[i] += tie.push * shorter
+        act(tie, bodies, now, -tie.k * elongation(tie, now.length))
     for i in range(len(system.dampers)):
         damper = system.dampers[i]
         now = pull(damper, bodies, axes)

@@ -53,7 +53,8 @@ class Clock(NamedTuple):
         h: length of a step [s].
         every: steps from one sample to the next.
         row: number of the next sample.
-        rows: how many samples to make.
+        stop: number of the step before which to stop.
+        last: number of the last step of the run.
         ends: rotation at which the run ends [rad], infinite for a run to its end.
     """
 
@@ -61,7 +62,8 @@ class Clock(NamedTuple):
     h: float
     every: int
     row: int
-    rows: int
+    stop: int
+    last: int
     ends: float
 
 
@@ -144,6 +146,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tu
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
     keep_account(books.dashpots, samples.dashpots[row])
+    keep_account(books.ends, samples.ends[row])
 
 
 @inlined
@@ -188,7 +191,7 @@ def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
 
 @compiled
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
-    """Steps until some samples are made.
+    """Steps up to that before which to stop. Samples are made of every so many, and of the last.
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
@@ -200,10 +203,11 @@ def make_steps(
     system: System, books: Books, samples: Samples, clock: Clock, axes: tuple[int, ...]
 ) -> tuple[int, int, bool]:
     """The steps of `advance`. The compiler drops what is of the plane or of space by the length of the axes."""
-    n, h, row, last, totals = clock.step, clock.h, clock.row, clock.row + clock.rows, books.totals[0]
+    n, h, row, totals = clock.step, clock.h, clock.row, books.totals[0]
     accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
-    while True:
-        before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
+    while n < clock.stop:
+        before, kick = h if n > 0 else 0.0, h if n > 0 else 0.5 * h
+        sampled = n % clock.every == 0 or n == clock.last
         move_supports(system.supports, n * h, before)
         start_forces(system, books, n * h, h, kick, axes)
         pull_links(system, books, n * h, before, axes)
@@ -227,5 +231,4 @@ def make_steps(
                 return n, row, True
         move_bodies(system.bodies, h, axes)
         n += 1
-        if row == last:
-            return n, row, False
+    return n, row, False

@@ -15,7 +15,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.damping.uplift import Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import Array
+from ..quantities import Array, Integers
 from ..result.ending import ending, masonry_ending
 from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
@@ -25,15 +25,17 @@ from ..result.joints import JointMotion
 from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.response import Response
 from ..result.rocking import Rocking
+from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
+from ..scene.quiet import is_quiet
 from ..scene.scene import Scene
 from .system import Books, Samples, System
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and how far apart [s]."""
+    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s]."""
 
     case: Case | MasonryCase
     contacts: Contacts | None
@@ -42,17 +44,12 @@ class Run:
     system: System
     books: Books
     samples: Samples
-    spacing: float
+    t: Array
 
     @property
     def in_space(self) -> bool:
         """Whether the bodies move in space."""
         return bool(self.samples.pose.shape[2] == SPACE.nq)
-
-    @cached_property
-    def t(self) -> Array:
-        """Times of the samples [s]."""
-        return np.asarray(self.spacing * np.arange(len(self.samples.pose), dtype=float))
 
     @cached_property
     def energy(self) -> Array:
@@ -65,7 +62,7 @@ class Run:
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
-    """The response of a run: every `stride` of its samples, its accounts where it has a `ledger`, and what it took.
+    """The response of a run: every `stride` of its samples and the last, its `ledger` if asked for, what it took.
 
     Raises:
         RuntimeError: if energy has appeared from nowhere.
@@ -73,16 +70,16 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
     count = reading.pop("count")
     require_no_gain(run, count, stats)
-    samples = run.samples
+    samples, kept = run.samples, thinned(len(run.t), stride)
     return Response(
         case=run.case,
         solver="explicit",
-        t=run.t[::stride],
-        pose=samples.pose[::stride],
-        velocity=samples.velocity[::stride],
-        energy=run.energy[::stride],
+        t=run.t[kept],
+        pose=samples.pose[kept],
+        velocity=samples.velocity[kept],
+        energy=run.energy[kept],
         plastic=plastic_of(run),
-        ledger=ledger_of(run, stride) if ledger else None,
+        ledger=ledger_of(run, kept) if ledger else None,
         stats=reading.pop("stats") | stats,
         end=(samples.pose[-1].copy(), samples.velocity[-1].copy()),
         **reading,
@@ -91,7 +88,8 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def plastic_of(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, books, links = run.system.ties, run.books, run.scene.links.sprung
+    ties, books = run.system.ties, run.books
+    links = run.scene.links.sprung
     start = run.scene.ties.reach - links.reach
     columns = zip(links.names, ties["drawn"], books.ties, ties["broken"], books.broken, start, strict=True)
     return {name: Plastic(*(float(value) for value in values)) for name, *values in columns}
@@ -105,7 +103,7 @@ def wall_reading(run: Run) -> dict[str, Any]:
     uplift = Uplift.of(case, contacts)
     theta, omega = run.samples.pose[:, 0, 2], run.samples.velocity[:, 0, 2]
     _, peaks, impacts = rocking_history(case, run.t, theta, omega, run.energy, uplift, released=run.course.released)
-    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy)
+    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy, run.samples.velocity[-1, 0])
     slip = run.samples.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return {
         "rocking": Rocking(impacts, peaks),
@@ -123,7 +121,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
     motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
-    quiet = bool(abs(run.energy[-1]) < scene.rest_energies[2])
+    quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()
@@ -150,7 +148,8 @@ def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     work = run.samples.energy["ground"][: max(count, 1)]
     own = run.energy[: len(work)] - work
-    scale = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    given = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    scale = max(given, float(run.samples.energy["kinetic"][: len(work)].max()))  # what falls below its rest has more
     gain = from_nowhere(own, scale)
     if gain is not None:
         raise RuntimeError(f"{gain[1]} by t = {run.t[gain[0]]:.4g} s; {advice(stats)}")
@@ -172,18 +171,19 @@ def advice(stats: Mapping[str, Any]) -> str:
     )
 
 
-def ledger_of(run: Run, stride: int) -> Ledger:
-    """The ledger of a run."""
-    scene, samples = run.scene, run.samples.taken(slice(None, None, stride))
+def ledger_of(run: Run, kept: Integers) -> Ledger:
+    """The ledger of a run at some of its samples."""
+    scene, samples = run.scene, run.samples.taken(kept)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
     dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
     dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
-        t=run.t[::stride],
+        t=run.t[kept],
         **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
         dashpots=dashpots,
         friction=np.asarray(energy["friction"] - energy["friction"][0]),
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
+        ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), samples.ends.T, strict=True)),
     )

@@ -18,6 +18,8 @@ from ..quantities import Array, Integers
 Rows = NDArray[np.void]
 Row = Any
 """One of the rows; its numbers are attributes."""
+Fields = list[Any]
+"""Names of numbers, and of vectors with how many numbers they have."""
 
 
 class Kinds(NamedTuple):
@@ -44,78 +46,98 @@ class Kinds(NamedTuple):
 def kinds(d: int) -> Kinds:
     """The kinds of rows of the plane, d = 2, or of space, d = 3."""
     s = 1 if d == 2 else 3
-    turned = [("angle", float), ("turn", float, (2,))] if d == 2 else [
-        ("quaternion", float, (4,)),
-        ("turn", float, (3, 3)),
-        ("momentum", float, (3,)),
-    ]  # fmt: skip
+    fields = (
+        _body(d, s),
+        _line(d, s),
+        _edge(d),
+        _way(d, s),
+        _link(d),
+        [*_number("friction", "ground"), *_vector(d, "push")],
+    )
+    return Kinds(*(np.dtype(kind) for kind in fields))
 
-    def number(*names: str) -> list[Any]:
-        return [(name, float) for name in names]
 
-    def integer(*names: str) -> list[Any]:
-        return [(name, np.int64) for name in names]
+def _number(*names: str) -> Fields:
+    return [(name, float) for name in names]
 
-    def vector(*names: str) -> list[Any]:
-        return [(name, float, (d,)) for name in names]
 
-    def spin(*names: str) -> list[Any]:
-        return [(name, float, (s,)) for name in names]
+def _integer(*names: str) -> Fields:
+    return [(name, np.int64) for name in names]
 
-    body = [
-        *number("mass"),  # [kg]
+
+def _vector(size: int, *names: str) -> Fields:
+    return [(name, float, (size,)) for name in names]
+
+
+def _body(d: int, s: int) -> Fields:
+    flat = [*_number("angle"), *_vector(2, "turn")]
+    deep = [*_vector(4, "quaternion"), ("turn", float, (3, 3)), *_vector(3, "momentum")]
+    return [
+        *_number("mass"),  # [kg]
         ("inverse_inertia", float, (s, s)),  # in its axes [1/(kg m2)]
-        *vector("rest"),  # centroid at rest [m]
-        *vector("place"),  # displacement from there [m]
-        *turned,  # rotation from rest, see `turning`
-        *vector("velocity"),  # half a step before the pose [m/s]
-        *spin("spin"),  # likewise, in the axes of the world at the pose [rad/s]
-        *vector("force"),  # at the pose [N]
-        *spin("moment"),  # likewise [N m]
+        *_vector(d, "rest"),  # centroid at rest [m]
+        *_vector(d, "place"),  # displacement from there [m]
+        *(flat if d == 2 else deep),  # rotation from rest, see `turning`
+        *_vector(d, "velocity"),  # half a step before the pose [m/s]
+        *_vector(s, "spin"),  # likewise, in the axes of the world at the pose [rad/s]
+        *_vector(d, "force"),  # at the pose [N]
+        *_vector(s, "moment"),  # likewise [N m]
     ]
-    line = [
-        *integer("body", "face"),  # the body that carries the point, and that of the face, -1 for a fixed block
-        *integer("support"),  # the support that moves a fixed block, -1 for none
-        *integer("group"),  # number of the account
-        *integer("corner"),  # 0 for a line of a joint; of a corner near a face see `contact.cornered`
-        *vector("at"),  # the point from the centroid of its body [m]
-        *vector("origin"),  # a point of the face from the centroid of its body [m]
-        *vector("between"),  # from there to the point at rest, zero for a line of a joint [m]
-        *vector("normal"),  # unit vector out of the face
-        *number("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
-        *number("friction"),  # coefficient [-]
-        *number("margin"),  # square of the least way along the face from the origin to its end [m2]
-        *integer("first", "last"),  # the edges of the face
-        *integer("own_first", "own_last"),  # the edges of the face of its own body
-        *spin("grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
-        *number("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
-        *spin("dragged"),  # friction of the shear spring in the last step [N]
-        *number("widest"),  # largest gap so far [m]
+
+
+def _line(d: int, s: int) -> Fields:
+    return [
+        *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 for a fixed block
+        *_integer("support"),  # the support that moves a fixed block, -1 for none
+        *_integer("group"),  # number of the account
+        *_integer("corner"),  # 0 for a line of a joint; of a corner near a face see `contact.cornered`
+        *_vector(d, "at"),  # the point from the centroid of its body [m]
+        *_vector(d, "origin"),  # a point of the face from the centroid of its body [m]
+        *_vector(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
+        *_vector(d, "normal"),  # unit vector out of the face
+        *_number("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
+        *_number("friction"),  # coefficient [-]
+        *_number("margin"),  # square of the least way along the face from the origin to its end [m2]
+        *_integer("first", "last"),  # the edges of the face
+        *_integer("own_first", "own_last"),  # the edges of the face of its own body
+        *_vector(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
+        *_number("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
+        *_number("depth"),  # overlap in the last step [m]
+        *_integer("past"),  # 1 for a line that was past the end of its face then
+        *_vector(s, "dragged"),  # friction of the shear spring in the last step [N]
+        *_number("widest"),  # largest gap so far [m]
     ]
-    edge = [
-        *vector("way"),  # its normal in the plane of the face
-        *number("reach"),  # how far the face reaches along it from the centroid of the body [m]
-        *number("band"),  # way beyond over which the normal of a contact turns [m]
+
+
+def _edge(d: int) -> Fields:
+    return [
+        *_vector(d, "way"),  # its normal in the plane of the face
+        *_number("reach"),  # how far the face reaches along it from the centroid of the body [m]
+        *_number("band"),  # way beyond over which the normal of a contact turns [m]
     ]
-    way = [
-        *vector("way"),  # a direction along the face
-        *spin("lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
-        *spin("spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
-        *number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
-        *number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
+
+
+def _way(d: int, s: int) -> Fields:
+    return [
+        *_vector(d, "way"),  # a direction along the face
+        *_vector(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
+        *_vector(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
+        *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
+        *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
     ]
-    link = [
-        *integer("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
-        *vector("at"),  # where, from its centroid [m]
-        *vector("origin"),  # the other end from the centroid of the anchor [m]
-        *vector("between"),  # from the anchor at rest [m]; components of a force [N]
-        *number("k", "c"),  # spring and dashpot [N/m, N s/m]
-        *number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
-        *number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
-        *number("pulled"),  # force of a damper in the last step [N]
+
+
+def _link(d: int) -> Fields:
+    return [
+        *_integer("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
+        *_vector(d, "at"),  # where, from its centroid [m]
+        *_vector(d, "origin"),  # the other end from the centroid of the anchor [m]
+        *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]
+        *_number("k", "c"),  # spring and dashpot [N/m, N s/m]
+        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
+        *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
+        *_number("pulled"),  # force of a damper in the last step [N]
     ]
-    total = [*number("friction", "ground"), *vector("push")]  # see `system.Books`
-    return Kinds(*(np.dtype(fields) for fields in (body, line, edge, way, link, total)))
 
 
 def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | float) -> Rows:

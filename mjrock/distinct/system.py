@@ -53,6 +53,7 @@ class Books(NamedTuple):
     Args:
         dashpots: by group, shape (g,).
         ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
+        ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
         active: room for the numbers of the lines that stick rigidly, shape (m,).
@@ -62,21 +63,22 @@ class Books(NamedTuple):
     ties: Array
     broken: Array
     dampers: Array
+    ends: Array
     totals: Rows
     active: Integers
 
     @classmethod
-    def of(cls, system: System, groups: int, further: int = 0) -> Books:
+    def empty(cls, system: System, groups: int, further: int = 0) -> Books:
         """Empty books of a system, with room for some further lines."""
-        sizes = groups, len(system.ties), len(system.ties), len(system.dampers)
-        dashpots, ties, broken, dampers = (np.zeros(size) for size in sizes)
+        sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
+        dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
         active = np.zeros(len(system.lines) + further, dtype=np.int64)
-        return cls(dashpots, ties, broken, dampers, rows(kinds(len(system.axes)).total, 1), active)
+        return cls(dashpots, ties, broken, dampers, ends, rows(kinds(len(system.axes)).total, 1), active)
 
     @property
     def size(self) -> int:
         """Accounts that a ledger keeps at each sample."""
-        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
+        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers, self.ends)))
 
 
 class Samples(NamedTuple):
@@ -85,7 +87,7 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
-        dampers, ties, broken, dashpots: what `Books` say, shape (samples, accounts), without a ledger (samples, 0).
+        dampers, ties, broken, dashpots, ends: what `Books` say, (samples, accounts), without a ledger (samples, 0).
     """
 
     pose: Array
@@ -95,15 +97,16 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
+    ends: Array
 
     @classmethod
-    def of(cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False) -> Samples:
+    def room(cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False) -> Samples:
         """Room for some samples, and for the accounts where there is a ledger."""
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
-        kept = (books.dampers, books.ties, books.broken, books.dashpots)
+        kept = (books.dampers, books.ties, books.broken, books.dashpots, books.ends)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         return cls(pose, velocity, rows(ENERGY, count), *accounts)
 
-    def taken(self, which: slice) -> Samples:
+    def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples."""
         return Samples(*(part[which] for part in self))  # type: ignore[arg-type]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.frames import PLANE
 from ..problem.masonry.masonry import Masonry
-from ..scene.explicit_step import SHARE, stable_step
+from ..scene.explicit_step import SHARE, stable_step, stepping_seconds
 from ..scene.scene import Scene
 
 FEW = 8
@@ -19,27 +19,21 @@ WEAK, STRONG = 0.7e-6, 20e-6
 or strikes, and where much does. Columns of 16 and 64 blocks take 1.2e-6 and 0.7e-6, arches 2e-6 to 5e-6, walls of 10 to
 55 blocks in running bond 0.5e-6 to 2.3e-6 under a weak sine and 7e-6 to 22e-6 under a strong one
 (`scripts/studies/solvers_of_masonry.py`)."""
-SPRUNG, RIGID = 50e-9, 110e-9
-"""Time of an explicit step a line, with shear springs and with rigid friction [s], by the same script."""
 WEAK_IN_SPACE, STRONG_IN_SPACE = 1.5e-6, 140e-6
 """`WEAK` and `STRONG` for points in space [s2]. A column of 12 drums takes 2e-6 to 3e-6, a facade with return walls
 1e-5 under a weak sine and 1.4e-4 under a strong one (`scripts/studies/columns_in_space.py`)."""
-SPRUNG_IN_SPACE, RIGID_IN_SPACE = 120e-9, 800e-9
-"""`SPRUNG` and `RIGID` for a point in space [s]. The same script finds 65e-9 to 280e-9 and 300e-9 to 1600e-9, with how
-busy the machine is."""
 WORTH_SAYING = 3.0
 """How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
 
 
 def explicit_seconds(scene: Scene, masonry: Masonry) -> float:
     """Time of a second by explicit steps [s], from the highest frequency and the strongest dashpot."""
-    ratio, lines = masonry.joint_shear / masonry.joint_stiffness, len(scene.contacts.k)
+    ratio = masonry.joint_shear / masonry.joint_stiffness
     sprung = bool(np.isfinite(ratio).any())
     stiffer = float(np.max(ratio[np.isfinite(ratio)], initial=1.0))  # of the springs along normal and face
     stiffness = stiffer * scene.highest_frequency**2
     step = SHARE * stable_step(stiffness, stiffness * float((scene.contacts.c / scene.contacts.k).max()))
-    of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if masonry.in_space else (SPRUNG, RIGID)
-    return lines * (of_springs if sprung else of_friction) / step
+    return stepping_seconds(1 / step, len(scene.contacts.k), sprung=sprung, in_space=masonry.in_space)
 
 
 def fitted_seconds(scene: Scene) -> tuple[float, float]:

@@ -49,7 +49,7 @@ class Options:
             samples = self.duration / (self.output_step or SPACING)
             require_size("the samples of this answer", samples, "raise output_step or follow it for less")
         else:
-            keep(self, timestep=require_within("timestep", self.timestep, 1e-9, 1.0, "s"))
+            keep(self, timestep=require_within("timestep", self.timestep, 1e-9, min(1.0, self.duration), "s"))
             steps = self.duration / self.timestep
             require_size("the steps of this run", steps, "take a longer timestep, or fitted steps")
 

@@ -22,6 +22,7 @@ from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion
 from ..result.rocking import Rocking
 from ..scene.course import Course
+from ..scene.quiet import is_quiet
 from ..scene.scene import Scene
 from .record import Steps
 
@@ -85,7 +86,7 @@ class AskedWall:
         for joint, name in enumerate(contacts.joints):
             stats[f"deepest_{name}"] = float(max(0.0, *deepest[contacts.joint == joint]))
         return Reading(
-            *ending(case, t, theta, energy, uplift.energy),
+            *ending(case, t, theta, energy, uplift.energy, steps.velocity[-1]),
             marks=np.unique(np.concatenate([[0], np.minimum(met, count - 1), [count - 1]])),
             count=count,
             rocking=Rocking(impacts, peaks),
@@ -101,18 +102,14 @@ class AskedMasonry:
     case: MasonryCase
 
     def read(self, scene: Scene, course: Course, steps: Steps, energy: Array) -> Reading:
-        """Openings, slidings and falls. No energy may appear from one of MARKS times to a later one before a fall.
-
-        Masonry is quiet when the energy that is left opens no joint: it is less than that of the springs at rest. A
-        structure that is falling has less energy than at rest, and is not quiet.
-        """
+        """Openings, slidings and falls. No energy may appear from one of MARKS times to a later one before a fall."""
         masonry, t = self.case.masonry, steps.t
         followed, up = (joint_motion_in_space, 2) if masonry.in_space else (joint_motion, 1)
         motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose)
         drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
-        quiet = bool(abs(energy[-1]) < scene.rest_energies[2])
+        quiet = is_quiet(scene, float(energy[-1]), steps.velocity[-1].reshape(len(scene.bodies.names), -1))
         return Reading(
             *masonry_ending(fallen, quiet, min(float(t[-1]), course.duration)),
             marks=np.linspace(0, count - 1, min(count, MARKS)).astype(int),

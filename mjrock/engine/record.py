@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -14,7 +13,7 @@ from ..geometry.poses import coordinate_rates, from_rates, moved
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, Integers
 from ..result.response import State
-from ..result.samples import interpolated
+from ..result.samples import interpolated, intervals, thinned
 
 
 class StepError(RuntimeError):
@@ -131,14 +130,15 @@ class Steps:
         Args:
             duration: up to when samples that are interpolated reach [s].
             spacing: their distance [s]; None takes every `stride`-th step as it is.
-            stride: which steps are taken then.
+            stride: which steps are taken then, and the last.
         """
         nq, nv, pose, velocity = self.freedom.nq, self.freedom.nv, self.pose, self.velocity
         if spacing is None:
-            t, last, pose, velocity = self.t[::stride], (pose[-1], velocity[-1]), pose[::stride], velocity[::stride]
+            kept, last = thinned(len(self.t), stride), (pose[-1], velocity[-1])
+            t, pose, velocity = self.t[kept], pose[kept], velocity[kept]
         else:
             finish = min(float(self.t[-1]), duration)
-            t = np.linspace(0.0, finish, max(2, math.ceil(finish / spacing) + 1))
+            t = np.linspace(0.0, finish, intervals(finish, spacing) + 1)
             rates = coordinate_rates(pose, velocity, self.freedom)
             pose, velocity = from_rates(*interpolated(self.t, pose, rates, t), self.freedom)
             last = pose[-1], velocity[-1]

@@ -35,7 +35,7 @@ SLID = 0.01
 def require_still(case: MasonryCase) -> None:
     """Raise a ValueError where supports move: in MuJoCo the fixed blocks belong to the world."""
     if case.supports:
-        names = ", ".join(case.masonry.names[support.block] for support in case.supports)
+        names = ", ".join(support.block for support in case.supports)
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")
 
 

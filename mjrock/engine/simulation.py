@@ -17,6 +17,7 @@ from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
+from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import course_of, require_case, scene_of
 from ..scene.scene import Scene
 from .estimate import warn_if_slow
@@ -70,8 +71,9 @@ def simulate(
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.solref`.
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
-        output_step: spacing of the returned samples [s]. Fixed steps are thinned to whole steps, None returns them
-            all; fitted steps are interpolated, None stands for 1 ms.
+        output_step: largest spacing of the returned samples [s], 1e-9 to the duration; the last is the end of the run.
+            Fixed steps are thinned to whole steps, None returns them all, and the run ends with the step that is
+            nearest to the duration. Fitted steps are interpolated at even distances, None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.engine.energy_work`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
@@ -107,6 +109,7 @@ def simulate(
         run, settings = fitted(asked, scene, course, options)
     else:
         warn_if_coarse(scene, options.timestep)
+        warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
         run, settings = fixed(asked, scene, course, options, options.timestep)
     response = run.response(options.spacing, options.stride, options.ledger, settings)
     if not (options.timestep is None or options.slides):

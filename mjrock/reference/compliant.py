@@ -25,6 +25,7 @@ from ..result.ending import ending
 from ..result.history import rocking_history
 from ..result.response import Response
 from ..result.rocking import Rocking
+from ..result.samples import intervals, required_spacing, thinned
 from ..result.ties import Plastic
 from .equations import Wall
 
@@ -37,7 +38,7 @@ SWITCHES = 100_000
 
 
 def solve_compliant(
-    case: Case, contacts: Contacts, *, rtol: float = 1e-8, atol: float = 1e-10, output_step: float = 5e-4
+    case: Case, contacts: Contacts, *, rtol: float = 1e-8, atol: float = 1e-10, output_step: float | None = None
 ) -> Response:
     """Rocking of a wall on compliant contacts: what `simulate` has to reproduce.
 
@@ -45,7 +46,8 @@ def solve_compliant(
         case: the wall, its release, its sides.
         contacts: the interfaces.
         rtol, atol: tolerances of the integration (scipy, DOP853) [m, rad, m/s, rad/s].
-        output_step: spacing of the returned samples [s].
+        output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 0.5 ms. They
+            are evenly spaced, and the last is the end of the run.
 
     Raises:
         ValueError: if the contacts do not fit the case, for a tolerance or step out of range, or a tie that yields.
@@ -55,29 +57,31 @@ def solve_compliant(
     require_kind("contacts", contacts, Contacts)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
     atol = require_within("atol", atol, 1e-16, 0.1)
-    output_step = require_within("output_step", output_step, 1e-7, 10.0, "s")
+    spacing = required_spacing(output_step, case.duration, 5e-4)
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)
     warn_of_low_stop(case)
     started = time.perf_counter()
     system = Wall(case, contacts)
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)
-    fine = min(output_step, 1e-3 / wall.p)  # peaks and impacts are read off the samples
-    require_size("the samples of this answer", case.duration / fine, "follow it for less")
-    sampled, history, evaluations, switches = _integrated(system, case, fine, period, rtol, atol)
+    count = intervals(case.duration, spacing)
+    parts = intervals(case.duration / count, 1e-3 / wall.p)  # peaks and impacts are read off finer samples
+    require_size("the samples of this answer", count * parts, "follow it for less")
+    output = np.linspace(0.0, case.duration, count * parts + 1)
+    sampled, history, evaluations, switches = _integrated(system, case, output, period, rtol, atol)
     theta, omega = history[:, 2], history[:, 5]
     energy = system.energy(history)
     uplift = Uplift.of(case, contacts)
     _, peaks, impacts = rocking_history(case, sampled, theta, omega, energy, uplift)
-    stride = max(1, round(output_step / fine))
-    outcome, message = ending(case, sampled, theta, energy, uplift.energy)
+    kept = thinned(len(sampled), parts)
+    outcome, message = ending(case, sampled, theta, energy, uplift.energy, history[-1, 3:6])
     return Response(
         case=case,
         solver="compliant",
-        t=sampled[::stride],
-        pose=history[::stride, None, :3],
-        velocity=history[::stride, None, 3:6],
-        energy=energy[::stride],
+        t=sampled[kept],
+        pose=history[kept, None, :3],
+        velocity=history[kept, None, 3:6],
+        energy=energy[kept],
         rocking=Rocking(impacts, peaks),
         outcome=outcome,
         message=message,
@@ -96,9 +100,9 @@ def solve_compliant(
 
 
 def _integrated(
-    system: Wall, case: Case, fine: float, period: float, rtol: float, atol: float
+    system: Wall, case: Case, output: Array, period: float, rtol: float, atol: float
 ) -> tuple[Array, Array, int, int]:
-    """Times [s] and states at most `fine` apart, and how many evaluations and switches they took.
+    """The times of the output up to the end [s] and states, and how many evaluations and switches they took.
 
     States have the shape (n, 6 + sliders): behind them stand the places of the sliders of friction dampers. The
     integration is split where friction catches or releases the base, and where a slider begins to slip or to stick.
@@ -116,7 +120,6 @@ def _integrated(
     t, y = 0.0, system.released()
     held, changes = system.edge_load(t, y) > 0, [slider_event(system, i) for i in range(len(system.sliders))]
     fired = [False] * len(changes)
-    output = np.linspace(0.0, case.duration, max(2, math.ceil(case.duration / fine) + 1))
     system.settle(y, fired)
     states, times = [system.with_places(y[:, None])], [np.zeros(1)]
     evaluations = switches = 0

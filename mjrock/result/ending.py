@@ -17,15 +17,20 @@ class Outcome(enum.Enum):
     TIME_ENDED = "time ended"
 
 
-def ending(case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float) -> tuple[Outcome, str]:
+def ending(
+    case: Case, t: Array, theta: Array, energy: Array, uplift_energy: float, velocity: Array
+) -> tuple[Outcome, str]:
     """How a run on compliant contacts ended, and the same in words.
 
-    The wall is at rest when its energy above the settled wall no longer lifts an edge off the base. It has overturned
-    when it lies on its face or ends beyond the rotation from which weight, loads, thrusts and ties bring it back.
+    The wall is at rest when its energy above the settled wall no longer lifts an edge off the base, nor does its
+    kinetic energy alone: a wall that a thrust pushes along has less than at rest. `velocity` is that at the end, shape
+    (3,). The wall has overturned when it lies on its face or ends beyond the rotation from which weight, loads, thrusts
+    and ties bring it back.
     """
+    kinetic = 0.5 * float(velocity**2 @ [case.wall.mass, case.wall.mass, case.wall.inertia])
     if not case.returns_from(theta[-1:])[0]:
         outcome = Outcome.OVERTURNED
-    elif energy[-1] < uplift_energy:
+    elif max(energy[-1], kinetic) < uplift_energy:
         outcome = Outcome.AT_REST
     else:
         outcome = Outcome.TIME_ENDED

@@ -46,6 +46,9 @@ class Ledger:
         ground: work that the ground motion has put in, as seen from the base.
         ties: work that yielding ties have taken since the release, by tie.
         broken: elastic energy that ties have lost by breaking since the release, by tie; only those that may break.
+        ends: energy that contacts of masonry have lost at the ends of faces since the release, those of "joints" and
+            of "encounters". A contact that passes the end of its face leaves what its spring held, and its force
+            turns from the normal of one face to that of the other. Negative where energy was gained.
     """
 
     t: Array
@@ -57,6 +60,7 @@ class Ledger:
     ground: Array
     ties: Mapping[str, Array] = field(default_factory=dict)
     broken: Mapping[str, Array] = field(default_factory=dict)
+    ends: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def held(self) -> Array:
@@ -69,7 +73,7 @@ class Ledger:
 
         It is zero for an exact integration. A positive residual is energy that nothing has put in.
         """
-        taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values())
+        taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values(), *self.ends.values())
         gone = sum(taken, self.friction) - self.ground
         total: Array = self.held + gone
         return np.asarray(total - total[0])
@@ -89,6 +93,7 @@ class Ledger:
             [f"{group} dashpots {account[-1]:.4g}" for group, account in self.dashpots.items()]
             + [f"{tie} {account[-1]:.4g}" for tie, account in self.ties.items()]
             + [f"breaking of {tie} {account[-1]:.4g}" for tie, account in self.broken.items()]
+            + [f"ends of faces of {kind} {account[-1]:.4g}" for kind, account in self.ends.items()]
         )
         return (
             f"<Ledger over {self.t[-1]:.4g} s [J]: at the end held {self.held[-1]:.4g}, taken by {taken}, "

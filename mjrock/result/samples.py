@@ -2,10 +2,32 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..quantities import Array
+from ..quantities import Array, Integers, require_within
+
+ROUNDING = 1e-12
+"""Part of an interval that is put down to rounding, over the number of intervals [-]."""
+
+
+def required_spacing(output_step: float | None, duration: float, otherwise: float = 1e-3) -> float:
+    """The largest spacing of samples that is asked for, checked; `otherwise` where none is [s]."""
+    if output_step is None:
+        return min(otherwise, duration)
+    return require_within("output_step", output_step, 1e-9, duration, "s")
+
+
+def intervals(duration: float, spacing: float) -> int:
+    """The fewest equal intervals of a duration that are not longer than a spacing, at least one."""
+    return max(1, math.ceil(duration / spacing * (1 - ROUNDING)))
+
+
+def thinned(count: int, stride: int) -> Integers:
+    """Numbers of every `stride`-th of some samples, and of the last, which is the end of a run."""
+    return np.unique(np.append(np.arange(0, count, stride), count - 1))
 
 
 @jitable

@@ -1,6 +1,6 @@
-"""The formula of the longest stable step of the explicit scheme, and the share of it that is taken.
+"""The formula of the longest stable step of the explicit scheme, the share of it that is taken, and what steps take.
 
-It stands here since the engine estimates the time of explicit steps with it. The eigenvalues of a system are in
+They stand here since the engine estimates the time of explicit steps with them. The eigenvalues of a system are in
 `distinct.limit`.
 
 A mode of the frequency omega and the damping ratio xi is stable up to h = (2 / omega) (sqrt(1 + xi^2) - xi), since the
@@ -10,9 +10,36 @@ dashpots take the velocity half a step before the pose.
 from __future__ import annotations
 
 import math
+import warnings
+
+from ..quantities import Implausible
 
 SHARE = 0.4
 """Step that is taken for masonry, over the longest stable one [-]."""
+SPRUNG, RIGID = 50e-9, 110e-9
+"""Time of an explicit step a line, with shear springs and with rigid friction [s]
+(`scripts/studies/solvers_of_masonry.py`)."""
+SPRUNG_IN_SPACE, RIGID_IN_SPACE = 120e-9, 800e-9
+"""`SPRUNG` and `RIGID` for a point in space [s]. `scripts/studies/columns_in_space.py` finds 65e-9 to 280e-9 and 300e-9
+to 1600e-9, with how busy the machine is."""
+TINY = 1e-3
+"""Step over the one that a scene needs below which it is doubted [-]."""
+
+
+def stepping_seconds(steps: float, lines: int, *, sprung: bool, in_space: bool) -> float:
+    """Time that explicit steps of contact lines or points take [s], with shear springs or with rigid friction."""
+    of_springs, of_friction = (SPRUNG_IN_SPACE, RIGID_IN_SPACE) if in_space else (SPRUNG, RIGID)
+    return steps * lines * (of_springs if sprung else of_friction)
+
+
+def warn_if_tiny(timestep: float, needed: float) -> None:
+    """Warn of a step far below the one that a scene needs [s]."""
+    if timestep < TINY * needed:
+        warnings.warn(
+            f"timestep = {timestep:.3g} s, and {needed:.3g} s is short enough for these contacts: is it in s?",
+            Implausible,
+            stacklevel=3,
+        )
 
 
 def stable_step(stiffness: float, damping: float) -> float:

@@ -57,6 +57,15 @@ def coupling(products: Array, v: Array) -> float:
     return total
 
 
+def kinetic_energies(masses: Array, products: Array, velocity: Array) -> Array:
+    """Kinetic energy of each body [J], shape (n,), for velocities of shape (n, nv)."""
+    energies: Array = 0.5 * (masses.reshape(velocity.shape) * velocity**2).sum(axis=1)
+    if len(products):
+        x, y, z = velocity[:, 3:].T
+        energies += (products * np.column_stack([x * y, x * z, y * z])).sum(axis=1)
+    return energies
+
+
 @inlined
 def angular_momentum(masses: Array, products: Array, body: int, spin: Vector) -> Vector:
     """Angular momentum of a body of space about its centroid, in its axes [kg m2/s]."""

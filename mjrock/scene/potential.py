@@ -28,6 +28,7 @@ from ..geometry.kinematics import (
 from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, sprung
+from ..problem.masonry.joint_law import Law, normal_force, stored
 from ..quantities import GRAVITY, Array, Integers
 from .structure import Structure, force_energy, weight_energy
 
@@ -54,6 +55,15 @@ class Potential:
         """How far each spring is pressed or stretched [m], zero where it is open, shape (m + t,)."""
         pressed: Array = np.maximum(-self.openings(pose), 0.0)
         return pressed
+
+    @property
+    def law(self) -> Law:
+        """The law of contacts and ties at rest, along their normals."""
+        return Law(k=self.springs)
+
+    def pushes(self, pose: Array) -> Array:
+        """Force of each spring that is pressed or stretched [N], zero where it is open, shape (m + t,)."""
+        return np.asarray(normal_force(self.law, self.openings(pose), 0.0))
 
     def rates(self, pose: Array) -> csr_array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
@@ -109,13 +119,13 @@ class Potential:
     def energy(self, pose: Array) -> float:
         """Energy of springs, weight and constant forces [J]."""
         places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
-        elastic = 0.5 * float(self.springs @ self.pressed(pose) ** 2)
+        elastic = float(stored(self.law, self.openings(pose)).sum())
         weight = weight_energy(masses, pose, places.axes)
         return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom), places.axes))
 
     def gradient(self, pose: Array) -> Array:
         """Derivatives of the energy, shape (n nv,)."""
-        gradient: Array = -self.load(pose) - self.rates(pose).T @ (self.springs * self.pressed(pose))
+        gradient: Array = -self.load(pose) - self.rates(pose).T @ self.pushes(pose)
         return gradient
 
     def stiffness(self, pose: Array, springs: Array) -> csr_array:
@@ -132,7 +142,7 @@ class Potential:
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
         frames, none, nv = frames_of(pose, places.freedom), np.zeros_like(masses), places.freedom.nv
-        acting = self.springs * self.pressed(pose)
+        acting = self.pushes(pose)
         bent = np.zeros((len(acting), 2 * nv, 2 * nv))
         _curvatures(places, ties, frames, none, acting, bent)
         bodies = np.repeat(self._bodies, nv, axis=1)

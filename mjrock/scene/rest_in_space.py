@@ -2,7 +2,7 @@
 
 Points push only. Along the face each has a spring with a slider that slips where the spring would pass the friction.
 Where many slip, friction accumulates from pose to pose as it does in the explicit steps. The search is Newton's method.
-With the whole spring of a point that slips it overshoots no pose but is slow, with none of it it ends soon or never.
+Keeping the shear stiffness of slipping points converges safely and slowly; dropping it converges fast or not at all.
 The share of the spring is therefore halved from pose to pose, and is whole again when more force is missing than
 before.
 """
@@ -18,6 +18,7 @@ from scipy.sparse.linalg import splu
 from ..geometry.frames import SPACE
 from ..geometry.poses import moved, turned
 from ..linear import is_definite, sprung
+from ..problem.masonry.joint_law import Law, normal_force, shear_limit
 from ..quantities import Array, Flags
 from .equilibrium import FLAT, LEANING, TURNED, UnsettledError, tolerance, touching
 from .potential import Potential
@@ -34,7 +35,7 @@ time that more force is missing than before [-]."""
 
 ENDED = 0.5
 """Force that is missing, over that of the pose before, above which a pose that is near enough ends the search [-].
-What only rounding parts, as two faces that touch without a force, is then parted by less than positions resolve."""
+Faces that touch without force are then apart by less than the resolution of the coordinates."""
 
 
 class Grips(NamedTuple):
@@ -96,9 +97,9 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
     m, openings, closed = len(friction), potential.openings(pose), touching(potential, pose)
     slider = np.zeros((m, 2))
     for tried in range(poses):
-        rates, push = potential.rates(pose), k * np.maximum(-openings, 0.0)
-        most = np.where(closed[:m] & (friction > 0), friction * push[:m], -np.inf)
-        grips = grips_at(potential, pose, most, (shear * k[:m], slider))
+        rates, push = potential.rates(pose), normal_force(potential.law, openings, 0.0)
+        limit = np.where(closed[:m] & (friction > 0), shear_limit(Law(friction=friction), push[:m]), -np.inf)
+        grips = grips_at(potential, pose, limit, (shear * k[:m], slider))
         held = grips.rates[0].T @ grips.drag[:, 0] + grips.rates[1].T @ grips.drag[:, 1]
         missing = (potential.load(pose) + rates.T @ push + held) / size
         left, slider = float(np.abs(missing).sum()), grips.slider if accumulates else slider
@@ -121,20 +122,20 @@ def searched(potential: Potential, friction: Array, search: tuple[float, int, bo
     raise UnsettledError(pose.reshape(-1, 7))
 
 
-def grips_at(potential: Potential, pose: Array, most: Array, shear: tuple[Array, Array]) -> Grips:
+def grips_at(potential: Potential, pose: Array, limit: Array, shear: tuple[Array, Array]) -> Grips:
     """Friction at a pose.
 
     Args:
         potential: of the scene.
         pose: shape (7 n,).
-        most: that each point can have, negative for one that slips freely [N], shape (m,).
+        limit: of the friction of each point, negative for one that slips freely [N], shape (m,).
         shear: their shear stiffnesses [N/m], shape (m,), and where their sliders were before [m], shape (m, 2).
     """
     k_s, slider = shear
     stretch = potential.slips(pose) - slider
     held = k_s * np.linalg.norm(stretch, axis=1)
-    slips = held > most
-    stays = np.where(slips, np.maximum(most, 0.0) / np.where(held > 0, held, 1.0), 1.0)
+    slips = held > limit
+    stays = np.where(slips, np.maximum(limit, 0.0) / np.where(held > 0, held, 1.0), 1.0)
     stiffness, slider = stays * k_s, slider + (1 - stays)[:, None] * stretch
     return Grips(potential.slip_rates(pose), -stiffness[:, None] * stretch, stiffness, slips, slider)
 

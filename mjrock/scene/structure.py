@@ -11,6 +11,7 @@ from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import Freedom, take_frames
 from ..geometry.kinematics import Forces, Places, Ties, depth, displacement, slack, stretch
 from ..geometry.vectors import dot, vector
+from ..problem.masonry.joint_law import Law, stored
 from ..quantities import GRAVITY, Array, Integers
 from .masses import coupling
 
@@ -41,8 +42,8 @@ class Structure(NamedTuple):
 @jitable
 def spring_energy(places: Places, k: Array, i: int, frames: Array) -> float:
     """Energy in the spring of contact i [J]."""
-    pressed = max(depth(places, i, frames), 0.0)
-    return 0.5 * k[i] * pressed * pressed
+    energy: float = stored(Law(k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
+    return energy
 
 
 @inlined

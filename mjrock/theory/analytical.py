@@ -18,6 +18,7 @@ from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size
 from ..result.ending import Outcome, describe
 from ..result.response import Response
 from ..result.rocking import Impact, Rocking
+from ..result.samples import intervals, required_spacing
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .forced import rock_forced
 from .free import rock_freely
@@ -30,7 +31,7 @@ def solve_analytical(
     *,
     rtol: float = 1e-10,
     atol: float = 1e-12,
-    output_step: float = 1e-3,
+    output_step: float | None = None,
     rest: float = 1e-9,
 ) -> Response:
     """Rocking of a rigid wall by integrating Eq. 1 from peak to impact to peak, free or over a shaken base.
@@ -48,7 +49,8 @@ def solve_analytical(
         e: the coefficients of restitution.
         rtol, atol: tolerances of the integration of free arcs (scipy, DOP853), on rotation [rad] and velocity [rad/s];
             `rtol` sets the longest step of forced ones, see `mjrock.theory.forced`.
-        output_step: spacing of the returned samples [s].
+        output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. They are
+            evenly spaced, and the last is the end of the run.
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
 
     Raises:
@@ -64,9 +66,9 @@ def solve_analytical(
     require_kind("e", e, Restitution)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
     atol = require_within("atol", atol, 1e-16, 0.1)
-    output_step = require_within("output_step", output_step, 1e-7, 1e6, "s")
+    spacing = required_spacing(output_step, case.duration)
     rest = require_within("rest", rest, 1e-30, 0.1)
-    require_size("the samples of this answer", case.duration / output_step, "raise output_step or follow it for less")
+    require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warnings.warn(unlike, Implausible, stacklevel=2)
@@ -74,7 +76,7 @@ def solve_analytical(
     motion = _rocking(case, e, rtol, atol, rest)
     outcome = _outcome(case, motion)
     t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
-    samples = np.linspace(0.0, t_end, max(2, math.ceil(t_end / output_step) + 1))
+    samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
     theta, omega = motion.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
     pose, velocity = case.wall.motion(theta, omega)

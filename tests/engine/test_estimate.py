@@ -6,16 +6,8 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.estimate import (
-    RIGID,
-    RIGID_IN_SPACE,
-    SHARE,
-    SPRUNG,
-    SPRUNG_IN_SPACE,
-    explicit_seconds,
-    fitted_seconds,
-    warn_if_slow,
-)
+from mjrock.engine.estimate import explicit_seconds, fitted_seconds, warn_if_slow
+from mjrock.scene.explicit_step import RIGID, RIGID_IN_SPACE, SHARE, SPRUNG, SPRUNG_IN_SPACE
 from scripts.measure.masonry_precision import PULSE, column
 
 ARCH = mr.Masonry.arch(5.0, 0.75, voussoirs=12)

@@ -83,3 +83,16 @@ def test_modules_and_functions_are_short(path):
             assert lines <= LONGEST_FUNCTION, f"{node.name} has {lines} lines beside its docstring"
             arguments = [argument for argument in node.args.args if argument.arg not in ("self", "cls")]
             assert not numerics or len(arguments) <= MOST_ARGUMENTS, f"{node.name} takes {len(arguments)} arguments"
+
+
+def test_no_name_stands_twice_in_the_explicit_steps():
+    """There is one text for the plane and for space."""
+    modules = [path for path in MODULES if path.relative_to(ROOT).parts[0] == "distinct"]
+    defined = [
+        node.name
+        for path in modules
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+    ]
+    assert len(modules) > 10
+    assert sorted(defined) == sorted(set(defined))

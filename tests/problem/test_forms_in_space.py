@@ -94,6 +94,20 @@ def facade(*openings, **options):
     return mr.Masonry.facade(**arguments, openings=openings)
 
 
+@pytest.mark.parametrize("apart", [(0.8, 0.0), (0.0, 0.6)], ids=["side by side", "one above the other"])
+@pytest.mark.parametrize("turned", [False, True])
+def test_lintels_may_just_touch(apart, turned):
+    """Openings of a unit and two courses: lintels end a half unit beside them and a course above."""
+    y, sill = apart
+    pair = (0.0, mr.Opening(0.4, 0.4, 0.2)), (y, mr.Opening(0.4, 0.4, 0.2 + sill))
+    made = mr.Masonry.facade(4.0, 2.4, 0.8, UNIT, openings=pair[::-1] if turned else pair, xi=0)
+    lengths = Counter(round(float(np.ptp(block.corners[:, 1])), 9) for block in made.blocks)
+    assert lengths[0.8] == 2  # the lintels
+    nearer = (y and y - 0.2, mr.Opening(0.4, 0.4, 0.2 + (sill and sill - 0.2)))
+    with pytest.raises(ValueError, match="or the lintels over them, overlap"):
+        mr.Masonry.facade(4.0, 2.4, 0.8, UNIT, openings=[pair[0], nearer], xi=0)
+
+
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [

@@ -165,7 +165,7 @@ def test_the_end_is_judged_by_the_last_sample(two_sided, wall, energy, theta, ou
     """Energy in shares of that of uplift, rotation in shares of alpha; what was before the last sample is no matter."""
     t, uplift = np.array([0.0, 1.0, 2.0]), 3.0
     last = np.array([5.0, 0.0, energy]) * uplift, np.array([0.0, 0.5, theta]) * wall.alpha
-    found, message = ending(two_sided, t, last[1], last[0], uplift)
+    found, message = ending(two_sided, t, last[1], last[0], uplift, np.zeros(3))
     assert found is outcome
     assert "2 s" in message
 

@@ -93,3 +93,8 @@ def test_a_start_does_not_say_what_ties_have_yielded():
     case = mr.MasonryCase(MASONRY, 0.1, effects=mr.Tie(3.0, 1e6, strength=1e3, block=2))
     with pytest.raises(ValueError, match="start does not say what ties have yielded"):
         mr.simulate(case, start=(np.zeros((2, 3)), np.zeros((2, 3))))
+
+
+def test_ties_that_do_not_yield_go_with_a_start():
+    case = mr.MasonryCase(MASONRY, 0.01, effects=mr.Tie(3.0, 1e6, block=2))
+    assert np.array_equal(mr.simulate(case, start=(np.zeros((2, 3)), np.zeros((2, 3)))).pose[0], np.zeros((2, 3)))

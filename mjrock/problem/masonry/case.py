@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, keep, require_array, require_kind, require_whole, require_within
+from ...quantities import Array, Implausible, keep, require_array, require_kind, require_whole, require_within
 from ..ground.motion import GroundMotion
 from ..wall.effect import Effect
 from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import LATER, require_in_plane
 from .effects import require_in_space
 from .masonry import Masonry
+from .plausible import doubts
 from .support import supports_of
 
 FASTEST = 1e3
@@ -45,7 +47,11 @@ class MasonryCase(Carrying):
         transverse: in space, the acceleration of the ground along y, or None; `motion` is that along x.
 
     Raises:
-        ValueError: for a value outside its range, velocities of another shape, or an effect that is not on its block.
+        ValueError: for a value outside its range, velocities of another shape, an effect that is not on its block, or
+            a support that is no fixed block of the masonry.
+
+    Warns:
+        Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
     """
 
     masonry: Masonry
@@ -75,6 +81,8 @@ class MasonryCase(Carrying):
             keep(self, velocity=velocity)
         self._require_effects()
         keep(self, supports=supports_of(self.masonry, self.supports))
+        for doubt in doubts(self):
+            warnings.warn(doubt, Implausible, stacklevel=3)
 
     def _require_effects(self) -> None:
         """Check that each effect is on a block that is not fixed, and keep them as a tuple."""

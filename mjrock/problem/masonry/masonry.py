@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...quantities import Array, frozen, keep, require_whole, require_within, shown
+from ...quantities import Array, Implausible, frozen, keep, require_whole, require_within, shown
 from ..damping.contacts import Law, required_law
 from .builders import MOST_BLOCKS, Forms
 from .exchange import Exchange
@@ -22,6 +23,13 @@ from .of_joint import OF_JOINTS, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
+
+FAR = 30.0
+"""How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
+OVERDAMPED = 30.0
+"""Damping ratio of the lowest mode above which the frequency that xi refers to is doubted [-]."""
+UNDAMPED = 1e-4
+"""The same below which it is doubted [-], where xi is a hundred times as much."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +74,9 @@ class Masonry(Forms, FormsInSpace, Exchange):
 
     Raises:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
+
+    Warns:
+        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd.
     """
 
     blocks: tuple[Any, ...]
@@ -112,10 +123,11 @@ class Masonry(Forms, FormsInSpace, Exchange):
                 raise ValueError(f"{given} is given with a law, which has its own; leave it")
         if not self.joints:
             raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
-        for name in OF_JOINTS:
-            values_of(name, getattr(self, name), self.joints)
+        _ = self.joint_stiffness, self.joint_friction, self.joint_damping, self.joint_shear  # checks what they hold
         if self.law is not None:
             _ = self.retardation
+        elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
+            warnings.warn(odd, Implausible, stacklevel=3)
 
     @property
     def in_space(self) -> bool:
@@ -158,6 +170,11 @@ class Masonry(Forms, FormsInSpace, Exchange):
         return values_of("friction", self.friction, self.joints)
 
     @cached_property
+    def joint_damping(self) -> Array:
+        """xi of each joint [-], shape (joints,)."""
+        return values_of("xi", self.xi, self.joints)
+
+    @cached_property
     def joint_shear(self) -> Array:
         """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
         return values_of("k_s", self.k_s, self.joints)
@@ -172,8 +189,30 @@ class Masonry(Forms, FormsInSpace, Exchange):
         """c/k of each joint [s], shape (joints,)."""
         if self.law is not None:
             return retardations(self.blocks, self.joints, self.joint_stiffness, self.points, self.law)
-        xi = values_of("xi", self.xi, self.joints)
-        if not xi.any():
-            return np.zeros(len(xi))
-        omega = self.frequency or lowest_frequency(self.blocks, self.lines, self.joint_friction)
-        return np.asarray(2 * xi / omega)
+        if not self.joint_damping.any():
+            return np.zeros(len(self.joints))
+        return np.asarray(2 * self.joint_damping / (self.frequency or self._lowest_frequency))
+
+    @cached_property
+    def _lowest_frequency(self) -> float:
+        return lowest_frequency(self.blocks, self.lines, self.joint_friction)
+
+    def _doubt_of_frequency(self, frequency: float) -> str:
+        """What is odd about a given frequency [rad/s], in words, empty where nothing is.
+
+        With the lowest one of the masonry it makes of xi the damping ratio of that mode, which says whether c/k is odd.
+        """
+        xi = float(self.joint_damping.max())
+        try:
+            lowest = self._lowest_frequency if xi else 0.0
+        except ValueError:  # no joint that a motion could compress
+            lowest = 0.0
+        found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
+        overdamped = found > OVERDAMPED and lowest > FAR * frequency
+        if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
+            return ""
+        return (
+            f"frequency = {frequency:g} rad/s, and the lowest one of this masonry is {lowest:.3g} rad/s: with xi = "
+            f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
+            "rad/s, and None takes the lowest"
+        )

@@ -11,6 +11,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, v
 
 from ...linear import loose
 from ...quantities import GRAVITY, Array
+from .joint_law import Law, shear_limit
 from .lines import rates, slips
 from .masonry import Masonry
 
@@ -124,7 +125,7 @@ def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = 
     rubbing = [rates(masonry.blocks, lines, along) for along in across or lines.across]
     turns = 2 * math.pi * np.arange(count) / count
     spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(rubbing)]
-    rubbed = diags_array(friction[lines.joint])
+    rubbed = diags_array(shear_limit(Law(friction=friction[lines.joint]), 1.0))  # along the face, of a unit pressure
     rows = [pressing + rubbed @ sum(share * along for share, along in zip(e, rubbing, strict=True)) for e in spread]
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 

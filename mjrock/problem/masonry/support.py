@@ -21,13 +21,13 @@ class Support:
     """How a fixed block is displaced.
 
     Args:
-        block: its number in the masonry.
+        block: its name.
         t: times [s], increasing. Before the first and after the last the block rests.
         dx, dz: displacements from where it is drawn, linear in between [m].
         dy: the same along y, in space; None in the plane.
     """
 
-    block: int
+    block: str
     t: tuple[float, ...]
     dx: tuple[float, ...]
     dz: tuple[float, ...]
@@ -36,16 +36,22 @@ class Support:
     @property
     def displacement(self) -> Array:
         """Displacements [m], shape (samples, 2), in space (samples, 3)."""
-        return np.column_stack([self.dx, self.dz] if self.dy is None else [self.dx, self.dy, self.dz])
+        return np.column_stack(self.histories[1:])
+
+    @property
+    def histories(self) -> tuple[tuple[float, ...], ...]:
+        """t, dx and dz, in space t, dx, dy and dz."""
+        return (self.t, self.dx, self.dz) if self.dy is None else (self.t, self.dx, self.dy, self.dz)
 
 
 def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     """The supports, from a mapping of names of fixed blocks to (t, dx, dz), in space to (t, dx, dy, dz).
 
-    A TypeError or ValueError names the block and what is wrong.
+    Supports of an earlier case are checked likewise: the masonry may be another one. A TypeError or ValueError names
+    the block and what is wrong.
     """
     if isinstance(given, tuple) and all(isinstance(support, Support) for support in given):
-        return given
+        given = {support.block: support.histories for support in given}
     require_kind("supports", given, Mapping)
     fixed = [masonry.names[i] for i, block in enumerate(masonry.blocks) if block.fixed]
     labels = ("t", "dx", "dy", "dz") if masonry.in_space else ("t", "dx", "dz")
@@ -54,7 +60,8 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
         if name not in fixed:
             raise ValueError(f"supports: {shown(name)} is no fixed block; the valid ones are {', '.join(fixed)}")
         if not isinstance(histories, list | tuple) or len(histories) != len(labels):
-            raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted})")
+            where = "in space" if masonry.in_space else "in the plane"
+            raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted}), which masonry {where} takes")
         pairs = zip(labels, histories, strict=True)
         rows = {label: require_row(f"supports, {name}, {label}", values, "number") for label, values in pairs}
         lengths = [len(row) for row in rows.values()]
@@ -68,7 +75,5 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
             raise ValueError(
                 f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST:g} m"
             )
-        supports.append(
-            Support(masonry.names.index(name), **{label: tuple(row.tolist()) for label, row in rows.items()})
-        )
+        supports.append(Support(name, **{label: tuple(row.tolist()) for label, row in rows.items()}))
     return tuple(supports)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...quantities import GRAVITY, Implausible
+from ..ground.motion import GroundMotion
+from .effect import Effect
 from .effects import AddedMass, Load, Thrust
 from .tie import Tie
 from .ties_on_wall import moment_at_strength, pulled
@@ -83,40 +86,68 @@ def _of_release(case: Any) -> list[str]:
 
 
 def _of_motion(case: Any) -> list[str]:
-    motion = case.motion
+    start = max(case.restoring.outer.P, 0.0) / (case.wall.weight * case.wall.centroid_height)
+    at_rest = not case.omega0 and not case.theta0 and case.vertical is None
+    return of_motion(case.motion, case.duration, "wall", start if at_rest else math.inf)
+
+
+def of_motion(motion: GroundMotion | None, duration: float, called: str, start: float) -> list[str]:
+    """What is odd about the record of a run of a duration [s].
+
+    Args:
+        motion, duration: the record and the duration.
+        called: what is shaken.
+        start: acceleration over g at which it starts to move from rest [-], infinite where that is not asked.
+    """
     if motion is None:
         return []
-    found = []
-    start = max(case.restoring.outer.P, 0.0) / (case.wall.weight * case.wall.centroid_height)
-    peak = motion.peak / GRAVITY
-    at_rest = not case.omega0 and not case.theta0 and case.vertical is None
-    if 0 < peak < FAINT * start and start <= motion.peak <= IN_G and at_rest:
+    found, peak = [], motion.peak / GRAVITY
+    if 0 < peak < FAINT * start and start <= motion.peak <= IN_G:
         found.append(
-            f"the record peaks at {peak:.3g} g; this wall starts to rock at {start:.3g} g: is the record in g? "
+            f"the record peaks at {peak:.3g} g; this {called} starts to rock at {start:.3g} g: is the record in g? "
             "Accelerations are in m/s2"
         )
-    if case.duration < motion.duration:
-        steps = max(round(case.duration / motion.dt), 1)
+    if duration < motion.duration:
+        steps = max(round(duration / motion.dt), 1)
         total, kept = float((motion.accel**2).sum()), float((motion.accel[: steps + 1] ** 2).sum())
         if kept < (1 - CUT_OFF) * total:
             found.append(
-                f"the run of {case.duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
+                f"the run of {duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
                 f"{1 - kept / total:.0%} of its Arias intensity"
             )
     return found
 
 
 def _of_effects(case: Any) -> list[str]:
+    def room(tie: Tie) -> tuple[float, float]:
+        pull, far = case.pulls[case.each(Tie).index(tie)], max(case.restoring.outer.alpha, case.wall.alpha)
+        return 2 * case.block.b, float(pulled(pull, far, 1.0)[0]) + tie.slack
+
+    return of_effects(case.effects, Whole("wall", "the wall", case.block.mass), room)
+
+
+class Whole(NamedTuple):
+    """What effects act on: what it is called, what a tie holds of it, and its mass without what is added [kg]."""
+
+    called: str
+    held: str
+    mass: float
+
+
+def of_effects(effects: Sequence[Effect], whole: Whole, room: Callable[[Tie], tuple[float, float]]) -> list[str]:
+    """What is odd about effects. `room` is how thick the thing is that a tie holds, and how far it opens [m]."""
     found = []
-    weight = case.block.weight
-    for i, effect in enumerate(case.effects):
+    weight = whole.mass * GRAVITY
+    for i, effect in enumerate(effects):
         name = f"effects[{i}], {type(effect).__name__}"
         if isinstance(effect, Thrust | Load) and 0 < abs(effect.force) < NEGLIGIBLE * weight:
-            found.append(_too_little(name, "force", effect.force, weight))
-        elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE * case.block.mass:
-            found.append(f"{name}: mass = {effect.mass:g} kg, that of the wall {case.block.mass:.3g} kg: is it in t?")
+            found.append(_too_little(name, "force", effect.force, whole))
+        elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE * whole.mass:
+            found.append(
+                f"{name}: mass = {effect.mass:g} kg, that of the {whole.called} {whole.mass:.3g} kg: is it in t?"
+            )
         elif isinstance(effect, Tie):
-            found += _of_tie(case, name, effect)
+            found += _of_tie(name, effect, whole, room)
     return found
 
 
@@ -139,26 +170,25 @@ def _of_free_part(case: Any) -> list[str]:
     ]
 
 
-def _of_tie(case: Any, name: str, tie: Tie) -> list[str]:
+def _of_tie(name: str, tie: Tie, whole: Whole, room: Callable[[Tie], tuple[float, float]]) -> list[str]:
     """At most one doubt about a tie."""
-    if tie.strength < NEGLIGIBLE * case.block.weight:
-        return [_too_little(name, "strength", tie.strength, case.block.weight)]
+    if tie.strength < NEGLIGIBLE * whole.mass * GRAVITY:
+        return [_too_little(name, "strength", tie.strength, whole)]
     if tie.stiffness > STIFFEST:
         return [f"{name}: stiffness = {tie.stiffness:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"]
-    if math.isfinite(tie.strength) and tie.stretch > 2 * case.block.b:
+    thickness, opens = room(tie)
+    if math.isfinite(tie.strength) and tie.stretch > thickness:
         return [
-            f"{name} yields at an elongation of {tie.stretch:.3g} m, and the wall is {2 * case.block.b:g} m thick: is "
+            f"{name} yields at an elongation of {tie.stretch:.3g} m, and {whole.held} is {thickness:g} m thick: is "
             "its stiffness in N/m?"
         ]
-    pull = case.pulls[case.each(Tie).index(tie)]
-    opens = float(pulled(pull, max(case.restoring.outer.alpha, case.wall.alpha), 1.0)[0]) + tie.slack
     if tie.slack > opens > 0:
         return [
-            f"{name}: slack = {tie.slack:g} m, and where it is held the wall opens by {opens:.3g} m until it "
+            f"{name}: slack = {tie.slack:g} m, and where it is held the {whole.called} opens by {opens:.3g} m until it "
             "overturns: is the slack in m?"
         ]
     return []
 
 
-def _too_little(name: str, what: str, value: float, weight: float) -> str:
-    return f"{name}: {what} = {value:g} N, and the wall weighs {weight:.3g} N: is it in kN?"
+def _too_little(name: str, what: str, value: float, whole: Whole) -> str:
+    return f"{name}: {what} = {value:g} N, and the {whole.called} weighs {whole.mass * GRAVITY:.3g} N: is it in kN?"

@@ -1,0 +1,113 @@
+"""The ledger of explicit steps closes: what no account had before, each in the smallest scene that shows it."""
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+SOFT = {"k_n": 2e5, "friction": 0.5, "xi": 0.0}
+"""Joints into which a cube of 1 m sinks by 0.1 m."""
+
+
+def cube_on_ground(in_space, **options):
+    if in_space:
+        ground = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")
+        return mr.Masonry([ground, mr.Polyhedron.box((1, 1, 1), (0, 0, 0.5))], **options)
+    ground = mr.Polygon([(-10, -1), (10, -1), (10, 0), (-10, 0)], fixed=True, name="ground")
+    return mr.Masonry([ground, mr.Polygon([(-0.5, 0), (0.5, 0), (0.5, 1), (-0.5, 1)])], **options)
+
+
+def cube_beside_a_table(in_space, **options):
+    """A table whose end is at x = 0, and 4.5 m beyond it a cube on the ground."""
+    if in_space:
+        box = mr.Polyhedron.box
+        table = box((2, 3, 1), (-1, 0, 0.5), fixed=True, name="table")
+        blocks = [box((20, 20, 1), (0, 0, -0.5), fixed=True), table, box((1, 1, 1), (5.0, 0, 0.5))]
+    else:
+        corners = ((-10, -1), (10, -1), (10, 0), (-10, 0)), ((-2, 0), (0, 0), (0, 1), (-2, 1))
+        blocks = [mr.Polygon(places, fixed=True) for places in corners]
+        blocks.append(mr.Polygon([(4.5, 0), (5.5, 0), (5.5, 1), (4.5, 1)]))
+    return mr.Masonry(blocks, **options)
+
+
+def thrown(masonry, in_space, place, turn, velocity, duration=0.45, timestep=4e-4):
+    """The cube starts with its centroid displaced, turned by an angle [rad], with a velocity in x and z."""
+    (x, z), (vx, vz) = place, velocity
+    if in_space:
+        start = [[x, 0, z, np.cos(turn / 2), 0, np.sin(turn / 2), 0]], [[vx, 0, vz, 0, 0, 0]]
+    else:
+        start = [[x, z, turn]], [[vx, vz, 0]]
+    pose, velocity = (np.array(part, dtype=float) for part in start)
+    case = mr.MasonryCase(masonry, duration)
+    return mr.solve_explicit(case, timestep=timestep, ledger=True, start=(pose, velocity))
+
+
+def unaccounted(run):
+    """Largest residual over the largest kinetic energy [-]."""
+    return np.abs(run.energy_residual).max() / run.ledger.kinetic.max()
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_friction_of_springs_turns_the_blocks_that_overlap(in_space):
+    """It rubs halfway into the overlap, and its spring is stretched by the slip there."""
+    masonry = cube_on_ground(in_space, **SOFT, k_s=2e5)
+    velocity = [(3.0, 0.0, 0.0, 0.0, 1.0, 0.0) if in_space else (3.0, 0.0, 1.0)]
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.5, velocity=velocity), timestep=5e-4, ledger=True)
+    assert run.sliding.max() > 0.3
+    assert unaccounted(run) < 5e-5
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("inset", [0.02, 0.3])
+def test_a_corner_that_has_come_through_an_edge_keeps_pressing_on_it(in_space, inset):
+    """A cube falls on its corner near the end of a table, which it enters deeper than the end is far: it is thrown back
+    to where it came from."""
+    masonry = cube_beside_a_table(in_space, k_n=1e6, friction=0.0, xi=0.0)
+    over = np.sqrt(0.5) - 0.5 + 0.1  # the centroid over that of the cube on the table
+    run = thrown(masonry, in_space, (-5.0 - inset, 1.0 + over), np.pi / 4, (0.0, -2.0))
+    up, speed = run.pose[:, 0, 2 if in_space else 1], run.velocity[:, 0, 2 if in_space else 1]
+    assert up.min() < 1.0 + over - 0.1 - 0.15
+    assert speed[-1] ** 2 + 2 * mr.GRAVITY * (up[-1] - up[0]) == pytest.approx(4.0, rel=1e-4)
+    assert speed[-1] > 0
+    assert unaccounted(run) < 1e-5
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("k_s", [None, 2e5])
+def test_what_contacts_lose_at_the_end_of_a_face_has_an_account(in_space, k_s):
+    """A cube that rocks slides off its table: its spring holds less by the cosine of its rotation at once."""
+    if in_space:
+        table, cube = mr.Polyhedron.box((2, 3, 1), (0, 0, -0.5), fixed=True), mr.Polyhedron.box((1, 1, 1), (0, 0, 0.5))
+    else:
+        table = mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True)
+        cube = mr.Polygon([(-0.5, 0), (0.5, 0), (0.5, 1), (-0.5, 1)])
+    velocity = [(4.0, 0.0, 0.0, 0.0, 1.0, 0.0) if in_space else (4.0, 0.0, 1.0)]
+    case = mr.MasonryCase(mr.Masonry([table, cube], **SOFT, k_s=k_s), 0.5, velocity=velocity)
+    run = mr.solve_explicit(case, timestep=2e-4, ledger=True)
+    assert 0.01 < run.ledger.ends["joints"][-1] / run.ledger.kinetic.max() < 0.02
+    assert run.ledger.ends["encounters"][-1] == 0
+    assert unaccounted(run) < 2e-4
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_corner_that_slides_off_leaves_what_its_spring_holds(in_space):
+    """A cube falls on its corner on a smooth table, and fast past its end."""
+    masonry = cube_beside_a_table(in_space, k_n=1e6, friction=0.0, xi=0.0)
+    run = thrown(masonry, in_space, (-5.3, 0.5 + np.sqrt(0.5)), np.pi / 4, (6.0, -2.0), duration=0.3)
+    assert run.ledger.ends["encounters"][-1] > 0.04 * run.ledger.kinetic.max()
+    assert run.ledger.ends["joints"][-1] == 0
+    assert unaccounted(run) < 1e-4
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("sinks", [5.0, 500.0])
+def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, sinks):
+    """It is gone within a part of a step, in which the springs at rest do their work on it."""
+    masonry = cube_on_ground(in_space, k_n=1e9, friction=0.5, xi=0.05)
+    history = ([0.0, 0.1], *([0.0, 0.0] for _ in range(1 + in_space)), [0.0, -0.1 * sinks])
+    name = masonry.names[0]
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.1, supports={name: history}), ledger=True)
+    held = run.ledger.elastic[0]
+    assert held == pytest.approx(0.5 * (2000 * mr.GRAVITY) ** 2 / 1e9)
+    np.testing.assert_allclose(run.ledger.ground[1:], -held, rtol=1e-3)
+    assert run.velocity[-1, 0, 2 if in_space else 1] == pytest.approx(-mr.GRAVITY * 0.1, rel=1e-2)

@@ -1,0 +1,69 @@
+"""How explicit steps are cut into calls, and what is said before long ones."""
+
+import os
+import signal
+import threading
+import time
+import warnings
+
+import numpy as np
+import pytest
+from masonry_blocks import columns
+
+import mjrock as mr
+from mjrock.distinct import following
+
+SLOW = mr.Masonry.facade(length=0.8, height=0.4, depth=0.4, unit=(0.4, 0.2), k_n=1e12, frequency=1.0)
+"""Its dashpots ask for steps of less than a nanosecond: hours for a simulated second, minutes for a sample."""
+
+
+def test_an_interruption_is_heard_within_a_sample():
+    case = mr.MasonryCase(SLOW, 0.01)
+    mr.solve_explicit(mr.MasonryCase(SLOW, 1e-6))  # compiled
+    heard = []
+    timer = threading.Timer(0.7, lambda: (heard.append(time.perf_counter()), os.kill(os.getpid(), signal.SIGINT)))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        mr.solve_explicit(case)
+    assert time.perf_counter() - heard[0] < 3.0  # 0.3 s, on a busy machine more
+
+
+@pytest.mark.parametrize("masonry", [columns(4), mr.Masonry.column(0.4, 0.8, 2)], ids=["plane", "space"])
+def test_the_calls_do_not_matter(monkeypatch, masonry):
+    """Also where blocks have left their joints and meet others."""
+    velocity = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
+    velocity[:, 0] = 2.0
+    case = mr.MasonryCase(masonry, 0.05, velocity=velocity)
+    whole = mr.solve_explicit(case, output_step=0.02)
+    monkeypatch.setattr(following, "FIRST", 100)
+    monkeypatch.setattr(following, "HEARD", 1e-6)
+    assert mr.solve_explicit(case, output_step=0.02) == whole
+
+
+def test_long_runs_speak_before_they_start(monkeypatch):
+    def stop(*args):
+        raise StopIteration
+
+    monkeypatch.setattr("mjrock.distinct.explicit.follow", stop)
+    for masonry, duration, said in (
+        (SLOW, 1.0, r"explicit steps would take some \S+ s: \S+ steps of \S+ s on \d+ contact lines\. The dashpots, "),
+        (columns(4), 1e4, r"explicit steps would take some \S+ s: \S+ steps of \S+ s on 8 contact lines$"),
+    ):
+        with pytest.warns(UserWarning, match=said), pytest.raises(StopIteration):
+            mr.solve_explicit(mr.MasonryCase(masonry, duration), output_step=0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(StopIteration):
+            mr.solve_explicit(mr.MasonryCase(columns(4), 10.0))
+
+
+def test_the_estimate_is_near_what_it_takes(monkeypatch):
+    """Within a factor of five, on a machine that does other things too."""
+    masonry = mr.Masonry.arch(5.0, 0.75, k_n=1e10)
+    monkeypatch.setattr(following, "WORTH_SAYING", 0.0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run = mr.solve_explicit(mr.MasonryCase(masonry, 0.2))
+    (said,) = (str(one.message) for one in caught)
+    estimate = float(said.removeprefix("explicit steps would take some ").split(" s:")[0])
+    assert 0.2 < estimate / run.stats["stepping_time"] < 5

@@ -1,0 +1,44 @@
+"""The law of a joint, for numbers and for arrays, and that all who need it take it from one place."""
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.problem.masonry import joint_law
+from mjrock.problem.masonry.joint_law import Law, normal_force, shear_limit, stored, stored_along
+
+LAW = Law(k=100.0, c=2.0, k_s=50.0, friction=0.6)
+
+
+@pytest.mark.parametrize(
+    ("gap", "rate", "force"),
+    [(-0.1, 0.0, 10.0), (-0.1, -1.0, 12.0), (-0.1, 1.0, 8.0), (-0.1, 6.0, 0.0), (0.1, -60.0, 0.0), (0.0, -1.0, 0.0)],
+)
+def test_a_joint_pushes_and_never_pulls(gap, rate, force):
+    assert normal_force(LAW, gap, rate) == pytest.approx(force)
+
+
+def test_arrays_and_numbers_have_one_law():
+    gaps, rates = np.array([-0.1, 0.1, -0.2]), np.array([0.0, -1.0, 5.0])
+    many = Law(*(np.full(3, value) for value in LAW))
+    np.testing.assert_allclose(
+        normal_force(many, gaps, rates), [normal_force(LAW, g, v) for g, v in zip(gaps, rates, strict=True)]
+    )
+    np.testing.assert_allclose(stored(many, gaps), [stored(LAW, gap) for gap in gaps])
+
+
+def test_the_force_is_the_slope_of_what_is_stored():
+    for gap in (-0.3, -0.01, 0.2):
+        slope = (stored(LAW, gap + 1e-6) - stored(LAW, gap - 1e-6)) / 2e-6
+        assert -slope == pytest.approx(normal_force(LAW, gap, 0.0), abs=1e-6)
+    assert stored_along(LAW, 0.2**2) == pytest.approx(0.5 * 50 * 0.2**2)
+
+
+def test_limit_analysis_has_the_friction_of_the_law(monkeypatch):
+    block = mr.Masonry.stack([mr.Block(0.5, 0.5)], k_n=1e9, friction=0.3)
+    assert mr.collapse_multiplier(block).multiplier == pytest.approx(0.3, rel=1e-6)
+    half = lambda row, push: 0.5 * row.friction * push  # noqa: E731
+    monkeypatch.setattr("mjrock.problem.masonry.statics.shear_limit", half)
+    assert mr.collapse_multiplier(block).multiplier == pytest.approx(0.15, rel=1e-6)
+    assert shear_limit is joint_law.shear_limit
+    assert shear_limit(LAW, 10.0) == pytest.approx(6.0)

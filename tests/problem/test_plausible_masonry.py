@@ -1,0 +1,137 @@
+"""What is odd about masonry warns as it does for a wall, with both numbers, and plausible masonry does not."""
+
+import warnings
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from masonry_blocks import GROUND, box, columns
+
+import mjrock as mr
+
+STACK = columns(3)
+BLOCK = mr.Masonry.box((0.6, 0.4, 3.0), k_n=1e9)
+RECORD = mr.GroundMotion.synthetic(peak=4.0, duration=12.0, seed=2)
+
+
+def case(masonry=STACK, **options):
+    return mr.MasonryCase(masonry, **({"duration": 15.0} | options))
+
+
+def tied(**options):
+    return case(effects=mr.Tie(4.0, **({"stiffness": 12e6, "block": 3} | options)))
+
+
+MISUSE = {
+    "record in g": (
+        lambda: case(motion=RECORD.scaled(peak=0.35)),
+        r"the record peaks at 0\.0357 g; this masonry starts to rock at 0\.14\d g: is the record in g\?",
+    ),
+    "record in g, in space": (lambda: case(BLOCK, motion=RECORD.scaled(peak=0.35)), r"starts to rock at 0\.2 g"),
+    "a run shorter than its record": (
+        lambda: case(duration=3.0, motion=RECORD),
+        r"the run of 3 s ends before the record of 12 s, and leaves out \d+% of its Arias intensity",
+    ),
+    "thrust in kN": (
+        lambda: case(effects=mr.Thrust(4.0, 3.0, block=3)),
+        r"Thrust: force = 3 N, and the masonry weighs 4\.\d+e\+04 N: is it in kN",
+    ),
+    "load in kN": (lambda: case(BLOCK, effects=mr.Load(1.0, at=(0, 0, 3), block=1)), "Load: force = 1 N, .* in kN"),
+    "mass in t": (lambda: case(effects=mr.AddedMass(0.1, 4.0, block=3)), r"mass = 0.1 kg, that of the masonry .* in t"),
+    "E as stiffness": (lambda: tied(stiffness=2e11), r"2e\+11 N/m is above 1e\+10 N/m"),
+    "strength in kN": (lambda: tied(strength=2.0), "Tie: strength = 2 N"),
+    "stiffness in kN/m": (
+        lambda: tied(stiffness=12e3, strength=80e3),
+        r"yields at an elongation of 6.67 m, and its block is 1\.5\d* m thick",
+    ),
+    "slack in mm": (lambda: tied(slack=5.0), r"slack = 5 m, and where it is held the masonry opens by 0.6 m"),
+    "slack in mm, in space": (
+        lambda: case(BLOCK, effects=mr.Tie(stiffness=1e7, slack=5.0, at=(-0.3, 0, 3), block=1)),
+        r"slack = 5 m, .* opens by 0.6 m",
+    ),
+    "frequency of another masonry": (
+        lambda: columns(1, 1e9, frequency=0.01),
+        r"frequency = 0\.01 rad/s, and the lowest one of this masonry is 42\.6 rad/s: with xi = 0\.05 that one "
+        r"is damped to 213 times critical, c/k = 10 s",
+    ),
+    "frequency far above": (lambda: columns(1, 1e9, frequency=1e8), r"damped to \d\.\d\de-0\d times critical"),
+    "timestep in ns": (
+        lambda: mr.solve_explicit(case(columns(1), duration=1e-5), timestep=1e-9),
+        r"timestep = 1e-09 s, and 0\.00\d+ s is short enough",
+    ),
+    "timestep in ns in MuJoCo": (
+        lambda: mr.simulate(case(columns(1), duration=1e-5), timestep=1e-9),
+        r"timestep = 1e-09 s, and 0\.00\d+ s is short enough",
+    ),
+}
+
+
+@pytest.mark.parametrize("misuse", MISUSE)
+def test_misuse_is_doubted_once(misuse):
+    make, doubt = MISUSE[misuse]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        make()
+    said = [one for one in caught if issubclass(one.category, mr.Implausible)]
+    assert len(said) == 1
+    with pytest.warns(mr.Implausible, match=doubt):
+        make()
+
+
+def plausible(rng):
+    """Masonry as an engineer has it, with its effects, under a record."""
+    k_n, xi = 10 ** rng.uniform(8, 11), rng.choice([0.01, 0.05, 0.3])
+    thickness = rng.uniform(0.3, 1.0)
+    height = thickness * rng.uniform(4, 10)
+    if rng.random() < 0.3:
+        return mr.MasonryCase(mr.Masonry.arch(rng.uniform(2, 6), 0.6, voussoirs=9, k_n=k_n, xi=xi), 4.0)
+    parts = np.linspace(0, height, int(rng.integers(2, 6)))
+    blocks = [box(-thickness / 2, thickness / 2, *ends) for ends in pairwise(parts)]
+    masonry = mr.Masonry([GROUND, *blocks], k_n=k_n, xi=xi)
+    if rng.random() < 0.5:
+        own = 2 * xi / masonry.retardation.max()
+        masonry = mr.Masonry([GROUND, *blocks], k_n=k_n, xi=xi, frequency=own * rng.uniform(0.1, 3))
+    top, effects, weight = len(blocks), [], sum(block.mass for block in blocks) * mr.GRAVITY
+    if rng.random() < 0.6:
+        section, length = np.pi / 4 * rng.uniform(0.012, 0.036) ** 2, rng.uniform(1, 12)
+        strength, slack = rng.choice([np.inf, 235e6 * section]), rng.choice([0.0, 0.02])
+        tie = mr.Tie(height, 210e9 * section / length, slack=slack, strength=strength, length=length, block=top)
+        effects.append(tie)
+    if rng.random() < 0.4:
+        effects.append(mr.Load(rng.uniform(0.01, 0.5) * weight, height, block=top))
+        effects.append(mr.AddedMass(rng.uniform(0.005, 0.2) * weight / mr.GRAVITY, height, block=top))
+    motion = mr.GroundMotion.synthetic(9.81 * rng.uniform(0.1, 0.8), 10.0, seed=int(rng.integers(99)), dt=0.02)
+    return mr.MasonryCase(masonry, rng.uniform(9.5, 14), motion, effects=tuple(effects))
+
+
+def test_plausible_masonry_raises_no_alarm():
+    rng = np.random.default_rng(0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(40):
+            plausible(rng)
+
+
+@pytest.mark.parametrize(("name", "values"), [("friction", 0.5), ("k_n", 1e9), ("xi", 0.05), ("k_s", 1e9)])
+def test_a_function_of_the_joint_is_asked_once(name, values):
+    """One with a state would otherwise be checked at one value and used at another."""
+    asked = []
+
+    def of_joint(joint):
+        asked.append(joint.name)
+        return values if len(asked) <= 3 else -1.0
+
+    masonry = mr.Masonry(STACK.blocks, **{name: of_joint})
+    mr.solve_explicit(mr.MasonryCase(masonry, 1e-3))
+    assert asked == [joint.name for joint in masonry.joints]
+    used = {"friction": "joint_friction", "k_n": "joint_stiffness", "xi": "joint_damping", "k_s": "joint_shear"}[name]
+    assert getattr(masonry, used).tolist() == 3 * [values]
+
+
+@pytest.mark.parametrize("frequency", [1e-2, 1.0, 1e6])
+def test_a_retardation_at_any_frequency_is_no_doubt(frequency):
+    """xi = c/k x frequency / 2 gives the joints that c/k."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        masonry = columns(1, 1e9, xi=0.5 * 1e-4 * frequency, frequency=frequency)
+    assert masonry.retardation == pytest.approx(1e-4)

@@ -1,0 +1,108 @@
+"""The last sample is the end of the run in every solver, and the next run starts from it."""
+
+import numpy as np
+import pytest
+from masonry_blocks import GROUND, box
+
+import mjrock as mr
+
+WALL = mr.Block.from_size(0.6, 2.4)
+ON = mr.Contacts.from_damping(WALL, k_base=1e8, xi_base=0.05)
+PLANE = mr.Masonry([GROUND, box(-0.2, 0.2, 0, 0.4), box(-0.2, 0.2, 0.4, 0.8)], k_n=1e8, xi=0.05)
+SPACE = mr.Masonry.column(0.4, 0.8, 2, k_n=1e8, xi=0.05)
+
+
+def wall(duration):
+    return mr.Case(WALL, 0.5 * WALL.alpha, duration, side_stop=False)
+
+
+def plane(duration):
+    return mr.MasonryCase(PLANE, duration, velocity=[[0.1, 0, 0.5], [0.3, 0, 0.5]])
+
+
+def space(duration):
+    return mr.MasonryCase(SPACE, duration, velocity=[[0.1, 0, 0, 0, 0.5, 0], [0.3, 0, 0, 0, 0.5, 0]])
+
+
+SOLVERS = {
+    "fitted": (wall, lambda case, **options: mr.simulate(case, ON, **options)),
+    "fixed": (wall, lambda case, **options: mr.simulate(case, ON, 1e-4, **options)),
+    "explicit": (wall, lambda case, **options: mr.solve_explicit(case, ON, **options)),
+    "explicit, given step": (wall, lambda case, **options: mr.solve_explicit(case, ON, 2e-5, **options)),
+    "compliant": (wall, lambda case, **options: mr.solve_compliant(case, ON, **options)),
+    "theory": (
+        wall,
+        lambda case, **options: mr.solve_analytical(case, mr.Restitution.from_geometry(WALL), **options),
+    ),
+    "masonry": (plane, mr.simulate),
+    "masonry, fixed": (plane, lambda case, **options: mr.simulate(case, timestep=1e-4, **options)),
+    "masonry, explicit": (plane, mr.solve_explicit),
+    "masonry, given step": (plane, lambda case, **options: mr.solve_explicit(case, timestep=2e-5, **options)),
+    "space, explicit": (space, mr.solve_explicit),
+    "space, given step": (space, lambda case, **options: mr.solve_explicit(case, timestep=2e-5, **options)),
+}
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_the_last_sample_is_the_end(name):
+    case, solve = SOLVERS[name]
+    for spacing in (0.3, 0.07, 0.5):
+        run = solve(case(0.5), output_step=spacing)
+        assert run.t[0] == 0
+        assert run.t[-1] == pytest.approx(0.5, rel=1e-12)
+        if name == "explicit, given step":  # whole numbers of the finer samples in which impacts are seen
+            assert np.diff(run.t).max() == pytest.approx(min(spacing, 0.5), abs=3e-4)
+        else:
+            assert np.diff(run.t).max() <= spacing * (1 + 1e-9)
+            assert len(run.t) == 1 + np.ceil(0.5 / spacing)
+        assert len(run.t) == len(run.pose) == len(run.velocity) == len(run.energy)
+        if run.end is not None:
+            assert all(np.array_equal(*pair) for pair in zip(run.end, (run.pose[-1], run.velocity[-1]), strict=True))
+    with pytest.raises(ValueError, match=r"output_step = 0\.6 s is outside the valid range 1e-09 to 0\.5 s"):
+        solve(case(0.5), output_step=0.6)
+
+
+@pytest.mark.parametrize("name", ["fixed", "explicit, given step", "masonry, fixed", "masonry, given step"])
+def test_the_ledger_ends_there_too(name):
+    case, solve = SOLVERS[name]
+    run = solve(case(0.5), output_step=0.3, ledger=True)
+    assert np.array_equal(run.ledger.t, run.t)
+    whole = solve(case(0.5), ledger=True)
+    assert run.ledger.friction[-1] == pytest.approx(whole.ledger.friction[-1], rel=1e-9, abs=1e-12)
+
+
+def test_a_given_step_that_does_not_divide_the_duration_is_kept():
+    for run in (mr.simulate(wall(0.5), ON, 3e-4), mr.solve_explicit(wall(0.5), ON, 3e-5)):
+        h = run.stats["timestep"]
+        assert h in (3e-4, 3e-5)
+        assert run.t[-1] == pytest.approx(h * round(0.5 / h), rel=1e-12)
+    for solve in (mr.simulate, mr.solve_explicit):
+        with pytest.raises(ValueError, match=r"timestep = 0\.1 s is outside the valid range 1e-09 to 0\.01 s"):
+            solve(wall(0.01), ON, 0.1)
+
+
+def test_a_run_shorter_than_the_usual_spacing():
+    for case, solve in SOLVERS.values():
+        assert solve(case(2e-4)).t[-1] == pytest.approx(2e-4, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance"),
+    [
+        ("fixed", 1e-12),
+        ("explicit", 1e-10),
+        ("explicit, given step", 1e-10),
+        ("masonry, fixed", 1e-10),
+        ("masonry, given step", 1e-5),  # the first dashpot forces know no velocity of half a step before
+        ("space, given step", 1e-5),
+        ("fitted", 1e-3),  # its accuracy
+    ],
+)
+def test_two_pieces_are_one_run(name, tolerance):
+    case, solve = SOLVERS[name]
+    whole, first = solve(case(0.5)), solve(case(0.2))
+    second = solve(case(0.3), start=first.end)
+    assert np.array_equal(second.pose[0], first.pose[-1])
+    np.testing.assert_allclose(second.velocity[0], first.velocity[-1], rtol=1e-7, atol=1e-15)
+    far = np.abs(whole.pose[-1] - whole.pose[0]).max()
+    assert np.abs(second.pose[-1] - whole.pose[-1]).max() < tolerance * far
