@@ -87,7 +87,8 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def plastic_of(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, books, links = run.system.ties, run.books, run.scene.links.sprung
+    ties, books = run.system.ties, run.books
+    links = run.scene.links.sprung
     start = run.scene.ties.reach - links.reach
     columns = zip(links.names, ties["drawn"], books.ties, ties["broken"], books.broken, start, strict=True)
     return {name: Plastic(*(float(value) for value in values)) for name, *values in columns}

@@ -75,7 +75,7 @@ def solve_compliant(
     uplift = Uplift.of(case, contacts)
     _, peaks, impacts = rocking_history(case, sampled, theta, omega, energy, uplift)
     kept = thinned(len(sampled), parts)
-    outcome, message = ending(case, sampled, theta, energy, uplift.energy, history[-1, 3:])
+    outcome, message = ending(case, sampled, theta, energy, uplift.energy, history[-1, 3:6])
     return Response(
         case=case,
         solver="compliant",

@@ -1,10 +1,9 @@
 """Ties and dampers between two blocks of the plane act on both, as they do in space."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from masonry_blocks import GROUND, box
+from scenes import changed
 
 import mjrock as mr
 from mjrock.distinct.assembly import started, system_of
@@ -22,8 +21,7 @@ def tied():
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.0, frequency=100.0)
     tie, damper = mr.Tie(0.15, K, length=GAP, block=2), mr.Damper(0.15, c=C, length=GAP, block=2)
     scene = standing_masonry(masonry, (tie, damper))
-    ends = {"anchor_body": np.array([0]), "anchor": np.array([[0.25, 0.0]])}
-    return replace(scene, **ends, **{f"damper_{name}": end for name, end in ends.items()}), masonry
+    return changed(scene, links={"anchor_body": [0, 0], "anchor_at": [(0.25, 0.0)] * 2}), masonry
 
 
 def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():

@@ -43,6 +43,7 @@ def _multiplier(masonry: Masonry) -> float:
 
 def _room(masonry: Masonry, tie: Tie) -> tuple[float, float]:
     """Largest extent of the block that a tie holds, and of all free blocks along the tie [m]."""
-    way = held_at(tie) - tie.anchor_of(held_at(tie)) if masonry.in_space else np.array([tie.length, -tie.rise])
+    held = np.zeros(2) if tie.at is None else held_at(tie)
+    way = held - tie.anchor_of(held)
     along = np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ (way / np.linalg.norm(way))
     return 2 * masonry.blocks[tie.block].size, float(np.ptp(along))
