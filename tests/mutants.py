@@ -95,7 +95,7 @@ SWAPPED = {
 }
 """Operators, as they are written and what takes their place."""
 EQUIVALENT = {
-    "energy_work.py: work.dashpots[n, number[i]] += drag.dashpot * opened if pressed > 1 else given": (
+    "energy_work.py: work.dashpots[n, joint[i]] += drag.dashpot * opened if pressed > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",

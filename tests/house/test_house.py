@@ -27,7 +27,7 @@ FLOORS = (
 """From the ground up. Rooms of one floor do not import each other."""
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_MUJOCO = ("geometry", "problem", "scene", "result", "theory", "reference", "distinct")
-LONGEST_MODULE, LONGEST_FUNCTION, MOST_ARGUMENTS = 300, 60, 7
+LONGEST_FUNCTION, MOST_ARGUMENTS = 60, 7
 NUMERICS = ("linear.py", "geometry", "scene", "engine", "distinct", "theory", "reference")
 MODULES = [path for path in sorted(ROOT.rglob("*.py")) if path.name != "__init__.py"]
 
@@ -73,11 +73,9 @@ def test_no_circle():
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_modules_and_functions_are_short(path):
-    text = path.read_text()
-    assert text.count("\n") <= LONGEST_MODULE
+def test_functions_are_short(path):
     numerics = path.relative_to(ROOT).parts[0] in NUMERICS
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.FunctionDef):
             described = ast.get_docstring(node, clean=False)
             lines = node.end_lineno - node.lineno + 1 - (described.count("\n") + 1 if described else 0)
