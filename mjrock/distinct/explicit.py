@@ -74,7 +74,7 @@ def solve_explicit(
     count = steps.samples
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
     books = Books.empty(
-        setup.system, len(set(scene.group)) + 1, 0 if setup.encounters is None else setup.encounters.most
+        setup.system, len(set(scene.group)) + 1, 0 if setup.encounters is None else setup.encounters.capacity
     )
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
