@@ -10,7 +10,7 @@ from mjrock.distinct.space.assembly import copied, moving
 from mjrock.distinct.space.columns import REST, ease_columns, named, named_vectors
 from mjrock.distinct.space.loop import advance
 from mjrock.distinct.space.system import BODY, EDGE, LINK, POINT, WAY, System
-from mjrock.distinct.system import Books, Samples, rows
+from mjrock.distinct.system import ALWAYS, Books, Samples, rows
 from mjrock.geometry.frames import SPACE
 from mjrock.scene.ground import Ground
 
@@ -31,7 +31,7 @@ def free_body(mass, inertia, spin):
 def followed(system, duration, h, every):
     """The samples of a system that is followed without being changed."""
     count = round(duration / (h * every)) + 1
-    samples, system = Samples.of(count, len(system.bodies), 2, SPACE), copied(system)
+    samples, system = Samples.of(count, len(system.bodies), ALWAYS, SPACE), copied(system)
     advance(system, Books.of(system, 1), samples, Clock(0, h, every, 0, count, math.inf))
     return samples, system
 

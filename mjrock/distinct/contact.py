@@ -137,12 +137,17 @@ def closed_share(line: Row, gap: float, opened: float) -> float:
 @inlined
 def lost_at_the_end(line: Row, gap: float, past: bool, opened: float) -> float:
     """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
-    its spring held less, and has not done as work while the gap grew by some length [m]."""
+    its spring holds less, and has not done as work while the gap grew by some length [m].
+
+    A line that opened or closed as far as it moved did so within the step, and has lost nothing at an end.
+    """
     before, now = line.push - line.pressed, -line.k * min(gap, 0.0)
-    if not (past or line.past == 1) or before <= 0 or 0 <= gap < OPEN:
+    if not (past or line.past == 1) or before + now == 0:
         return 0.0
     lost: float = 0.5 * (before + now) * ((before - now) / line.k - opened)
-    return lost
+    if before == 0:
+        return min(lost, 0.0)
+    return lost if now > 0 else max(lost, 0.0)
 
 
 @inlined

@@ -23,7 +23,7 @@ from .limit import longest_step
 from .loop import Clock, advance
 from .reading import Run, response_of
 from .space.setup import setup_in_space
-from .system import Books, Samples
+from .system import ALWAYS, Books, Samples
 
 SHARE_OF_A_WALL = 0.005
 """Step that is taken for a wall, over the longest stable one [-]. A touch inside a step is met up to half a step late,
@@ -55,7 +55,7 @@ def solve_explicit(
             whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
         output_step: spacing of the returned samples [s]. A given timestep is kept, and the spacing is a whole number of
             steps.
-        ledger: whether to account for every part of the energy.
+        ledger: whether to account for every part of the energy. A residual above 1 % of the largest part warns.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. It does not go
             with ties that yield.
 
@@ -78,7 +78,7 @@ def solve_explicit(
     count = math.floor(setup.course.duration / (h * every) * (1 + 1e-12)) + 1
     require_size("the samples of this answer", count * len(scene.names), "raise output_step or follow it for less")
     groups = tuple(dict.fromkeys(scene.group))
-    columns = 2 + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 3 if ledger else 0)
+    columns = ALWAYS + (len(scene.damper_names) + 2 * len(scene.tie_names) + len(groups) + 1 if ledger else 0)
     if ledger:
         require_size("the ledger of this answer", count * columns, "raise output_step, or leave the ledger out")
     books = Books.of(setup.system, len(groups) + 1, 0 if setup.encounters is None else setup.encounters.most)

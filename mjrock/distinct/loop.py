@@ -15,7 +15,7 @@ from ..scene.ground import mean_acceleration
 from .contact import meeting, press_lines
 from .friction import book_rubbing, note_slips, stick
 from .links import linked_energy, move_supports, pull_links
-from .system import Books, Rows, Samples, System
+from .system import ALWAYS, Books, Rows, Samples, System
 
 GONE = 1e6
 """Displacement beyond which a run has broken down [m]."""
@@ -96,15 +96,16 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
             sheared += 0.5 * line.k_s * line.grip * line.grip
     samples.energy[row, 1], samples.energy[row, 2] = potential, elastic + sheared
     samples.work[row, 0], samples.work[row, 1] = books.friction[0] - sheared, books.friction[1]
-    if samples.work.shape[1] > 2:
+    samples.work[row, 2], samples.work[row, 3] = books.ends
+    if samples.work.shape[1] > ALWAYS:
         keep_work(books, samples.work[row])
 
 
 @jitable
 def keep_work(books: Books, work: Array) -> None:
-    """Keep the accounts of dampers, ties, broken ties, dashpots and ends of faces."""
-    column = 2
-    for account in (books.dampers, books.ties, books.broken, books.dashpots, books.ends):
+    """Keep the accounts of dampers, ties, broken ties and dashpots."""
+    column = ALWAYS
+    for account in (books.dampers, books.ties, books.broken, books.dashpots):
         for i in range(len(account)):
             work[column] = account[i]
             column += 1
@@ -142,7 +143,7 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
     n, h, row, last = clock.step, clock.h, clock.row, clock.row + clock.rows
-    accounted = samples.work.shape[1] > 2 or len(system.supports.moved) > 0
+    accounted = samples.work.shape[1] > ALWAYS or len(system.supports.moved) > 0
     while True:
         before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
         move_supports(system.supports, n * h, before)

@@ -153,14 +153,18 @@ class Books(NamedTuple):
         return cls(dashpots, ties, broken, dampers, ends, friction, active)
 
 
+ALWAYS = 4
+"""Columns of work that are kept without a ledger too: friction, ground, ends of faces of joints and of encounters."""
+
+
 class Samples(NamedTuple):
     """What is kept of a motion at its samples.
 
     Args:
         pose, velocity: of the bodies, shape (samples, n, 3); in space (samples, n, 7) and (samples, n, 6).
         energy: kinetic, potential and elastic [J], shape (samples, 3).
-        work: friction and ground, then dampers, ties, broken ties, dashpots by group and ends of faces [J], shape
-            (samples, columns). Without a ledger it is the first two alone, and friction is that of shear springs.
+        work: friction, ground and ends of faces, then dampers, ties, broken ties and dashpots by group [J], shape
+            (samples, columns). Without a ledger it is the first ALWAYS alone, and friction is that of shear springs.
     """
 
     pose: Array

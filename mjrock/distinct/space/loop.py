@@ -14,7 +14,7 @@ from ...quantities import GRAVITY
 from ...scene.ground import mean_acceleration
 from ..links import move_supports
 from ..loop import GONE, Clock, keep_work
-from ..system import Books, Rows, Samples
+from ..system import ALWAYS, Books, Rows, Samples
 from .contact import meeting, press_points
 from .friction import book_rubbing, note_slips, stick
 from .links import linked_energy, pull_links
@@ -87,7 +87,8 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int) -> None:
             sheared += 0.5 * point.k_s * dot(grip_of(point), grip_of(point))
     samples.energy[row, 1], samples.energy[row, 2] = potential, elastic + sheared
     samples.work[row, 0], samples.work[row, 1] = books.friction[0] - sheared, books.friction[1]
-    if samples.work.shape[1] > 2:
+    samples.work[row, 2], samples.work[row, 3] = books.ends
+    if samples.work.shape[1] > ALWAYS:
         keep_work(books, samples.work[row])
 
 
@@ -128,7 +129,7 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
     n, h, row, last = clock.step, clock.h, clock.row, clock.row + clock.rows
-    accounted = samples.work.shape[1] > 2 or len(system.supports.moved) > 0
+    accounted = samples.work.shape[1] > ALWAYS or len(system.supports.moved) > 0
     while True:
         before, kick, sampled = h if n > 0 else 0.0, h if n > 0 else 0.5 * h, n % clock.every == 0
         move_supports(system.supports, n * h, before)
