@@ -143,7 +143,7 @@ def copied(system: System) -> System:
 def friction_at_rest(system: System, pose: Array) -> Array:
     """The friction that carries masonry of the plane at a pose of rest, the smallest forces that do [N], shape (m, 1).
 
-    A structure such as an arch needs friction to stand. Its shear springs would else first have to give way.
+    A structure such as an arch needs friction to stand. Without it, its shear springs would first have to give way.
     """
     bodies, lines = system.bodies, system.lines
     normal, along = (line_rates(lines, way, len(bodies)) for way in ways_of(lines))

@@ -169,12 +169,15 @@ def closed_share(line: Row, gap: float, opened: float) -> float:
 @inlined
 def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
     """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
-    its spring holds less, and has not done as work while the gap grew by some length [m]."""
-    if line.depth == 0 or 0 <= meet.gap < OPEN:
-        return 0.0
+    its spring holds less, and has not done as work while the gap grew by some length [m].
+
+    A line that opened or closed as far as it moved did so within the step, and has lost nothing at an end.
+    """
     mean = 0.5 * (normal_force(line, -line.depth, 0.0) + normal_force(line, meet.gap, 0.0))
     lost: float = stored(line, -line.depth) - stored(line, meet.gap) - mean * opened
-    return lost
+    if line.depth == 0:
+        return min(lost, 0.0)
+    return lost if meet.gap < 0 else max(lost, 0.0)
 
 
 @jitable

@@ -42,7 +42,7 @@ class Encounters:
 
     def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
         blocks = masonry.blocks
-        self.joints, self.group, self.most = system.lines, len(masonry.joints), MOST * len(blocks) + 64
+        self.joints, self.group, self.capacity = system.lines, len(masonry.joints), MOST * len(blocks) + 64
         self.body = free_numbers(blocks)
         self.widths = narrowest(masonry)
         self.sizes = np.array([blocks[i].size for i in masonry.free])
@@ -59,12 +59,12 @@ class Encounters:
         edges = [edges_of(face, at) for face, at in faces]
         self.ends = len(system.edges) + np.cumsum([0, *map(len, edges)])  # of the edges of each face
         self.edges = joined(system.edges, *edges)
-        self.room = np.zeros((self.most, 5))
+        self.room = np.zeros((self.capacity, 5))
         self.keys = np.empty((0, 4), dtype=np.int64)  # of the lines there are, see `_lines`
 
     def made_room(self, system: System) -> System:
         """The system with the edges of all faces, and room for the ways of encounters that stick rigidly."""
-        further = (len(system.axes) - 1) * self.most if len(system.ways) else 0
+        further = (len(system.axes) - 1) * self.capacity if len(system.ways) else 0
         ways = rows(system.ways.dtype, len(system.ways) + further)
         return system._replace(edges=self.edges, ways=ways)
 
@@ -98,7 +98,7 @@ class Encounters:
         corner, other = met[:, 1], met[:, 2]
         within = corners[corner] - places[other]  # corners of one block in the axes of the other
         within = within + np.einsum("nji,nj->ni", turn[other], within)
-        new = self._unknown(met, self.room[:count, 4])[: self.most - len(last)]
+        new = self._unknown(met, self.room[:count, 4])[: self.capacity - len(last)]
         lines = self._lines(met[new], within[new], self.room[new, 4])
         return system._replace(lines=joined(system.lines[: len(self.joints)], last, lines))
 

@@ -48,7 +48,7 @@ def solve_explicit(
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.
-        ledger: whether to account for every part of the energy.
+        ledger: whether to account for every part of the energy. A residual above 1 % of the largest part warns.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. It does not go
             with ties that yield.
 
@@ -74,7 +74,7 @@ def solve_explicit(
     count, bodies = steps.samples, len(scene.bodies.names)
     require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
     books = Books.empty(
-        setup.system, len(scene.contacts.joints) + 1, 0 if setup.encounters is None else setup.encounters.most
+        setup.system, len(scene.contacts.joints) + 1, 0 if setup.encounters is None else setup.encounters.capacity
     )
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")

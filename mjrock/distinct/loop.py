@@ -146,7 +146,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tu
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
     keep_account(books.dashpots, samples.dashpots[row])
-    keep_account(books.ends, samples.ends[row])
+    keep_account(books.ends, energy.ends)
 
 
 @inlined

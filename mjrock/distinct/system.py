@@ -11,8 +11,11 @@ from ..quantities import Array, Integers
 from ..scene.ground import Ground
 from .rows import Rows, kinds, rows
 
-ENERGY = np.dtype([(name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")])
-"""Energy at a sample, what friction has taken, and what ground and supports have put in by then [J]."""
+ENERGY = np.dtype(
+    [*((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")), ("ends", float, (2,))]
+)
+"""Energy at a sample, what friction has taken, what ground and supports have put in, and what lines of joints and of
+encounters have lost at the ends of faces by then [J]."""
 
 
 class Supports(NamedTuple):
@@ -78,7 +81,7 @@ class Books(NamedTuple):
     @property
     def size(self) -> int:
         """Accounts that a ledger keeps at each sample."""
-        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers, self.ends)))
+        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
 
 
 class Samples(NamedTuple):
@@ -87,7 +90,7 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
-        dampers, ties, broken, dashpots, ends: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
     """
 
     pose: Array
@@ -97,13 +100,12 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
-    ends: Array
 
     @classmethod
     def room(cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False) -> Samples:
         """Room for some samples, and for the accounts where there is a ledger."""
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
-        kept = (books.dampers, books.ties, books.broken, books.dashpots, books.ends)
+        kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         return cls(pose, velocity, rows(ENERGY, count), *accounts)
 

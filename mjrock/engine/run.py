@@ -142,7 +142,8 @@ def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, sc
     balance = balance[marks] if yields else balance
     gain = from_nowhere(balance, scale)
     if gain is not None:
-        raise StepError(gain[1], float(windows.t[marks[gain[0]]]))
+        worst, _, said = gain
+        raise StepError(said, float(windows.t[marks[worst]]))
 
 
 def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) -> SimulationError:

@@ -14,8 +14,9 @@ ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, over the energy there was [-]."""
 
 
-def from_nowhere(balance: Array, scale: float) -> tuple[int, str] | None:
-    """Where most energy has appeared from nowhere, and the same in words; None where it is at most ENERGY_GAIN.
+def from_nowhere(balance: Array, scale: float) -> tuple[int, float, str] | None:
+    """Where most energy has appeared from nowhere, its share of the energy there was, and the same in words; None where
+    the share is at most ENERGY_GAIN.
 
     The two `require_no_gain`, in `engine.run` and `distinct.reading`, say of which samples.
 
@@ -28,7 +29,7 @@ def from_nowhere(balance: Array, scale: float) -> tuple[int, str] | None:
     if gains[worst] <= ENERGY_GAIN * scale:
         return None
     share = gains[worst] / scale
-    return worst, f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
+    return worst, float(share), f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,6 +78,15 @@ class Ledger:
         gone = sum(taken, self.friction) - self.ground
         total: Array = self.held + gone
         return np.asarray(total - total[0])
+
+    @property
+    def largest(self) -> float:
+        """The largest part at any time [J]: of the energies, of what was put in and of what was taken."""
+        groups = (self.dashpots, self.ties, self.broken, self.ends)
+        accounts = [account for group in groups for account in group.values()]
+        fallen = self.potential - self.potential[0]
+        parts = (self.kinetic, fallen, self.elastic, self.friction, self.ground, *accounts)
+        return max(float(np.abs(part).max()) for part in parts)
 
     def at(self, t: Array) -> Ledger:
         """The ledger at other times, interpolated."""
