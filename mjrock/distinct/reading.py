@@ -72,11 +72,8 @@ class Run:
     def rounding(self) -> float:
         """Energy that the rounding of positions makes [J]: of the weights over the largest displacement and lever."""
         linear = self.samples.pose[..., : 3 if self.in_space else 2]
-        return (
-            ROUNDING
-            * GRAVITY
-            * float(self.scene.mass.sum() * (np.abs(linear).max() + np.abs(self.scene.places.at).max()))
-        )
+        size = np.abs(linear).max() + np.abs(self.scene.places.at).max()
+        return ROUNDING * GRAVITY * float(self.scene.bodies.mass.sum() * size)
 
 
 def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -> Response:
