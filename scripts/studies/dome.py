@@ -54,7 +54,7 @@ def growing(masonry: mr.Masonry) -> mr.Response:
     t = np.linspace(0.0, DURATION, 2001)
     falls = -mr.GRAVITY * (0.5 + 0.5 * np.cos(np.pi * np.minimum(t / RAMP, 1.0)))
     case = mr.MasonryCase(masonry, DURATION, vertical=mr.GroundMotion(falls, float(t[1])))
-    scene = standing_masonry(masonry)  # blocks as drawn and no friction, in the place of what its search would find
+    scene = standing_masonry(masonry, ())  # blocks as drawn and no friction, in the place of what its search would find
     vars(scene)["rest_in_space"] = scene.potential.unmoved.reshape(-1, 7), np.zeros((len(scene.contacts.friction), 2))
     return mr.solve_explicit(case, output_step=0.01)
 
