@@ -100,6 +100,22 @@ def test_a_corner_that_slides_off_leaves_what_its_spring_holds(in_space):
 
 
 @pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("k_s", [None, 1e9])
+def test_a_support_works_through_friction(in_space, k_s):
+    """The ground takes a cube along: what it puts in is the motion of the cube, and what friction takes as it slips."""
+    masonry = cube_on_ground(in_space, k_n=1e9, k_s=k_s, friction=0.1, xi=0.3)
+    t = np.linspace(0.0, 0.4, 81)
+    far = 0.25 * (1 - np.cos(np.pi * t / 0.4))
+    history = (t, far, *(0.0 * t for _ in range(1 + in_space)))
+    case = mr.MasonryCase(masonry, 0.4, supports={masonry.names[0]: history})
+    run = mr.solve_explicit(case, timestep=1e-4, ledger=True)
+    moved = 0.5 * 0.1 * mr.GRAVITY * 0.4**2
+    assert run.pose[-1, 0, 0] == pytest.approx(moved, rel=0.1)
+    assert run.ledger.ground[-1] == pytest.approx(2000 * 0.1 * mr.GRAVITY * 0.5, rel=0.05)
+    assert unaccounted(run) < 1e-3
+
+
+@pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize("sinks", [5.0, 500.0])
 def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, sinks):
     """It is gone within a part of a step, in which the springs at rest do their work on it."""

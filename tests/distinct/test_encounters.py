@@ -56,6 +56,23 @@ def test_a_face_ends_where_it_ends():
             assert run.pose[-1, 1, 0] == pytest.approx(reach, rel=0.02)
 
 
+@pytest.mark.parametrize("place", [0.02, 0.15, 0.28])
+def test_a_corner_meets_an_inclined_edge_where_it_is(place):
+    """A small cube falls with its corner on a smooth slope of 60 degrees, and is thrown off along its normal."""
+    slope, size = np.pi / 3, 0.1
+    along, normal = np.array([np.cos(slope), np.sin(slope)]), np.array([-np.sin(slope), np.cos(slope)])
+    foot = np.array([0.0, 0.1])
+    wedge = mr.Polygon([foot, foot + 0.3 * along, (foot + 0.3 * along) * (1, 0) + (0, 0.1)], fixed=True, name="wedge")
+    masonry = mr.Masonry([GROUND, wedge, box(1.0, 1.0 + size, 0.0, size)], k_n=1e10, friction=0.0, xi=0.0)
+    over = foot + place * along + (np.sqrt(0.5) * size + 1e-3) * normal  # its diagonal stands on the slope
+    pose = np.array([[*(over - (1.0 + 0.5 * size, 0.5 * size)), np.pi / 4 - slope]])
+    speed = -2.0 * normal
+    case = mr.MasonryCase(masonry, 1.3e-3)
+    run = mr.solve_explicit(case, timestep=1e-6, start=(pose, np.array([[*speed, 0.0]])), output_step=1e-4)
+    left = run.velocity[-1, 0, :2] + (0.0, mr.GRAVITY * run.t[-1])
+    np.testing.assert_allclose(left, 2.0 * normal, atol=1e-2)
+
+
 @pytest.mark.slow
 def test_a_wall_falls_into_a_heap_and_the_books_close():
     wall = mr.Masonry.running_bond(length=2.0, height=2.0, unit=(0.5, 0.25), k_n=1e9, friction=0.6)

@@ -217,6 +217,11 @@ def test_a_run_goes_on_where_another_ended():
     np.testing.assert_allclose(second.pose[0], first.pose[-1])
 
 
+def test_the_time_of_the_steps_is_a_part_of_the_whole():
+    stats = solve(CUBE, 0.1, PULSE).stats
+    assert 0 < stats["stepping_time"] < stats["wall_time"]
+
+
 def test_it_is_a_solver_of_campaigns():
     row = mr.Analysis(mr.MasonryCase(CUBE, 0.05, PULSE), solver="explicit")()
     assert row["outcome"] == "at rest" or row["outcome"] == "time ended"

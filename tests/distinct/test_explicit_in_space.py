@@ -117,9 +117,10 @@ def both(plane, duration, motion=None, **options):
     space = mr.Masonry([prism(polygon) for polygon in plane.blocks], **given)
     flat_effects, effects = options.pop("effects", ((), ()))
     flat_supports, supports = options.pop("supports", ((), ()))
+    of_flat, of_deep = options.pop("each", ({}, {}))
     options |= {"timestep": 1e-4, "ledger": True}
-    flat = solve(plane, duration, motion, effects=flat_effects, supports=flat_supports, **options)
-    return flat, solve(space, duration, motion, effects=effects, supports=supports, **options)
+    flat = solve(plane, duration, motion, effects=flat_effects, supports=flat_supports, **options, **of_flat)
+    return flat, solve(space, duration, motion, effects=effects, supports=supports, **options, **of_deep)
 
 
 def assert_same(flat, deep, within):
@@ -167,6 +168,21 @@ def test_the_plane_inside_space_a_block_slides_over_an_edge_and_a_support_moves(
     assert list(run.fallen) == ["block_1"]
     count = int(0.6 / 1e-3)
     np.testing.assert_allclose(angles(spatial)[:count], run.theta[:count], atol=1e-9)
+
+
+def test_the_plane_inside_space_a_cap_slides_off_its_free_pier():
+    """Corners of the pier press on the wider cap, and past its end the edge of the cap presses on the pier.
+
+    A load on the rear of the cap keeps it down until it has passed the pier.
+    """
+    pier, cap = brick(-0.2, 0.2, 0, 1), brick(-0.4, 0.4, 1, 1.2)
+    plane = mr.Masonry([FLOOR, pier, cap], k_n=1e8, k_s=1e8, friction=0.01, frequency=300.0)
+    velocity = {"velocity": [(0, 0, 0), (6.0, 0, 0)]}, {"velocity": [(0,) * 6, (6.0, 0, 0, 0, 0, 0)]}
+    loads = (mr.Load(2e4, 1.2, -0.18, block=2),), (mr.Load(2e4, at=(-0.18, 0, 1.2), block=2),)
+    run, spatial = both(plane, 0.15, each=velocity, effects=loads)
+    assert run.pose[-1, 1, 0] > 0.85
+    np.testing.assert_allclose(spatial.pose[:, :, [0, 2]], run.pose[:, :, :2], atol=2e-4)
+    np.testing.assert_allclose(angles(spatial), run.theta, atol=2e-3)
 
 
 @pytest.mark.slow
