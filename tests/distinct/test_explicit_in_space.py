@@ -170,6 +170,19 @@ def test_the_plane_inside_space_a_block_slides_over_an_edge_and_a_support_moves(
     np.testing.assert_allclose(angles(spatial)[:count], run.theta[:count], atol=1e-9)
 
 
+def test_the_plane_inside_space_a_block_spins_on_a_tie_a_damper_and_a_load():
+    """It turns by more than a right angle, and is held and loaded at points far from its centroid."""
+    plane = mr.Masonry([FLOOR, brick(-0.25, 0.25, 0, 1)], k_n=2e9, k_s=1e9, frequency=300.0)
+    tie, damper = {"stiffness": 5e3, "block": 1}, {"c": 100.0, "block": 1}
+    flat = mr.Tie(0.9, **tie), mr.Damper(0.2, **damper), mr.Load(500.0, 0.9, 0.1, block=1)
+    deep = (mr.Tie(at=(-0.25, 0, 0.9), **tie), mr.Damper(at=(-0.25, 0, 0.2), **damper),
+            mr.Load(500.0, at=(0.1, 0, 0.9), block=1))  # fmt: skip
+    velocity = {"velocity": [(0.5, 4.0, 6.0)]}, {"velocity": [(0.5, 0, 4.0, 0, 6.0, 0)]}
+    run, spatial = both(plane, 0.4, effects=(flat, deep), each=velocity)
+    assert run.theta.max() > 1.6
+    assert_same(run, spatial, 1e-6)
+
+
 def test_the_plane_inside_space_a_cap_slides_off_its_free_pier():
     """Corners of the pier press on the wider cap, and past its end the edge of the cap presses on the pier.
 

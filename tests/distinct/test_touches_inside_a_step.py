@@ -79,6 +79,7 @@ def test_a_ledger_that_does_not_close_warns_and_names_a_step_that_closes_it():
     share = np.abs(run.energy_residual).max() / run.ledger.largest
     assert 0.01 < share < 0.1
     assert f"{share:.1%}" in str(said[0].message)
+    assert said[0].filename == __file__  # it points at the call
     named = float(re.search(r"timestep = (\S+) s", str(said[0].message))[1])
     assert named == pytest.approx(0.005 / share * run.stats["timestep"], rel=0.05)
     run = mr.solve_explicit(case, timestep=named, ledger=True)  # a warning is an error here
@@ -100,7 +101,10 @@ def test_energy_that_ends_of_faces_put_in_has_an_account_and_warns():
         (0.2, -0.4, 0.0, -1.4, -5.8, -3.9),
     ]
     case = mr.MasonryCase(dome, 0.1, velocity=velocity)
-    with pytest.warns(UserWarning, match=r"contacts at ends of faces put in \S+ J, \d+\.\d% of the energy there was"):
+    with pytest.warns(
+        UserWarning, match=r"contacts at ends of faces put in \S+ J, \d+\.\d% of the energy there was"
+    ) as said:
         run = mr.solve_explicit(case, timestep=2e-5, ledger=True)
+    assert said[0].filename == __file__
     assert run.ledger.ends["joints"].min() < -0.01 * run.ledger.kinetic.max()
     assert np.abs(run.energy_residual).max() < 1e-3 * run.ledger.largest
