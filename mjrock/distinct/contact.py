@@ -199,7 +199,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
         line = lines[p]
         meet = meeting(system, line, axes)
         if 0 <= meet.gap < TURNED_OVER:
-            line.widest = max(line.widest, meet.gap)
+            line.widest = max(line.widest, 0.0 if meet.past else meet.gap)
             if line.depth == 0:  # nor did it press in the last step
                 put(line.grip, no_spin(axes))
                 continue

@@ -18,7 +18,7 @@ from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
 from .reading import Run, response_of
-from .setup import setup_of
+from .setup import carried_on, setup_of
 from .system import Books, Samples
 
 
@@ -49,8 +49,9 @@ def solve_explicit(
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.
         ledger: whether to account for every part of the energy. A residual above 1 % of the largest part warns.
-        start: pose and velocity to start from instead of the release, the `end` of an earlier response. It does not go
-            with ties that yield.
+        start: pose and velocity to start from instead of the release, the `end` of an earlier response. The end of
+            explicit steps of the same structure carries on to rounding, histories of supports from wherever they have
+            ended. It does not go with ties that yield.
 
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, for a step that is not stable,
@@ -68,7 +69,7 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-9, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
-    setup = setup_of(case, contacts, state)
+    setup = carried_on(setup_of(case, contacts, state), start)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
     count, bodies = steps.samples, len(scene.bodies.names)
@@ -83,18 +84,20 @@ def solve_explicit(
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
     stepping = time.perf_counter()
-    system, made, kept = follow(setup, books, samples, steps)
+    followed = follow(setup, books, samples, steps)
     took = time.perf_counter() - stepping
     stats: dict[str, Any] = {
-        "steps": made,
+        "steps": followed.steps,
         "timestep": steps.h,
         "stable_timestep": limit,
         "share": steps.h / limit,
-        "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
+        "friction": "springs" if np.isfinite(followed.system.lines["k_s"]).any() else "rigid",
         "stepping_time": took,
     }
-    samples = samples.taken(slice(kept))
-    run = Run(case, contacts, scene, setup.course, system, books, samples, steps.times()[:kept])
+    kept = slice(followed.samples)
+    run = Run(
+        case, contacts, scene, setup.course, followed, books, samples.taken(kept).since_the_start(), steps.times()[kept]
+    )
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     response.stats["wall_time"] = time.perf_counter() - begun
     return response

@@ -14,6 +14,7 @@ from ..quantities import Array
 from ..result.samples import intervals
 from ..scene.explicit_step import stepping_seconds
 from .loop import Clock, advance
+from .memory import Memory, remember
 from .setup import Setup
 from .system import Books, Samples, System
 
@@ -83,32 +84,46 @@ class Stepping(NamedTuple):
         return np.asarray(t)
 
 
-def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> tuple[System, int, int]:
+class Followed(NamedTuple):
+    """What was followed: the system at the end, how many steps it took, of how many samples, and what is remembered."""
+
+    system: System
+    steps: int
+    samples: int
+    memory: Memory | None
+
+
+def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> Followed:
     """Make the steps, with a progress bar where they take more than some seconds.
 
     Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
-
-    Returns:
-        The system at the end, how many steps it took, and of how many samples.
     """
-    system, encounters, stop = setup.system, setup.encounters, stepping.last + 1
-    clock = Clock(0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends)
-    at_once, look, ended = max(1, FIRST // max(1, len(system.lines))), stop, False
+    system, encounters, stop, memory = setup.system, setup.encounters, stepping.last + 1, setup.memory
+    clock = Clock(0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes))
+    look = 0
+    if memory is not None:
+        clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look
+    at_once, ended, memory = max(1, FIRST // max(1, len(system.lines))), False, None
     with tqdm(total=stepping.end, desc="explicit", unit="s", delay=3, disable=None, leave=False) as bar:
         while clock.step < stop and not ended:
-            if encounters is not None and (clock.step == look or clock.step == 0):
+            if clock.step == stepping.last:
+                memory = remember(setup.of, system, clock, setup.blocks)
+                if encounters is not None:
+                    memory = memory._replace(keys=encounters.keys, look=look - clock.step)
+            if encounters is not None and clock.step == look:
                 look = clock.step + max(1, int(LOOK / clock.h))
                 loose = encounters.loose(system)
                 if loose.any():
                     system = encounters.looked_for(system, loose, (look - clock.step) * clock.h)
             begun = time.perf_counter()
-            clock = clock._replace(stop=min(stop, look, clock.step + at_once))
+            ahead = (look if encounters is not None else stop, clock.step + at_once)
+            clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))
             step, row, ended = advance(system, books, samples, clock)
             took = time.perf_counter() - begun
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
             bar.update((step - clock.step) * clock.h)
             clock = clock._replace(step=step, row=row)
-    return system, clock.step, clock.row
+    return Followed(system, clock.step, clock.row, None if ended else memory)
 
 
 def warn_if_long(setup: Setup, stepping: Stepping) -> None:

@@ -1,7 +1,7 @@
 """The explicit steps: forces at the pose, then velocities and spins, then the pose.
 
-Velocities and spins stand half a step before the pose, and the step is symplectic Euler's. At the start they stand at
-the pose, and the forces act on them for half a step.
+Velocities and spins stand half a step before the pose, and the step is symplectic Euler's. At a start that no step led
+to they stand at the pose, and the forces act on them for half a step.
 """
 
 from __future__ import annotations
@@ -56,6 +56,8 @@ class Clock(NamedTuple):
         stop: number of the step before which to stop.
         last: number of the last step of the run.
         ends: rotation at which the run ends [rad], infinite for a run to its end.
+        before: length of the step that led to the start, zero for a start that no step led to [s].
+        pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
     """
 
     step: int
@@ -65,6 +67,8 @@ class Clock(NamedTuple):
     stop: int
     last: int
     ends: float
+    before: float
+    pushed: Vector
 
 
 @inlined
@@ -85,16 +89,22 @@ def upwards(size: float, axes: tuple[int, ...]) -> Vector:
 
 
 @jitable
-def start_forces(system: System, books: Books, t: float, h: float, kick: float, axes: tuple[int, ...]) -> None:
-    """Start the forces with weight and ground motion, and book the work of the ground in the last step."""
-    totals, last, done = books.totals[0], h if kick == h else 0.0, 0.0
-    push = scaled(h / kick, accelerated(system.ground, t, h, axes))
+def start_forces(system: System, books: Books, push: Vector, before: float, axes: tuple[int, ...]) -> None:
+    """Start the forces with weight and ground motion, and book the work of the ground in the last step.
+
+    Args:
+        system, books: the bodies and the accounts.
+        push: mean acceleration of the ground while the forces act [m/s2].
+        before: length of the last step [s].
+        axes: of the system.
+    """
+    totals, done = books.totals[0], 0.0
     mean = scaled(0.5, plus(push, components(totals.push, axes)))
     weight = plus(push, upwards(GRAVITY, axes))
     for b in range(len(system.bodies)):
         body = system.bodies[b]
         take_turn(body, axes)
-        done -= last * body.mass * dot(mean, components(body.velocity, axes))
+        done -= before * body.mass * dot(mean, components(body.velocity, axes))
         put(body.force, scaled(-body.mass, weight))
         put(body.moment, no_spin(axes))
     totals.ground += done
@@ -157,11 +167,11 @@ def keep_account(account: Array, kept: Array) -> None:
 
 
 @jitable
-def keep_velocity(bodies: Rows, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
     """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
-    Angular momenta give way to spins in the axes of the bodies."""
-    kinetic, potential, share, d = 0.0, 0.0, 0.5 if row > 0 else 0.0, len(axes)
+    Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]."""
+    kinetic, potential, share, d = 0.0, 0.0, 0.5 if before > 0 else 0.0, len(axes)
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
         linear, momentum = components(velocity, axes), spin_components(velocity[d:], axes)
@@ -206,10 +216,14 @@ def make_steps(
     n, h, row, totals = clock.step, clock.h, clock.row, books.totals[0]
     accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
     while n < clock.stop:
-        before, kick = h if n > 0 else 0.0, h if n > 0 else 0.5 * h
+        before = h if n > 0 else clock.before
+        kick = 0.5 * (before + h)
         sampled = n % clock.every == 0 or n == clock.last
         move_supports(system.supports, n * h, before)
-        start_forces(system, books, n * h, h, kick, axes)
+        push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
+        if n == 0:
+            push = plus(push, scaled(0.5 * before / kick, clock.pushed))
+        start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
         sticking = press_lines(system, books, before, kick, axes)
         if sampled:
@@ -221,11 +235,11 @@ def make_steps(
         if accounted:
             rubbed, put_in = totals.friction, totals.ground
             book_rubbing(system, books, sticking, axes)
-            if sampled and n > 0:  # half of it belongs to the time before the pose
+            if sampled and before > 0:  # half of it belongs to the time before the pose
                 samples.energy[row].friction += 0.5 * (totals.friction - rubbed)
                 samples.energy[row].ground += 0.5 * (totals.ground - put_in)
         if sampled:
-            keep_velocity(system.bodies, samples, row, axes)
+            keep_velocity(system.bodies, samples, row, before, axes)
             row += 1
             if is_astray(system.bodies, clock.ends, axes):
                 return n, row, True

@@ -32,7 +32,9 @@ from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.quiet import is_quiet
 from ..scene.scene import Scene
-from .system import Books, Samples, System
+from .following import Followed
+from .memory import remembered
+from .system import Books, Samples
 
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
@@ -49,7 +51,7 @@ class Run:
     contacts: Contacts | None
     scene: Scene
     course: Course
-    system: System
+    followed: Followed
     books: Books
     samples: Samples
     t: Array
@@ -94,7 +96,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         plastic=plastic_of(run),
         ledger=ledger_of(run, kept) if ledger else None,
         stats=reading.pop("stats") | stats,
-        end=(samples.pose[-1].copy(), samples.velocity[-1].copy()),
+        end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
         **reading,
     )
     warn_if_open(response, run.rounding)
@@ -103,7 +105,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def plastic_of(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
-    ties, books = run.system.ties, run.books
+    ties, books = run.followed.system.ties, run.books
     links = run.scene.links.sprung
     start = run.scene.ties.reach - links.reach
     columns = zip(links.names, ties["drawn"], books.ties, ties["broken"], books.broken, start, strict=True)
@@ -141,7 +143,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
     opening = motion.opening.copy()
     of = scene.contacts.joint
-    np.maximum.at(opening, of, run.system.lines["widest"][: len(of)])
+    np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])
     return {
         "joints": JointMotion(opening, motion.sliding, fallen),
         "outcome": outcome,
@@ -222,7 +224,7 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         t=run.t[kept],
         **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
         dashpots=dashpots,
-        friction=np.asarray(energy["friction"] - energy["friction"][0]),
+        friction=np.asarray(energy["friction"]),
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),

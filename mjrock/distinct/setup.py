@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from ..problem.damping.contacts import Contacts
@@ -22,6 +22,7 @@ from ..scene.scene import Scene
 from .assembly import copied, friction_at_rest, moved_by, started, system_of, take_grips
 from .encounters import Encounters
 from .limit import longest_step
+from .memory import Memory, memory_of, recalled
 from .system import System
 
 SHARE_OF_A_WALL = 0.005
@@ -39,6 +40,9 @@ class Setup:
         spacing: largest spacing of the samples [s].
         ends: rotation at which the run ends [rad].
         encounters: where blocks that fall meet others, or None where that is not followed.
+        of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
+        blocks: the fixed blocks that move, in the order of the supports.
+        memory: of the run that this one carries on, or None.
     """
 
     scene: Scene
@@ -49,17 +53,34 @@ class Setup:
     spacing: float = math.inf
     ends: float = math.inf
     encounters: Encounters | None = None
+    of: object = None
+    blocks: tuple[str, ...] = ()
+    memory: Memory | None = None
 
 
 def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
     """A wall or masonry at the start of a case, or in a given state."""
-    if isinstance(case, MasonryCase):
-        return setup_of_masonry(case, state)
+    return setup_of_masonry(case, state) if isinstance(case, MasonryCase) else setup_of_wall(case, contacts, state)
+
+
+def carried_on(setup: Setup, start: object) -> Setup:
+    """The setup that carries on the steps of another run, if the start is the end of one of the same structure."""
+    memory = memory_of(start, setup.of)
+    if memory is None:
+        return setup
+    if setup.encounters is not None and memory.keys is not None:
+        setup.encounters.keys = memory.keys
+    return replace(setup, memory=memory, system=recalled(memory, setup.system, setup.blocks))
+
+
+def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) -> Setup:
+    """A wall at the start of a case, or in a given state."""
     scene = scene_of(case, contacts)
     course = continued(course_of(case, scene), state)
     system = started(system_of(scene), course.pose, course.velocity)._replace(ground=course.ground)
     # peaks and impacts are read off the samples
-    return Setup(scene, course, system, longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE)
+    followed = longest_step(system), SHARE_OF_A_WALL, 1e-3 / case.wall.p, ON_ITS_FACE
+    return Setup(scene, course, system, *followed, of=(scene.key, contacts))
 
 
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
@@ -70,7 +91,8 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
     limit, encounters = longest_step(system), Encounters(masonry, system, scene.contacts.joint)
-    return Setup(scene, course, encounters.made_room(system), limit, SHARE, encounters=encounters)
+    of, blocks = (masonry, case.effects), tuple(support.block for support in case.supports)
+    return Setup(scene, course, encounters.made_room(system), limit, SHARE, encounters=encounters, of=of, blocks=blocks)
 
 
 def continued(course: Course, state: State | None) -> Course:

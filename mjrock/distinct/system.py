@@ -112,3 +112,11 @@ class Samples(NamedTuple):
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples."""
         return Samples(*(part[which] for part in self))  # type: ignore[arg-type]
+
+    def since_the_start(self) -> Samples:
+        """The same with accounts that begin at the first sample."""
+        for name in ("friction", "ground", "ends"):
+            self.energy[name] -= self.energy[name][0]
+        for account in (self.dampers, self.ties, self.broken, self.dashpots):
+            account -= account[0]
+        return self

@@ -127,3 +127,32 @@ def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, 
     assert held == pytest.approx(0.5 * (2000 * mr.GRAVITY) ** 2 / 1e9)
     np.testing.assert_allclose(run.ledger.ground[1:], -held, rtol=1e-3)
     assert run.velocity[-1, 0, 2 if in_space else 1] == pytest.approx(-mr.GRAVITY * 0.1, rel=1e-2)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_face_that_has_ended_is_no_opening(in_space):
+    """A table is pulled from under a slab."""
+    if in_space:
+        table, slab = (
+            mr.Polyhedron.box((2, 3, 1), (0, 0, -0.5), fixed=True),
+            mr.Polyhedron.box((1, 1, 0.3), (0, 0, 0.15)),
+        )
+    else:
+        table = mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True)
+        slab = mr.Polygon([(-0.5, 0), (0.5, 0), (0.5, 0.3), (-0.5, 0.3)])
+    masonry = mr.Masonry([table, slab], k_n=1e7, friction=0.1, frequency=100.0)
+    t = np.linspace(0.0, 0.05, 11)
+    history = (t, -720.0 * t**2, *(0.0 * t for _ in range(1 + in_space)))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.06, supports={masonry.names[0]: history}))
+    assert run.opening.max() < 1e-3
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_push_that_friction_holds_swings_on_the_springs_and_rubs_nothing(in_space):
+    """The springs are stretched by the motion after the start alone."""
+    masonry = cube_on_ground(in_space, k_n=1e9, k_s=1e9, friction=0.5, xi=0.0)
+    case = mr.MasonryCase(masonry, 0.05, velocity=[(1e-3, *(0.0 for _ in range(5 if in_space else 2)))])
+    run = mr.solve_explicit(case, timestep=1e-5, ledger=True, output_step=1e-4)
+    assert run.pose[:, 0, 0].max() < 1e-5
+    assert np.abs(run.ledger.friction).max() < 1e-4 * run.energy[0]
+    assert unaccounted(run) < 1e-3
