@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from ..quantities import require_flag, require_size, require_within
 from ..result.response import Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
+from ..result.stopwatch import Stopwatch
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
@@ -61,7 +61,7 @@ def solve_explicit(
         UserWarning: of steps that would take more than some ten seconds, and how long.
         Implausible: of a given timestep that is far below what the contacts need.
     """
-    begun = time.perf_counter()
+    watch = Stopwatch()
     require_case(case, contacts)
     require_flag("ledger", ledger)
     if timestep is not None:
@@ -82,19 +82,19 @@ def solve_explicit(
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
-    stepping = time.perf_counter()
+    stepping = Stopwatch()
     system, made, kept = follow(setup, books, samples, steps)
-    took = time.perf_counter() - stepping
+    took = stepping.stepping()
     stats: dict[str, Any] = {
         "steps": made,
         "timestep": steps.h,
         "stable_timestep": limit,
         "share": steps.h / limit,
         "friction": "springs" if np.isfinite(system.lines["k_s"]).any() else "rigid",
-        "stepping_time": took,
+        **took,
     }
     samples = samples.taken(slice(kept))
     run = Run(case, contacts, scene, setup.course, system, books, samples, steps.times()[:kept])
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
-    response.stats["wall_time"] = time.perf_counter() - begun
+    response.stats.update(watch.took())
     return response

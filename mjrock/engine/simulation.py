@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 from ..method import METHOD, Method
@@ -15,6 +14,7 @@ from ..quantities import require_flag, require_kind
 from ..result.ending import Outcome
 from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
+from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
@@ -89,7 +89,7 @@ def simulate(
             than eight blocks in a fraction of the time, or if a tie without an `ultimate` was drawn out by more than a
             bar or an anchor follows.
     """
-    begun = time.perf_counter()
+    watch = Stopwatch()
     require_case(case, contacts)
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method)
     if isinstance(case, MasonryCase):
@@ -121,7 +121,7 @@ def simulate(
         warn_if_open(response, run, asked, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
-    response.stats["wall_time"] = time.perf_counter() - begun
+    response.stats.update(watch.took())
     return response
 
 
@@ -137,11 +137,11 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
         try:
             with engine_of(scene) as engine:
                 engine.place(course)
-                begun = time.perf_counter()
+                watch = Stopwatch()
                 steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
-            took = time.perf_counter() - begun
+            took = watch.stepping()
             run = Run.judged(asked, scene, course, steps)
-            return run, {"timestep": h, "accuracy": used, "newmark_beta": None, "stepping_time": took}
+            return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
             if used < 0.02 * options.accuracy:
                 raise explained(error, scene, h, used) from None
@@ -159,10 +159,10 @@ def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float
         with engine_of(scene) as engine:
             engine.follow(h, pair_rows(scene, h, beta, method))
             engine.release(course)
-            begun = time.perf_counter()
+            watch = Stopwatch()
             steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
-        took = time.perf_counter() - begun
+        took = watch.stepping()
         run = Run.judged(asked, scene, course, steps)
     except StepError as error:
         raise explained(error, scene, h, None) from None
-    return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, "stepping_time": took}
+    return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, **took}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -26,14 +27,16 @@ GONE = 0.1
 
 
 def masonry_scene(case: MasonryCase) -> Scene:
-    """The scene of a case: the masonry under its weight, which all cases of it with the same effects share.
+    """The scene of a case: the masonry under its weight, or as drawn, which cases of it with the same effects share.
 
     Bodies have the names of the blocks that are not fixed, in order. The groups of contacts are the joints, by name.
 
     Raises:
-        ValueError: if the masonry does not stand. The message names the blocks that fall.
+        ValueError: if masonry that is to settle does not stand. The message names the blocks that fall.
     """
     require_kind("case", case, MasonryCase)
+    if not case.settled:
+        return drawn_masonry(case.masonry, case.effects)
     require_standing(case.masonry, case.effects)
     return standing_masonry(case.masonry, case.effects)
 
@@ -126,6 +129,13 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
         limits=limits,
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )
+
+
+@lru_cache(maxsize=16)
+def drawn_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
+    """The same scene with the blocks as drawn in the place of the pose of rest."""
+    scene = standing_masonry(masonry, effects)
+    return replace(scene, settled=scene.potential.unmoved)
 
 
 def _sorted(lines: Lines, number: Integers) -> Lines:

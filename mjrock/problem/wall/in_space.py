@@ -18,7 +18,7 @@ BLOCKS = 100_000
 FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
 LATER = {"later": True}
-"""Metadata of a field that came later. It is given by keyword, and None unless it is set."""
+"""Metadata of a field that came later. It is given by keyword. Fingerprints leave it out while it has its default."""
 
 
 def written(effect: Any) -> str:
