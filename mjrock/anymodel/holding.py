@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
+from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, named
 from .felt import Felt
 from .meeting import Pose
-from .numbers import rebound_at
 from .springs import ACTUATOR, JOINT, TENDON
 
 STIFF = 0.05

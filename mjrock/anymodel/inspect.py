@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import mujoco
 
+from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within
 from .filters import every_pair
@@ -15,7 +16,6 @@ from .geoms import GeomPair, compiled
 from .holding import holding
 from .meeting import Meeting, Pose, elsewhere, meeting
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
-from .numbers import rebound_at
 from .row_of_model import Row
 
 IMMOVABLE = 10.0

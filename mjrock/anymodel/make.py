@@ -15,7 +15,7 @@ from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
 from ..quantities import Array, named, require_whole, require_within, shown, spelt
-from .contact import PairContact
+from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
 from .geoms import GeomPair, compiled
 from .holding import holding
 from .meeting import Company, Meeting, Pose, elsewhere, meeting
@@ -26,10 +26,7 @@ from .notes import (
     ContactWarning,
     resolving_step,
     rounded_down,
-    soft_spoilers,
-    spoilers,
     stiffest,
-    weight_spoilers,
 )
 from .row_of_model import Row
 

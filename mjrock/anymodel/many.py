@@ -12,12 +12,12 @@ from typing import Any
 import mujoco
 
 from ..quantities import Array, named, shown
-from .contact import PairContact, document, options_of, write
+from .contact import PairContact, document, options_of, spoilers, write
 from .filters import makes
 from .geoms import BODY, GEOM, GeomPair, compiled, geom_id, names_of
 from .make import Asked, beside, contact_of
 from .meeting import Pose
-from .notes import VARIES, ContactWarning, spoilers
+from .notes import VARIES, ContactWarning
 
 TAKES = tuple(field.name for field in fields(Asked) if field.name != "timestep")
 """What can be asked of each contact."""

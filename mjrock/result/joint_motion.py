@@ -58,7 +58,7 @@ def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array
         start: pose at rest, shape (n nq,).
         pose: of the steps or samples, shape (steps, n nq).
     """
-    joints = masonry.joints
+    joints = masonry.plane_joints
     widths = np.array([joint.width for joint in joints])
     (back, forth), frames = np.array([joint.travel for joint in joints]).T, frames_of(start, places.freedom)
     at_rest = np.array([along(places, i, frames, start).place for i in range(len(joint))])  # of each line on its face

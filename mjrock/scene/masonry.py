@@ -11,6 +11,8 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.polygon import Polygon
+from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.masonry.statics import falling, friction_lacking, slippery
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
@@ -111,7 +113,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             inertia=inertia[free],
             rest=centroids[free],
             outlines=tuple(blocks[i].corners - centroids[i] for i in free),
-            length=max(float(np.ptp(blocks[i].corners[:, 1])) if masonry.in_space else blocks[i].length for i in free),
+            length=max(map(_length, (blocks[i] for i in free))),
         ),
         ContactPoints(
             body=number[lines.body],
@@ -136,6 +138,11 @@ def drawn_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
     """The same scene with the blocks as drawn in the place of the pose of rest."""
     scene = standing_masonry(masonry, effects)
     return replace(scene, settled=scene.potential.unmoved)
+
+
+def _length(block: Polygon | Polyhedron) -> float:
+    """Extent along the facade [m]."""
+    return block.length if isinstance(block, Polygon) else float(np.ptp(block.corners[:, 1]))
 
 
 def _sorted(lines: Lines, number: Integers) -> Lines:

@@ -70,7 +70,7 @@ def lost(made: mr.Masonry, rotation: float = ROTATIONS[0], accuracy: float = 1e-
 
 def uppermost(made: mr.Masonry) -> mr.Masonry:
     """The uppermost block on a fixed one, with the stiffness and the dashpots that its joint has in a stack."""
-    top, number = made.blocks[-1], len(made.joints) - 1
+    top, number = made.polygons[-1], len(made.joints) - 1
     under = mr.Polygon(top.corners - [0, np.ptp(top.corners[:, 1])], length=top.length, fixed=True)
     k_n, xi = float(made.joint_stiffness[number]), 0.5 * float(made.retardation[number])
     return mr.Masonry((under, dataclasses.replace(top, name="top")), k_n, HOLDS, xi=xi, frequency=1.0)

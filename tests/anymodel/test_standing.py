@@ -9,7 +9,7 @@ import pytest
 from pairs import BALL, BOX, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 
 import mjrock as mr
-from mjrock.anymodel.notes import weight_spoilers
+from mjrock.anymodel.contact import weight_spoilers
 from scripts.checks import asked_and_found as study
 
 LEG = study.leg(others=study.BENT).text()

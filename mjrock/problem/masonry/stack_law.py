@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -57,7 +56,9 @@ def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> B
     return Block(b=b, h=height, length=joint.length, density=float(mass.sum()) / (4 * b * height * joint.length))
 
 
-def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int, law: Law | str) -> Array:
+def retardations(
+    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int, law: Law | str
+) -> Array:
     """c/k of each joint of a stack [s], as `Contacts.from_law` gives it for the rigid wall above.
 
     What is asked for is the restitution of that wall by conservation of angular momentum. A joint with a fixed block
@@ -89,7 +90,11 @@ def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int,
             base, k_side = under[joint.above], float(k_n[i])
             while not blocks[joints[base].below].fixed:
                 base = under[joints[base].below]
-            stop = [max(j.start[1], j.end[1]) for j in joints if j.below == joint.below and is_side(blocks, j)]
+            stop = [
+                max(j.start[1], j.end[1])
+                for j in joints
+                if isinstance(j, Joint) and j.below == joint.below and is_side(blocks, j)
+            ]
             top = max(stop) - float(joints[base].middle[1])
         wall = walls[base]
         with warnings.catch_warnings(record=True) as caught:
