@@ -39,7 +39,7 @@ OTHERS = (
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
-    *("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model"),
+    *("contact", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model"),
     *("filters", "meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""

@@ -114,7 +114,7 @@ class PairContact:
     @property
     def restitution(self) -> float:
         """Coefficient of restitution e of an approach along the normal [-], at the speed for which the contact was made
-        with gravity, else without gravity, see `rebound_restitution`."""
+        with gravity, otherwise without gravity, see `rebound_restitution`."""
         return rebound_restitution(self.xi) if self.speed is None else self.restitution_at(self.speed)
 
     def restitution_at(self, speed: float) -> float:

@@ -35,7 +35,7 @@ EQUALITY = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 
 
 @dataclass(frozen=True)
-class Felt:
+class EffectiveMass:
     """What a contact feels.
 
     Args:
@@ -57,14 +57,14 @@ class Felt:
 
 def felt(
     pair: GeomPair,
-    held: Held,
+    held: PoseConstraints,
     away: Array,
     points: tuple[Array, Array],
     *,
     friction: float = 0.0,
     frequency: float | None = None,
     k: float | None = None,
-) -> Felt:
+) -> EffectiveMass:
     """What a contact feels in a pose.
 
     Args:
@@ -84,7 +84,7 @@ def felt(
         jacobian += sign * rows
     rows = _frame(away) @ jacobian
     if not np.any(np.abs(rows[0]) > 1e-9):
-        return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
+        return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     free = held.free(rows)
     soft = held.answer(free, held.softness, held.equality)
     mass = _mass(soft, rows, friction)[0]
@@ -94,7 +94,7 @@ def felt(
     softness = np.where((held.rate < HOLDS * frequency) | limit, held.softness, 0.0)
     answer = held.answer(free, softness, held.equality)
     if not _free(answer, rows) > FIXED * _free(free, rows):
-        return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
+        return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     mass, impulse = _mass(answer, rows, friction)
     slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * TIED > _stuck(answer, rows))
     if slides:
@@ -106,7 +106,7 @@ def felt(
     pressed = limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
     limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer
     stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
-    return Felt(
+    return EffectiveMass(
         mass=mass,
         slides=slides,
         motion=motion,
@@ -116,7 +116,7 @@ def felt(
     )
 
 
-class Held:
+class PoseConstraints:
     """The constraints of a model in its pose but for contacts, and what the joints feel of gravity.
 
     Attributes:

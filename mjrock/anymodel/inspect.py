@@ -14,7 +14,7 @@ from ..quantities import Array, require_flag, require_whole, require_within
 from .filters import every_pair
 from .geoms import GeomPair, compiled
 from .holding import holding
-from .meeting import Meeting, Pose, elsewhere, meeting
+from .meeting import Meeting, Pose, meeting, other_keyframes
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
 from .row_of_model import Row
 
@@ -185,7 +185,7 @@ def _notes(
     if found.k > 0:
         yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
-        yield from elsewhere(pair, pose, met, contacts, row.mixed.sliding)
+        yield from other_keyframes(pair, pose, met, contacts, row.mixed.sliding)
 
 
 def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:

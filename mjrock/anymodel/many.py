@@ -15,11 +15,11 @@ from ..quantities import Array, named, shown
 from .contact import PairContact, document, options_of, spoilers, write
 from .filters import makes
 from .geoms import BODY, GEOM, GeomPair, compiled, geom_id, names_of
-from .make import Asked, beside, contact_of
+from .make import ContactRequest, beside, contact_of
 from .meeting import Pose
 from .notes import VARIES, ContactWarning
 
-TAKES = tuple(field.name for field in fields(Asked) if field.name != "timestep")
+TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
 """What can be asked of each contact."""
 Geom = str | int
 
@@ -113,7 +113,7 @@ def contacts_for(
             '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
         )
     pose = Pose(whole, keyframe, qpos)
-    meant: dict[frozenset[int], tuple[tuple[int, int], Asked, bool]] = {}
+    meant: dict[frozenset[int], tuple[tuple[int, int], ContactRequest, bool]] = {}
     for key, values in pairs.items():
         asked = _asked(key, values, timestep)
         for geoms in _meant(whole, key):
@@ -135,7 +135,7 @@ def contacts_for(
     return contacts
 
 
-def _asked(key: object, values: object, timestep: object) -> Asked:
+def _asked(key: object, values: object, timestep: object) -> ContactRequest:
     if not isinstance(key, tuple) or len(key) != 2:
         raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
     if not isinstance(values, Mapping):
@@ -143,7 +143,7 @@ def _asked(key: object, values: object, timestep: object) -> Asked:
     unknown = [str(name) for name in values if name not in TAKES]
     if unknown:
         raise ValueError(f"pairs of {shown(key)} have {named(unknown)}; each takes {', '.join(TAKES)}")
-    return Asked(**values, timestep=timestep)
+    return ContactRequest(**values, timestep=timestep)
 
 
 def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:

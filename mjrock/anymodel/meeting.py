@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers, require_array, shown
-from .felt import Felt, Held, felt
+from .felt import EffectiveMass, PoseConstraints, felt
 from .filters import makes
 from .geoms import FARTHEST, GeomPair
 from .landing import DEPTH, Ground, Landing, landing
@@ -64,9 +64,9 @@ class Pose:
         return Ground(self.model, self.data)
 
     @cached_property
-    def held(self) -> Held:
+    def held(self) -> PoseConstraints:
         """The constraints of the pose."""
-        return Held(self.model, self.data)
+        return PoseConstraints(self.model, self.data)
 
     @cached_property
     def springs(self) -> Springs:
@@ -75,7 +75,7 @@ class Pose:
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
-        """The poses of the model's keyframes, if this one is none of them and was not asked for."""
+        """The poses of the model's keyframes, if this one is not among them and was not asked for."""
         return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
 
 
@@ -84,7 +84,7 @@ class Company(NamedTuple):
 
     Args:
         level: those that land together with it, and share the mass.
-        late: how much sooner or later they touch [m], where that is more than on a level face, else zero.
+        late: how much sooner or later they touch [m], where that is more than on a level face, otherwise zero.
         apart: those that land before or after it.
     """
 
@@ -104,7 +104,7 @@ class Meeting:
     """
 
     points: int
-    felt: Felt
+    felt: EffectiveMass
     company: Company
 
     @property
@@ -200,7 +200,7 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     )
 
 
-def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:
+def other_keyframes(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
     names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):

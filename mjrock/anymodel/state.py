@@ -23,7 +23,7 @@ def keyframe_id(model: mujoco.MjModel, keyframe: object) -> int:
     if isinstance(keyframe, str):
         number = mujoco.mj_name2id(model, KEY, keyframe) if "\0" not in keyframe and keyframe.isprintable() else -1
         if number < 0:
-            raise ValueError(f"keyframe = {shown(keyframe)} is no keyframe of this model; it has: {known}")
+            raise ValueError(f"keyframe = {shown(keyframe)} is not a keyframe of this model; it has: {known}")
         return int(number)
     if model.nkey == 0:
         raise ValueError(f"keyframe = {shown(keyframe)} is given, and this model has none")

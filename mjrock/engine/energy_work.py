@@ -110,7 +110,7 @@ def given_back(scene: Scene, steps: Steps) -> Array:
     """Energy that ties and constant forces regain after each step but the last [J], shape (steps - 1,).
 
     An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken on the
-    way is then there again. It would else add up under a thrust that a resting wall bears for long.
+    way is then there again. Otherwise it would add up under a thrust that a resting wall bears for long.
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
     pose[::2], pose[1::2] = steps.pose, moved(steps.pose, steps.h[:, None] * steps.record.after, scene.freedom)[:-1]

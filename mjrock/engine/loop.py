@@ -73,11 +73,11 @@ def out_of_reach(reach: Reach, openings: Openings) -> bool:
 
 
 @inlined
-def at_the_pose(memory: Memory, state: Progress, last: float) -> None:
+def at_the_pose(memory: Memory, state: Progress, previous: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
     for j in range(len(state.rate)):
-        state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * last
-        state.velocity_now[j] = memory.velocity[j] + 0.5 * last * state.acceleration_now[j]
+        state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * previous
+        state.velocity_now[j] = memory.velocity[j] + 0.5 * previous * state.acceleration_now[j]
 
 
 @jitable
@@ -96,18 +96,18 @@ def follow_now(setting: Setting, state: Progress) -> None:
 
 
 @inlined
-def shift_velocity(memory: Memory, state: Progress, now: float, last: float) -> None:
+def shift_velocity(memory: Memory, state: Progress, step: float, previous: float) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
-    late, lag = 0.5 * (now - last), last - 0.25 * (last + now)
+    late, lag = 0.5 * (step - previous), previous - 0.25 * (previous + step)
     for j in range(len(state.rate)):
         memory.velocity[j] -= late * (state.acceleration[j] + lag * state.rate[j])
 
 
 @inlined
-def set_step(memory: Memory, points: Points, pace: Pace, now: float) -> None:
+def set_step(memory: Memory, points: Points, pace: Pace, step: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
-    memory.options[TIMESTEP] = now
-    memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, now), memory.rows)
+    memory.options[TIMESTEP] = step
+    memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, step), memory.rows)
 
 
 @jitable
@@ -126,7 +126,7 @@ def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, v
 
 @inlined
 def change_of_acceleration(
-    memory: Memory, setting: Setting, state: Progress, last: float, now: float, fresh: bool
+    memory: Memory, setting: Setting, state: Progress, previous: float, step: float, no_rate: bool
 ) -> float:
     """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
     change, masses = 0.0, setting.masses
@@ -134,11 +134,11 @@ def change_of_acceleration(
         difference = memory.acceleration[j] - state.acceleration[j]
         change += masses[j] * difference * difference
         state.change[j] = difference
-        state.rate[j] = 0.0 if fresh else difference / last
+        state.rate[j] = 0.0 if no_rate else difference / previous
         state.acceleration[j] = memory.acceleration[j]
     if len(setting.products) > 0:
         change += coupling(setting.products, state.change)
-    return now * now * change
+    return step * step * change
 
 
 @inlined
@@ -195,59 +195,59 @@ def fitted_loop(
 
     Returns the values of the clock, see `compiled`, and how many steps they were.
     """
-    t, h, last, energy, calm, fresh, abrupt, touches, ended = clock
+    t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
     axes = points.places.axes
-    if last == 0:
-        set_step(memory, points, pace, h)
-        find_acceleration(memory, setting, sliding, state.frames, -h)
+    if previous == 0:
+        set_step(memory, points, pace, allowed)
+        find_acceleration(memory, setting, sliding, state.frames, -allowed)
         copied(memory.acceleration, state.acceleration)
     while n < len(record.t) and not ended:
-        at_the_pose(memory, state, last)
+        at_the_pose(memory, state, previous)
         follow_now(setting, state)
-        if closure_changed(openings, state.closed) and last > pace.short and not fresh:
+        if closure_changed(openings, state.closed) and previous > pace.short and not no_rate:
             acceleration_from_engine(memory, setting, state, t)
-            h, calm, fresh = pace.short, 0, True
+            allowed, calm_steps, no_rate = pace.short, 0, True
 
         # predict
-        now = allowed_step(setting, pace, openings, h)
+        step = allowed_step(setting, pace, openings, allowed)
         least = pace.method.faded * pace.accuracy * energy
         to_touch = 0.0
-        if not abrupt:
-            to_touch = step_to_touch(state.springs, openings, now, h, least, pace.short, state.touches)
-            to_break = step_to_break(setting.ties, openings, now, pace.short)
+        if not unpredictable:
+            to_touch = step_to_touch(state.springs, openings, step, allowed, least, pace.short, state.touches)
+            to_break = step_to_break(setting.ties, openings, step, pace.short)
             if to_break > 0 and not 0 < to_touch < to_break:
                 to_touch = to_break
         if to_touch > 0:
-            now = to_touch
+            step = to_touch
 
         # step
-        if last == 0:
-            set_step(memory, points, pace, now)
+        if previous == 0:
+            set_step(memory, points, pace, step)
             release(memory, setting, sliding, state.frames, state.velocity_now)
             copied(memory.acceleration, state.acceleration)
-        elif now != last:
-            shift_velocity(memory, state, now, last)
-            set_step(memory, points, pace, now)
-        record.t[n], record.h[n] = t, now
+        elif step != previous:
+            shift_velocity(memory, state, step, previous)
+            set_step(memory, points, pace, step)
+        record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
-        turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting, state, last, now, fresh or turned) / energy
-        abrupt = change > pace.method.abrupt**2
+        sliding_turned = sliding_changed(sliding)
+        change = change_of_acceleration(memory, setting, state, previous, step, no_rate or sliding_turned) / energy
+        unpredictable = change > pace.method.abrupt**2
         settle_pose(memory, setting, pace, state, record, n)
 
         # judge
-        t, last = t + now, now
+        t, previous = t + step, step
         if to_touch > 0:
             energy = max(kinetic(setting.masses, setting.products, memory.velocity), pace.least_energy)
             touches += 1
-            h, calm, fresh = pace.short, 0, True
+            allowed, calm_steps, no_rate = pace.short, 0, True
         else:
-            h, calm = judged(pace, now, math.inf if fresh else change, calm)
-            fresh = False
+            allowed, calm_steps = judged(pace, step, math.inf if no_rate else change, calm_steps)
+            no_rate = False
         n += 1
-    return (t, h, last, energy, calm, fresh, abrupt, touches, ended), n
+    return (t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended), n
 
 
 @compiled

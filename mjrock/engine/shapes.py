@@ -169,7 +169,7 @@ def _plate(scene: Scene, i: int) -> dict[str, object]:
 
 
 def meshes(scene: Scene) -> Iterator[str]:
-    """The bodies that are no boxes; those of the plane as prisms."""
+    """The bodies that are not boxes; those of the plane as prisms."""
     for name, outline in zip(scene.bodies.names, scene.bodies.outlines, strict=True):
         if not _is_box(outline):
             vertices = outline

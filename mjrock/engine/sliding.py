@@ -46,7 +46,7 @@ class Sliding(NamedTuple):
         slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
         force: friction of each that does, along its way on the body that carries the point [N], shape (m,). The way is
             (nz, -nx) in the plane. In space it is that of the slip, and the force is negative.
-        way: unit vectors of the ways in space, shape (m, 3), else (0, 3).
+        way: unit vectors of the ways in space, shape (m, 3), or (0, 3).
     """
 
     coulomb: bool

@@ -63,7 +63,7 @@ def _look(
     Args:
         places: the points.
         joint: of each point, shape (m,).
-        rest: place of each point along its face at rest, and 1 for a point of the block above, else -1, shape (m, 4).
+        rest: place of each point along its face at rest, and 1 for a point of the block above, or -1, shape (m, 4).
         pose: of the steps, shape (steps, 7 n).
         room: for the frames of a pose, and for the deepest point of each joint, shape (joints,).
         opened, slid: shape (steps, joints) and (steps, joints, 3).

@@ -38,7 +38,7 @@ def _cell(value: object) -> object:
 
 
 def _guarded(value: object) -> object:
-    """A cell that no spreadsheet computes: text that begins like a formula, and is no number, gets an apostrophe."""
+    """A cell that no spreadsheet computes: text that begins like a formula, and is not a number, gets an apostrophe."""
     if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
         return value
     try:

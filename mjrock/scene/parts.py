@@ -72,7 +72,7 @@ class Bodies:
 
     @cached_property
     def products(self) -> Array:
-        """Products of inertia of the bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), else (0, 3)."""
+        """Products of inertia of the bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), or (0, 3)."""
         return frozen(products_of(self.inertia))
 
     @cached_property

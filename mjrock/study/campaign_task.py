@@ -23,7 +23,7 @@ Row = dict[str, Any]
 class Task(Protocol):
     """What a campaign runs: a frozen dataclass that can be pickled, whose content is its key.
 
-    `labels` tell the user which case it was, and are no part of its content; `COLUMNS` names what the call returns.
+    `labels` tell the user which case it was, and are not part of its content; `COLUMNS` names what the call returns.
     """
 
     @property

@@ -161,7 +161,7 @@ def fit_fragility(
         seed: of the draws, a whole number from 0 to 2**53.
 
     Raises:
-        TypeError: for intensities that are no real numbers, and results that are neither True nor False.
+        TypeError: for intensities that are not real numbers, and results that are neither True nor False.
         ValueError: for an intensity that is not positive, a NaN, a masked value, shapes that differ, fewer than 5
             groups, or runs of which all or none overturned, which a single intensity parts, or which overturn the less
             the stronger the motion is.

@@ -59,7 +59,7 @@ def matched_masonry(
         accuracy: of the simulations, see `simulate`.
 
     Raises:
-        ValueError: for a value outside its range, masonry that is no stack, or a side stop from which it would not
+        ValueError: for a value outside its range, masonry that is not a stack, or a side stop from which it would not
             rebound.
 
     Warns:

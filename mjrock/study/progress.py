@@ -33,7 +33,7 @@ class Progress:
         """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
         failures = f"{failed} failed" if failed else ""
         if not self.bar.disable:
-            self.bar.initial = skipped  # what was there already is no part of the rate
+            self.bar.initial = skipped  # what was there already is not part of the rate
             self.bar.set_postfix_str(failures, refresh=False)
             self.bar.update(skipped + finished - self.bar.n)
         elif time.monotonic() - self.spoken >= EVERY:

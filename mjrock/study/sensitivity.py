@@ -64,7 +64,7 @@ class Sensitivity:
             ValueError: for a setting that was not varied.
         """
         if setting not in self.settings:
-            raise ValueError(f"setting = {shown(setting)} is none of {', '.join(self.settings)}")
+            raise ValueError(f"setting = {shown(setting)} is not one of {', '.join(self.settings)}")
         own = self._alone(setting)
         return min(own), max(own)
 
@@ -156,8 +156,8 @@ def sensitivity(
         options: those of `campaign`, such as `workers`.
 
     Raises:
-        TypeError: for a build that is no function, or settings that are no mapping of names.
-        ValueError: for a setting without values, nothing to vary, a measure that is no column or no number, and as
+        TypeError: for a build that is not a function, or settings that are not a mapping of names.
+        ValueError: for a setting without values, nothing to vary, a measure that is not a column of numbers, and as
             `campaign`.
         RuntimeError: if a run has failed.
     """
@@ -187,10 +187,10 @@ def _points(
 ) -> tuple[list[dict[str, Any]], tuple[tuple[str, ...], ...]]:
     """The settings of each run, those of the base first, and the names of those that differ from the base."""
     if not callable(build):
-        raise TypeError(f"build = {shown(build)} is no function of settings")
+        raise TypeError(f"build = {shown(build)} is not a function of settings")
     for name, value in (("base", base), ("vary", vary)):
         if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-            raise TypeError(f"{name} = {shown(value)} is no mapping of the names of settings")
+            raise TypeError(f"{name} = {shown(value)} is not a mapping of the names of settings")
     assert isinstance(base, Mapping)
     assert isinstance(vary, Mapping)
     if not vary:
@@ -198,7 +198,7 @@ def _points(
     choices: dict[str, list[Any]] = {}
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
-            raise ValueError(f"vary[{name!r}] = {shown(values)} is no row of at least one value")
+            raise ValueError(f"vary[{name!r}] = {shown(values)} is not a row of at least one value")
         given = [base[name], *values] if name in base else list(values)
         unlike: dict[object, Any] = {}
         for value in given:
@@ -227,7 +227,7 @@ def _column(task: Task, measure: str | None) -> str:
         return str(getattr(task, "PEAK", task.COLUMNS[0]))
     require_kind("measure", measure, str)
     if require_text("measure", measure) not in task.COLUMNS:
-        raise ValueError(f"measure = {shown(measure)} is none of the columns {', '.join(task.COLUMNS)}")
+        raise ValueError(f"measure = {shown(measure)} is not one of the columns {', '.join(task.COLUMNS)}")
     return measure
 
 

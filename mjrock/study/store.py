@@ -196,7 +196,7 @@ class Store:
         """Write rows, all or none; a row of the same key is replaced.
 
         Raises:
-            ValueError: for a name that is no column, or a value that is neither text nor a number nor None.
+            ValueError: for a name that is not a column, or a value that is neither text nor a number nor None.
             OSError: if the disk is full or the file cannot be written. What was written before stays.
         """
         inserts = []

@@ -41,7 +41,7 @@ def stack(blocks: int, k_n: float, side_stop: bool, stiffer: float = 1.0) -> mr.
     block = mr.Block.from_size(2 * FIGURE_3.b, 2 * FIGURE_3.h / blocks, FIGURE_3.length, FIGURE_3.density)
     above = k_n * stiffer
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # few blocks of a stack are no slender wall
+        warnings.simplefilter("ignore", UserWarning)  # few blocks of a stack are not a slender wall
         return mr.Masonry.stack(
             [block] * blocks,
             lambda joint: k_n if joint.below == 0 else above,

@@ -160,7 +160,7 @@ def test_a_support_that_settles_takes_what_stands_on_it_along():
 @pytest.mark.parametrize(
     ("supports", "complaint"),
     [
-        ({"cube": ([0, 1], [0, 0], [0, 0])}, "'cube' of type str is no fixed block; the valid ones are ground"),
+        ({"cube": ([0, 1], [0, 0], [0, 0])}, "'cube' of type str is not a fixed block; the valid ones are ground"),
         ({"ground": ([0, 1], [0, 0])}, r"is not \(t, dx, dz\)"),
         ({"ground": ([0, 0], [0, 0], [0, 0])}, "t does not increase"),
         ({"ground": ([0, 1], [0, 0, 1], [0, 0])}, "have 2, 3 and 2 values"),

@@ -62,10 +62,10 @@ def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
     short = short_step(ice, ACCURACY)
     for h in (short, 4 * short):
         after, record = one_step(ice, share * h * SPEED, h)
-        assert (after.touches, after.h, after.calm, after.fresh) == (1, short, 0, True)
-        assert record.h[0] == after.last == after.t == pytest.approx(share * h + 0.5 * short, rel=1e-9)
+        assert (after.touches, after.allowed, after.calm_steps, after.no_rate) == (1, short, 0, True)
+        assert record.h[0] == after.previous == after.t == pytest.approx(share * h + 0.5 * short, rel=1e-9)
         after, record = one_step(ice, 1.1 * h * SPEED, h)
-        assert (after.touches, record.h[0], after.fresh) == (0, h, False)
+        assert (after.touches, record.h[0], after.no_rate) == (0, h, False)
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
@@ -95,7 +95,7 @@ def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
     _, record = one_step(ice, -1e-4, h)
     change = ice.bodies.masses @ (record.after[0] - record.before[0]) ** 2
     after, _ = one_step(ice, -1e-4, h, change / (share * METHOD.abrupt) ** 2)
-    assert bool(after.abrupt) is (share > 1)
+    assert bool(after.unpredictable) is (share > 1)
 
 
 @pytest.mark.parametrize("curve", [-30.0, 0.0, 4.0])

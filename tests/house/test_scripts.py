@@ -216,7 +216,7 @@ def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
         (["--lumped", "0.4"], "lumped restitution = 0.4"),
         (["--timestep", "-1"], "timestep = -1 s"),
         (["--law", "mine.toml"], "mine.toml"),
-        (["--law", "nope"], "law = 'nope' is none of published, calibrated, calibrated-bed"),
+        (["--law", "nope"], "law = 'nope' is not one of published, calibrated, calibrated-bed"),
         (["--out", "/dev/null/here"], "Not a directory"),
     ],
 )

@@ -114,9 +114,12 @@ def test_the_least_thickness_of_a_coarse_dome():
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        ({"direction": 0.5}, "direction = 0.5 of type float is no direction; the valid ones are 1 or -1, or a vector"),
+        (
+            {"direction": 0.5},
+            "direction = 0.5 of type float is not a direction; the valid ones are 1 or -1, or a vector",
+        ),
         ({"direction": (0, 0)}, "has a length of 0"),
-        ({"direction": (1, 0, 0)}, "is no direction"),
+        ({"direction": (1, 0, 0)}, "is not a direction"),
         ({"angle": 7.0}, "angle = 7 rad is outside the valid range"),
         ({"direction": "x"}, "direction = 'x'"),
     ],

@@ -80,7 +80,7 @@ MASONRY = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)
         (mr.Tie(0.0, 1e6, block=0), r"effects\[0\] on .*: this block is fixed; the valid ones are \[1, 2\]"),
         (mr.Tie(3.0, 1e6, block=1), r"effects\[0\] on block_0, height = 3 m is outside the valid range"),
         (mr.Load(1e3, 3.0, 0.4, block=2), r"effects\[0\] on block_1, offset = 0.4 m is outside .* -0.3 to 0.3 m"),
-        (3, r"effects = 3 of type int is no sequence"),
+        (3, r"effects = 3 of type int is not a sequence"),
         ([math.nan], r"effects\[0\] = nan of type float is not a Tie"),
     ],
 )

@@ -234,10 +234,10 @@ def test_where_no_damping_is_enough_the_closest_is_given():
 @pytest.mark.parametrize(
     ("arguments", "error", "complaint"),
     [
-        ((mr.Masonry.arch(5, 0.75),), ValueError, "masonry is no stack"),
+        ((mr.Masonry.arch(5, 0.75),), ValueError, "masonry is not a stack"),
         ((WALL,), TypeError, "masonry = .* is not a Masonry"),
         ((columns(2), 0.9), TypeError, "e = 0.9 of type float is not a Restitution or None"),
-        ((stack(2, side_stop=True), mr.Restitution(0.9, 0.1)), ValueError, "side restitution = 0.1 is no rebound"),
+        ((stack(2, side_stop=True), mr.Restitution(0.9, 0.1)), ValueError, "side restitution = 0.1 is not a rebound"),
         ((stack(2, side_stop=mr.SideStop(1.0)),), ValueError, "side restitution"),
     ],
 )

@@ -361,7 +361,7 @@ class GroundMotion:
 
         Raises:
             OSError: if the file cannot be read.
-            ValueError: for another format, another number of samples than is stated, or what is no finite number.
+            ValueError: for another format, another number of samples than is stated, or what is not a finite number.
         """
         return cls._from_file(path, parse_sac)
 

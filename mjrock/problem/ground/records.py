@@ -2,7 +2,7 @@
 
 Each parser takes the lines of a file and returns its accelerations [m/s2], shape (n,), and its time step [s]. A number
 has ASCII digits and may have a Fortran exponent, 1.5D-02. A ValueError with the line says where the header is another,
-where the samples are not as many as it states, and where a word on a line of numbers is no finite number.
+where the samples are not as many as it states, and where a word on a line of numbers is not a finite number.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
 """A control character, which could hide a row at the end of a header or comment."""
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
 DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
-"""A line of columns whose first letter or digit is a digit of any script, so that a damaged number is no header."""
+"""A line of columns whose first letter or digit is a digit of any script, so that a damaged number is not a header."""
 
 
 def checked(accel: ArrayLike, dt: float) -> Record:

@@ -127,7 +127,7 @@ def _holes(
 ) -> list[tuple[int, int, int, int]]:
     """First and last half unit of each opening, and first course and the one above its last, half-open ranges."""
     if not isinstance(openings, Sequence) or isinstance(openings, str):
-        raise TypeError(f"openings = {shown(openings)} is no sequence of (y, Opening)")
+        raise TypeError(f"openings = {shown(openings)} is not a sequence of (y, Opening)")
     t, high = 0.5 * unit[0], unit[1]
     holes: list[tuple[int, int, int, int]] = []
     for i, pair in enumerate(openings):

@@ -59,7 +59,7 @@ class MasonryCase(Carrying):
 
     Raises:
         ValueError: for a value outside its range, velocities of another shape, an effect that is not on its block, or
-            a support that is no fixed block of the masonry.
+            a support that is not a fixed block of the masonry.
 
     Warns:
         Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.

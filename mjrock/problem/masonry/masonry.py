@@ -564,7 +564,7 @@ class Masonry:
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
         if not isinstance(fixed, list | tuple):
-            raise TypeError(f"fixed = {shown(fixed)} is no list of names")
+            raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
         for name in fixed:
             require_text("fixed", name)
         density = require_within("density", density, 100.0, 3e4, "kg/m3")

@@ -98,7 +98,7 @@ def _apart(faces: Faces, parts: list[int]) -> list[Faces]:
 
 
 def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
-    """The convex block that a closed body is; a ValueError with its name says if it is none."""
+    """The convex block that a closed body is; a ValueError with its name says if it is not one."""
     try:
         block = Polyhedron(body.vertices, density if body.density is None else body.density, fixed, body.name)
     except (ValueError, TypeError) as error:
@@ -127,7 +127,7 @@ def blocks_of(meshes: Sequence[Mesh], density: float, fixed: Sequence[str]) -> l
         if times > 1:
             raise ValueError(f"fixed has {name!r} {times} times; each body is named once")
         if name not in numbered:
-            raise ValueError(f"fixed = {name!r} is no body; there are {', '.join(numbered[:10])}")
+            raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(numbered[:10])}")
     return [
         block_of(body._replace(name=name), density, body.fixed or name in fixed)
         for body, name in zip(bodies, numbered, strict=True)

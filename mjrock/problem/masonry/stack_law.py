@@ -26,7 +26,7 @@ def is_side(blocks: Blocks, joint: Joint | SpaceJoint) -> bool:
 
 
 def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list[int]] | None:
-    """Numbers of the blocks above each bed joint of a stack, from the lowest upwards; None if the blocks are no stack.
+    """Numbers of the blocks above each bed joint of a stack, from the lowest upwards; None if this is not a stack.
 
     In a stack each block that is not fixed stands on one other block, on a bed joint, and carries at most one.
     """
@@ -65,7 +65,7 @@ def retardations(
     beside the stack is damped as the side stop of the whole stack.
 
     Raises:
-        ValueError: if the blocks are no stack, if a part is too squat for a rocking wall, and what the law raises.
+        ValueError: if the blocks are not a stack, if a part is too squat for a rocking wall, and what the law raises.
 
     Warns:
         UserWarning: what the law warns of, with the name of the joint.

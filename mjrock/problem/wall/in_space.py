@@ -44,7 +44,7 @@ def keep_place(effect: Any, kind: str) -> None:
     """Check and keep where an effect is: its block, its height or point in space, and the anchor of a tie or damper.
 
     Raises:
-        TypeError, ValueError: with the name and the kind of effect, for what is no number, no point or out of range.
+        TypeError, ValueError: with the name and the kind of effect, for what is not a number or point, or out of range.
     """
     for name in ("at", "anchor"):
         if hasattr(effect, name):
