@@ -17,6 +17,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
+from ..geometry.vectors import tangents
 from ..quantities import Array, Flags, Integers
 from .geoms import GeomPair
 
@@ -82,7 +83,7 @@ def felt(
         rows = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, rows, None, point, body)
         jacobian += sign * rows
-    rows = _frame(away) @ jacobian
+    rows = np.array((away, *tangents(tuple(away.tolist())))) @ jacobian
     if not np.any(np.abs(rows[0]) > 1e-9):
         return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     free = held.free(rows)
@@ -167,15 +168,6 @@ class PoseConstraints:
         scale = np.abs(inner).max(initial=1e-300)
         solved = np.linalg.lstsq(inner / scale, held @ free / scale, rcond=1e-10)[0]
         return np.array(free - own @ solved)
-
-
-def _frame(normal: Array) -> Array:
-    """The normal and two tangents, as rows."""
-    x, y, z = normal.tolist()
-    least = min(abs(x), abs(y), abs(z))
-    first = (0.0, z, -y) if abs(x) == least else (-z, 0.0, x) if abs(y) == least else (y, -x, 0.0)
-    a, b, c = (part / math.hypot(*first) for part in first)
-    return np.array([(x, y, z), (a, b, c), (y * c - z * b, z * a - x * c, x * b - y * a)])
 
 
 def _free(answer: Array, rows: Array) -> float:

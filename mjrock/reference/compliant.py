@@ -15,8 +15,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
-from ..problem.damping.contacts import Contacts
-from ..problem.damping.uplift import Uplift
+from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..files import write_text
 from ..geometry.frames import SPACE
-from ..geometry.rotations import angle_of, tilt_of
+from ..geometry.poses import angle_of, tilt_of
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path
 from .ending import Outcome

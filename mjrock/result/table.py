@@ -1,4 +1,4 @@
-"""Tables as CSV text that NumPy, pandas and a spreadsheet read."""
+"""Tables as CSV text that NumPy, pandas and a spreadsheet read, and as aligned text."""
 
 from __future__ import annotations
 
@@ -29,6 +29,12 @@ def written(rows: Iterable[Sequence[object]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(map(_guarded, row) for row in rows)
     return text.getvalue()
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of cells as lines whose columns end below each other."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
 
 
 def _cell(value: object) -> object:

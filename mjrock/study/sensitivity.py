@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..quantities import require_flag, require_kind, require_path, require_size, require_text, shown
-from ..result.table import csv_text
+from ..result.table import aligned, csv_text
 from .campaign import completed
 from .campaign_task import Row, Task
 from .grid import label_of, labelled
@@ -114,10 +114,8 @@ class Sensitivity:
             rows.append([name, _short(self.base[name]), *map(self.written, ends), str(count)])
         if together:
             rows.append(["together", "", *map(self.written, self.range), str(together)])
-        widths = [max(len(row[i]) for row in rows) for i in range(5)]
-        lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
         what = f"{self.measure}{f' [{self.unit}]' if self.unit else ''}"
-        return "\n".join([f"{what}: {self.written(self.base_value)} in the base", *lines, self.sentence])
+        return "\n".join([f"{what}: {self.written(self.base_value)} in the base", *aligned(rows), self.sentence])
 
     def csv(self) -> str:
         """Every run as CSV text: its settings and the measure."""

@@ -22,8 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.pile import Pile
-from mjrock.result.as_one import restitutions
-from mjrock.study.masonry_by_matching import STEP, excess
+from mjrock.study.masonry_by_matching import STEP, excess, restitutions
 from mjrock.theory.impact import as_one
 from scripts.shared import cli
 from scripts.shared.paper import FIGURE_3

@@ -11,7 +11,7 @@ from space_blocks import GROUND, about_vertical, angles, block, followed, free_b
 
 import mjrock as mr
 from mjrock.distinct.setup import standing
-from mjrock.geometry.rotations import tilt_of
+from mjrock.geometry.poses import tilt_of
 
 PULSE = mr.GroundMotion.sine(3.0, 0.7)
 G = mr.GRAVITY

@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.geometry.kinematics import gaps
-from mjrock.problem.damping.uplift import Uplift
+from mjrock.problem.damping.contacts import Uplift
 from mjrock.result.ending import ending
 from mjrock.result.history import rocking_history
 from mjrock.result.rocking import peak_energies, restitution_of

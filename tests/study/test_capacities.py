@@ -7,8 +7,8 @@ import pytest
 from scipy.stats import t as student
 
 import mjrock as mr
+from mjrock.study.fragility import _penalised
 from mjrock.study.ida import IncrementalAnalysis
-from mjrock.study.probit import _penalised
 from scripts.studies import fragility_coverage
 
 RNG = np.random.default_rng(3)

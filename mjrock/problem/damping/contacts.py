@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from ...quantities import (
     shown,
 )
 from ..wall.block import Block
+from ..wall.case import Case
 from .interface import Interface, reference_frequency, require_points
 from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
 from .restitution import UNLIKE, Restitution
@@ -275,3 +276,23 @@ class Contacts:
         assert self.side is not None
         horizontal = float(self.side.stiffness.sum()) / wall.mass
         return math.sqrt(max(vertical, horizontal, (base.K_rot + self.side.K_rot) / wall.inertia))
+
+
+class Uplift(NamedTuple):
+    """Where the rocking of a wall starts.
+
+    Args:
+        rotation: rotation at which the first edge of the wall decompresses under its weight and loads [rad].
+        energy: energy that tilts the wall so far from upright, its loads in the middle [J].
+    """
+
+    rotation: float
+    energy: float
+
+    @classmethod
+    def of(cls, case: Case, contacts: Contacts) -> Uplift:
+        """The uplift of a case. Loads and thrusts that make the wall lean leave the energy as it is."""
+        base, moment = contacts.base, case.restoring
+        rotation = case.pressing / (float(base.stiffness.sum()) * case.block.half_base)
+        stiffness = base.K_rot - 0.5 * (moment.outer.Q + moment.inner.Q)
+        return cls(rotation, 0.5 * stiffness * rotation**2)
