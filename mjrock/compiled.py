@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import pickle
 import re
 import sys
 from collections.abc import Callable
@@ -101,9 +102,13 @@ def _imported_numba() -> Any:
                 return None
 
         def save_overload(self, *key: Any) -> None:
-            """Store the compiled function unless the disk refuses."""
+            """Store the compiled function unless the disk refuses, anew where what is stored cannot be read."""
             with contextlib.suppress(OSError):
-                super().save_overload(*key)
+                try:
+                    super().save_overload(*key)
+                except (AttributeError, ImportError, EOFError, pickle.UnpicklingError):  # it names what is gone
+                    self.flush()
+                    super().save_overload(*key)
 
     class _FirstCompilation(event.Listener):  # type: ignore[misc]
         """Says once that the loops are being compiled, and where they are stored."""

@@ -17,7 +17,7 @@ from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text
 from .filters import kept_apart
-from .geoms import GeomPair, compiled
+from .geoms import GeomPair, compiled_model
 from .mixing import Mixed
 from .notes import (
     SCATTER,
@@ -231,7 +231,7 @@ class PairContact:
         if require_text("prefix", prefix):
             self._require_names()
             return replace(self, geom1=prefix + self.geom1, geom2=prefix + self.geom2).caveats(model)
-        pair = self._pair_in(compiled(model))
+        pair = self._pair_in(compiled_model(model))
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
     def __str__(self) -> str:
@@ -284,7 +284,7 @@ def write(
     contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool, keep_others: bool
 ) -> None:
     """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
-    whole, on_geoms = compiled(model), require_flag("on_geoms", on_geoms)
+    whole, on_geoms = compiled_model(model), require_flag("on_geoms", on_geoms)
     require_flag("keep_others", keep_others)
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
     rubs = any(contact.condim > 1 for contact in contacts)

@@ -23,7 +23,7 @@ UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 """Geoms that are not convex."""
 
 
-def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
+def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
     """The compiled model of either; an MjSpec stays as it is. TypeError for any other, and a ValueError with the
     compiler's message for a specification that does not compile."""
     if isinstance(model, str | os.PathLike):

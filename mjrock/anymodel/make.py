@@ -16,9 +16,9 @@ from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
 from ..quantities import Array, named, require_whole, require_within, shown, spelt
 from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
-from .geoms import GeomPair, compiled
+from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, Meeting, Pose, meeting, other_keyframes
+from .meeting import Company, PairMeeting, Pose, meeting, other_keyframes
 from .mixing import Grip, unused
 from .notes import (
     RESOLVED,
@@ -28,7 +28,7 @@ from .notes import (
     rounded_down,
     stiffest,
 )
-from .row_of_model import Row
+from .row_of_model import ModelRow
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -99,7 +99,7 @@ def contact_for(
             else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
             which the contact stops another mass, and without k of a contact that is soft.
     """
-    whole = compiled(model)
+    whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
     asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
     contact = beside(*contact_of(pair, Pose(whole, keyframe, qpos), asked), {})
@@ -168,7 +168,8 @@ def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairC
         remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, Row(pair).loaded(contact.load), pair.thickness))
+    load = contact.load
+    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow(pair).loaded(load), pair.thickness))
     return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
 
 
@@ -194,7 +195,7 @@ def beside(contact: PairContact, company: Company, made: Mapping[frozenset[int],
     return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
-def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:
+def _mass(pair: GeomPair, pose: Pose, mass: object, met: PairMeeting) -> float:
     """The effective mass of a contact point [kg]."""
     if mass is not None:
         return require_within("mass", mass, 1e-30, 1e30, "kg") / met.points
@@ -250,7 +251,7 @@ def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, grav
 
 
 def _remarks(
-    pair: GeomPair, pose: Pose, asked: ContactRequest, met: Meeting, k: float, c: float, mu: float
+    pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
 ) -> tuple[str, ...]:
     """What in the pose keeps a contact from being what was asked, one sentence each."""
     if asked.mass is not None or not met.felt.mass < math.inf:

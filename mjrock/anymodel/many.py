@@ -14,7 +14,7 @@ import mujoco
 from ..quantities import Array, named, shown
 from .contact import PairContact, document, options_of, spoilers, write
 from .filters import makes
-from .geoms import BODY, GEOM, GeomPair, compiled, geom_id, names_of
+from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, names_of
 from .make import ContactRequest, beside, contact_of
 from .meeting import Pose
 from .notes import VARIES, ContactWarning
@@ -68,7 +68,7 @@ class PairContacts:
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they
         are about; see `PairContact.caveats`."""
-        whole = compiled(model)
+        whole = compiled_model(model)
         return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats(whole, prefix)))
 
     def __str__(self) -> str:
@@ -106,7 +106,7 @@ def contacts_for(
     Warns:
         ContactWarning: as `contact_for` does, sentences that are alike once, with the geoms that they are about.
     """
-    whole = compiled(model)
+    whole = compiled_model(model)
     if not isinstance(pairs, Mapping):
         raise TypeError(
             f"pairs = {shown(pairs)} has to be a dictionary, such as "

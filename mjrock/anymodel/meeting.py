@@ -17,7 +17,7 @@ from ..quantities import Array, Integers, require_array, require_whole, shown
 from .felt import EffectiveMass, PoseConstraints, felt
 from .filters import makes
 from .geoms import FARTHEST, GeomPair
-from .springs import Springs
+from .springs import JointSprings
 
 DEPTH = 1e-3
 """How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
@@ -35,7 +35,7 @@ MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
 
 
-class Ground:
+class Trial:
     """A copy of a model in a pose, see `state_of`, in which geoms are tried against each other."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -93,7 +93,7 @@ class Landing(NamedTuple):
     second: Array
 
 
-def landing(pair: GeomPair, data: mujoco.MjData, ground: Ground | None) -> Landing:
+def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None) -> Landing:
     """Where two geoms meet.
 
     Args:
@@ -189,9 +189,9 @@ class Pose:
         return self._groups[bodies]
 
     @cached_property
-    def ground(self) -> Ground:
+    def ground(self) -> Trial:
         """A copy of the model in which geoms are tried against each other."""
-        return Ground(self.model, self.data)
+        return Trial(self.model, self.data)
 
     @cached_property
     def held(self) -> PoseConstraints:
@@ -199,9 +199,9 @@ class Pose:
         return PoseConstraints(self.model, self.data)
 
     @cached_property
-    def springs(self) -> Springs:
+    def springs(self) -> JointSprings:
         """The springs and dampers of joints, tendons and actuators."""
-        return Springs(self.model, self.data)
+        return JointSprings(self.model, self.data)
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
@@ -224,7 +224,7 @@ class Company(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Meeting:
+class PairMeeting:
     """The contact of two geoms in a pose.
 
     Args:
@@ -253,7 +253,7 @@ def meeting(
     friction: float = 0.0,
     frequency: float | None = None,
     k: float | None = None,
-) -> Meeting:
+) -> PairMeeting:
     """How two geoms meet in a pose.
 
     Args:
@@ -281,7 +281,7 @@ def meeting(
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
     felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
-    return Meeting(count, felt_there, others)
+    return PairMeeting(count, felt_there, others)
 
 
 class Group:
@@ -330,7 +330,9 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     )
 
 
-def other_keyframes(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:
+def other_keyframes(
+    pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
+) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
     names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):

@@ -25,7 +25,7 @@ from .geoms import GeomPair
 from .mixing import Mixed
 
 
-class Row:
+class ModelRow:
     """The row of a contact of two geoms of a model.
 
     Attributes:

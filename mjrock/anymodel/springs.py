@@ -17,7 +17,7 @@ Owner = tuple[mujoco.mjtObj, int]
 """What holds: a joint, a tendon or an actuator, and its number."""
 
 
-class Springs:
+class JointSprings:
     """The springs and dampers of a model in its pose.
 
     Attributes:

@@ -19,13 +19,13 @@ from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .pace import Pace, judged, step_of, while_loaded, while_taut
 from .points import Points, Reach
-from .progress import Clock, Progress
+from .progress import Progress, StepClock
 from .record import Record
 from .rows import set_rows
 from .setting import Setting, push
 from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .sticking import Moved, put_sticking_edges_back
-from .touches import Openings, closure_changed, follow, step_to_break, step_to_touch
+from .touches import Openings, closure_changed, follow_openings, step_to_break, step_to_touch
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
 """x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
@@ -34,7 +34,7 @@ FAR = 1e9
 
 
 @jitable
-def copied(values: Array, to: Array) -> None:
+def copy_into(values: Array, to: Array) -> None:
     """Copy values into another array."""
     for j in range(len(values)):
         to[j] = values[j]
@@ -84,7 +84,7 @@ def at_the_pose(memory: Memory, state: Progress, previous: float) -> None:
 def acceleration_from_engine(memory: Memory, setting: Setting, state: Progress, t: float) -> None:
     """Acceleration at the time of the pose, found by the engine, where a contact has just opened or closed."""
     find_acceleration(memory, setting, state.sliding, state.frames, t)
-    copied(memory.acceleration, state.acceleration_now)
+    copy_into(memory.acceleration, state.acceleration_now)
     follow_now(setting, state)
 
 
@@ -92,7 +92,7 @@ def acceleration_from_engine(memory: Memory, setting: Setting, state: Progress, 
 def follow_now(setting: Setting, state: Progress) -> None:
     """Bring gaps and slack up to date."""
     places, ties = setting.points.places, setting.ties
-    follow(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
+    follow_openings(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
 
 
 @inlined
@@ -145,8 +145,8 @@ def change_of_acceleration(
 def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, record: Record, n: int) -> None:
     """Let the engine make step n of the record, whose time and length are set."""
     t = record.t[n]
-    copied(memory.pose, record.pose[n])
-    copied(memory.velocity, record.before[n])
+    copy_into(memory.pose, record.pose[n])
+    copy_into(memory.velocity, record.before[n])
     if slide(memory, setting, sliding, frames, t):
         memory.finish(memory.model, memory.data)
         for i in range(len(sliding.slides)):
@@ -156,8 +156,8 @@ def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array,
         push(memory, setting, frames, t)
         memory.step(memory.model, memory.data)
         record.friction[n, :] = math.nan
-    copied(setting.damping, record.damping[n])
-    copied(memory.velocity, record.after[n])
+    copy_into(setting.damping, record.damping[n])
+    copy_into(memory.velocity, record.after[n])
 
 
 @inlined
@@ -166,7 +166,7 @@ def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, r
     moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
     put_sticking_edges_back(setting.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
     for body in range(len(state.frames)):
-        copied(state.next_frames[body], state.frames[body])
+        copy_into(state.next_frames[body], state.frames[body])
     settle_ties(memory, setting, state.frames)
 
 
@@ -189,7 +189,7 @@ def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> 
 
 @compiled
 def fitted_loop(
-    memory: Memory, setting: Setting, pace: Pace, state: Progress, clock: Clock, record: Record
+    memory: Memory, setting: Setting, pace: Pace, state: Progress, clock: StepClock, record: Record
 ) -> tuple[tuple[Any, ...], int]:
     """Steps that fit the motion until the record is full or the run is over.
 
@@ -201,7 +201,7 @@ def fitted_loop(
     if previous == 0:
         set_step(memory, points, pace, allowed)
         find_acceleration(memory, setting, sliding, state.frames, -allowed)
-        copied(memory.acceleration, state.acceleration)
+        copy_into(memory.acceleration, state.acceleration)
     while n < len(record.t) and not ended:
         at_the_pose(memory, state, previous)
         follow_now(setting, state)
@@ -225,7 +225,7 @@ def fitted_loop(
         if previous == 0:
             set_step(memory, points, pace, step)
             release(memory, setting, sliding, state.frames, state.velocity_now)
-            copied(memory.acceleration, state.acceleration)
+            copy_into(memory.acceleration, state.acceleration)
         elif step != previous:
             shift_velocity(memory, state, step, previous)
             set_step(memory, points, pace, step)

@@ -59,7 +59,7 @@ class Progress(NamedTuple):
         return cls(*rates, frames, frames.copy(), *touching, joints, sliding)
 
 
-class Clock(NamedTuple):
+class StepClock(NamedTuple):
     """Where a run of fitted steps is.
 
     Args:
@@ -85,6 +85,6 @@ class Clock(NamedTuple):
     ended: bool
 
     @classmethod
-    def started(cls, pace: Pace, energy: float) -> Clock:
+    def started(cls, pace: Pace, energy: float) -> StepClock:
         """At the release, with the energy of the release [J]."""
         return cls(0.0, pace.short, 0.0, max(2 * energy, pace.least_energy), 0, True, False, 0, False)

@@ -32,7 +32,7 @@ def sound_timestep(frequency: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class EngineRun:
     """A run of the engine that has been checked.
 
     Args:
@@ -57,7 +57,7 @@ class Run:
     scale: float
 
     @classmethod
-    def judged(cls, asked: Asked, scene: Scene, course: Course, steps: Steps) -> Run:
+    def judged(cls, asked: Asked, scene: Scene, course: Course, steps: Steps) -> EngineRun:
         """The run of these steps.
 
         Raises:

@@ -27,7 +27,7 @@ from .model import engine_of
 from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
 from .record import StepError
-from .run import Run, explained, sound_timestep
+from .run import EngineRun, explained, sound_timestep
 from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_sheared, warn_if_slid
 from .stepping import fitted_steps, fixed_steps
 
@@ -191,7 +191,7 @@ def simulate(
     return response
 
 
-def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[Run, dict[str, Any]]:
+def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
@@ -206,7 +206,7 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
                 watch = Stopwatch()
                 steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
             took = watch.stepping()
-            run = Run.judged(asked, scene, course, steps)
+            run = EngineRun.judged(asked, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
             if used < 0.02 * options.accuracy:
@@ -214,7 +214,7 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
             used /= 10
 
 
-def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float) -> tuple[Run, dict[str, Any]]:
+def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float) -> tuple[EngineRun, dict[str, Any]]:
     """A run at steps of one length h [s], and what it took.
 
     Raises:
@@ -228,7 +228,7 @@ def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float
             watch = Stopwatch()
             steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
         took = watch.stepping()
-        run = Run.judged(asked, scene, course, steps)
+        run = EngineRun.judged(asked, scene, course, steps)
     except StepError as error:
         raise explained(error, scene, h, None) from None
     return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, **took}

@@ -118,7 +118,7 @@ def take_way(memory: Memory, places: Places, sliding: Sliding, i: int, meets: Me
 
 
 @jitable
-def normal_force(memory: Memory, points: Points, i: int, meets: Meeting, frames: Array) -> float:
+def pressing_force(memory: Memory, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
     places, d, W = points.places, memory.rows.solimp[i, 0], points.inertia.weight[i]
     rate = dot(meets.normal, over_face(places, i, meets, frames, memory.velocity))
@@ -144,7 +144,7 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         mu, now = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
         inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
         stopping = inertia * abs(now.speed) / memory.options[TIMESTEP]
-        pressing = normal_force(memory, points, i, meets, frames)
+        pressing = pressing_force(memory, points, i, meets, frames)
         beyond = memory.options[IMPRATIO] * stopping > sliding.method.slides * mu * pressing
         if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
@@ -179,7 +179,7 @@ def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
             slip = slipping(places, i, meets, frames, memory.velocity).speed
-            pressing = normal_force(memory, points, i, meets, frames)
+            pressing = pressing_force(memory, points, i, meets, frames)
             force = -math.copysign(points.law.friction[i] * pressing, slip)
             turned = take_way(memory, places, sliding, i, meets, frames)
             change = max(change, abs(force - sliding.force[i]), turned * abs(force))

@@ -65,7 +65,7 @@ def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array
     joints, frames = masonry.joints, frames_of(start, places.freedom)
     above = np.array([each.above for each in joints])[joint] == np.array(masonry.free)[places.body]
     at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
-    points = Points(joint, at_rest, np.where(above, 1.0, -1.0))
+    points = JointPoints(joint, at_rest, np.where(above, 1.0, -1.0))
     slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
     widths = LOST * np.array([each.width for each in joints])
 
@@ -107,7 +107,7 @@ def _slid_off_in_space(masonry: Masonry) -> SlidOff:
     return slid_off
 
 
-class Points(NamedTuple):
+class JointPoints(NamedTuple):
     """The joint of each contact point, its place along its face at rest [m], and 1 if the block above has it, or -1."""
 
     joint: Integers
@@ -124,7 +124,9 @@ def _along(places: Places, i: int, frames: Array) -> Vector:
 
 
 @compiled
-def _look(places: Places, points: Points, pose: Array, frames: Array, most: Array, opened: Array, slid: Array) -> float:
+def _look(
+    places: Places, points: JointPoints, pose: Array, frames: Array, most: Array, opened: Array, slid: Array
+) -> float:
     """Write the opening of each joint at its widest point, and how far the block above has slid at its most pressed.
 
     Args:

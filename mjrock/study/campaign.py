@@ -15,7 +15,7 @@ from .campaign_pool import Workers
 from .campaign_run import Runner
 from .campaign_task import Row, Task, carry_out_all, column_names, keyed
 from .overheard import listening
-from .progress import Progress
+from .progress import CampaignProgress
 from .store import Store
 
 MOST_WORKERS = 10_000
@@ -83,7 +83,7 @@ def campaign(
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     total = len(tasks) if isinstance(tasks, Sequence) else None
-    with Store(path, writing=True) as file, Progress(file.path, len(file), total) as progress:
+    with Store(path, writing=True) as file, CampaignProgress(file.path, len(file), total) as progress:
         if isinstance(tasks, list | tuple):
             for names in dict.fromkeys(column_names(keyed(task)[1]) for task in tasks):
                 file.add_columns(names)

@@ -15,7 +15,7 @@ EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
 
 
-class Progress:
+class CampaignProgress:
     """How far a campaign is, on the standard error. Use it in a `with` statement.
 
     `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows.
@@ -65,7 +65,7 @@ class Progress:
     def _say(self, text: str) -> None:
         print(f"campaign: {text}", file=sys.stderr, flush=True)
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> CampaignProgress:
         return self
 
     def __exit__(self, *error: object) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..files import require_file
 from ..quantities import require_path, spelt
 from ..result.table import written
-from .values import checksum, plain, shown
+from .values import checksum, plain, table_text
 
 if TYPE_CHECKING:
     import pandas
@@ -134,7 +134,7 @@ class Store:
         if code == sqlite3.SQLITE_NOTADB and not count:
             return ValueError(f"{self.path} is not a campaign, or is damaged: {error}; none of its rows is readable")
         return ValueError(
-            f"{self.path} is damaged ({shown(str(error))}); {count} of its rows are readable, and "
+            f"{self.path} is damaged ({table_text(str(error))}); {count} of its rows are readable, and "
             f"Store.rescue({str(self.path)!r}, new_path) copies them into a new store that a campaign can carry on from"
         )
 

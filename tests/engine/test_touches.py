@@ -9,7 +9,7 @@ from mjrock.engine.loop import fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace, short_step
-from mjrock.engine.progress import Clock, Progress
+from mjrock.engine.progress import Progress, StepClock
 from mjrock.engine.record import Record
 from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
@@ -50,10 +50,10 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
         record = Record.of(1, (3, 3), len(scene.contacts.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
-        before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
+        before = StepClock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         values, n = fitted_loop(engine.memory, setting, pace, state, before, record)
     assert n == 1
-    return Clock(*values), record
+    return StepClock(*values), record
 
 
 @pytest.mark.parametrize("share", [0.1, 0.9])

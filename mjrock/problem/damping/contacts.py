@@ -28,7 +28,7 @@ from .restitution import UNLIKE, Restitution
 
 HOLDS = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
-Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
+AnyLaw = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 
 def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
@@ -44,7 +44,7 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
-def required_law(law: Law | str | None, points: int) -> Law:
+def required_law(law: AnyLaw | str | None, points: int) -> AnyLaw:
     """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
     if law is None:
         return CALIBRATED if points == 2 else CALIBRATED_BED
@@ -162,7 +162,7 @@ class Contacts:
         e: Restitution,
         k_base: float,
         k_side: float | None = None,
-        law: Law | str | None = None,
+        law: AnyLaw | str | None = None,
         points: int = 2,
         amplitude: float = 0.5,
         friction: float | None = None,

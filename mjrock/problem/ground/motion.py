@@ -28,7 +28,7 @@ from ...quantities import (
     require_within,
     spelt,
 )
-from .records import COARSEST, FINEST, Record, checked, parse_at2, parse_columns, parse_sac, read
+from .records import COARSEST, FINEST, ReadRecord, checked, parse_at2, parse_columns, parse_sac, read
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -366,7 +366,7 @@ class GroundMotion:
         return cls._from_file(path, parse_sac)
 
     @classmethod
-    def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> GroundMotion:
+    def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], ReadRecord]) -> GroundMotion:
         motion = cls(*read(path, parse), name := Path(path).stem)
         peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
         if peak < FAINT:

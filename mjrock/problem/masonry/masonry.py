@@ -30,7 +30,7 @@ from ...quantities import (
     require_within,
     shown,
 )
-from ..damping.contacts import Law, required_law
+from ..damping.contacts import AnyLaw, required_law
 from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.section import Opening
@@ -111,7 +111,7 @@ class Masonry:
     frequency: float | None = None
     points: int = 2
     tolerance: float = 1e-5
-    law: Law | str | None = None
+    law: AnyLaw | str | None = None
     k_s: OfJoint | None = None
 
     def __post_init__(self) -> None:

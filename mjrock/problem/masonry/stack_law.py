@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...quantities import Array
-from ..damping.contacts import Contacts, Law
+from ..damping.contacts import AnyLaw, Contacts
 from ..damping.restitution import Restitution
 from ..wall.block import Block
 from .joints import Joint
@@ -57,7 +57,7 @@ def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> B
 
 
 def retardations(
-    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int, law: Law | str
+    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int, law: AnyLaw | str
 ) -> Array:
     """c/k of each joint of a stack [s], as `Contacts.from_law` gives it for the rigid wall above.
 
