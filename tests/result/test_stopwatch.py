@@ -3,10 +3,10 @@
 import time
 
 import pytest
-from scenes import FIGURE_3
 
 import mjrock as mr
 from mjrock.result.stopwatch import Stopwatch
+from scripts.shared.paper import FIGURE_3
 
 
 def test_a_thread_that_waits_takes_no_time_of_the_processor():
