@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import pickle
 import re
 import sys
 from collections.abc import Callable
@@ -95,20 +94,18 @@ def _imported_numba() -> Any:
             self._cache_file._source_stamp = stamp(Path(function.__code__.co_filename))
 
         def load_overload(self, *key: Any) -> Any:
-            """The compiled function, or None where it cannot be read."""
+            """The compiled function, or None where it cannot be read. What is stored then makes room for it."""
             try:
                 return super().load_overload(*key)
             except Exception:
+                with contextlib.suppress(OSError):
+                    self.flush()
                 return None
 
         def save_overload(self, *key: Any) -> None:
-            """Store the compiled function unless the disk refuses, anew where what is stored cannot be read."""
+            """Store the compiled function unless the disk refuses."""
             with contextlib.suppress(OSError):
-                try:
-                    super().save_overload(*key)
-                except (AttributeError, ImportError, EOFError, pickle.UnpicklingError):  # it names what is gone
-                    self.flush()
-                    super().save_overload(*key)
+                super().save_overload(*key)
 
     class _FirstCompilation(event.Listener):  # type: ignore[misc]
         """Says once that the loops are being compiled, and where they are stored."""
