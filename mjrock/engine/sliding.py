@@ -58,7 +58,7 @@ class Sliding(NamedTuple):
 
     @classmethod
     def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
-        """None slides yet."""
+        """No contact slides at the start."""
         m = len(points.rubs)
         none, ways = np.zeros((2, m), dtype=np.bool_), m if len(points.places.axes) == 3 else 0
         return cls(coulomb and bool(points.rubs.any()), method, none[0], none[1], np.zeros(m), np.zeros((ways, 3)))

@@ -195,7 +195,7 @@ def heading(text: str) -> str:
 def listed(texts: Sequence[str], kind: str = "cautions") -> str:
     """Texts as a list; a sentence where there are none."""
     if not texts:
-        return "<p>Nothing that the program can tell.</p>"
+        return "<p>No warnings.</p>"
     return f'<ul class="{kind}">' + "".join(f"<li>{html.escape(text)}</li>" for text in texts) + "</ul>"
 
 
