@@ -157,15 +157,15 @@ def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[st
 
 
 def _plate(scene: Scene, i: int) -> dict[str, object]:
-    """The face of a body as a plate that is wider than any slip and thicker than any penetration.
+    """The face of a body as a plate that is wider than any slip and thicker than any penetration. MuJoCo pushes a point
+    out of the nearest side of it, so that it is as wide out of the plane too, where blocks may be short.
 
     It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
     be at the origin, and a thinner plate of a square block would have its middle a radius away from there.
     """
     extent, deep, normal = scene.bodies.extent, 2 * scene.bodies.extent, scene.contacts.normal[i]
-    across = 0.6 * scene.bodies.length if scene.freedom == PLANE else 4 * extent
     at = in_space(scene.contacts.face_at[i] - (deep + scene.radius) * normal)
-    return {"size": (4 * extent, across, deep), "pos": at, "zaxis": in_space(normal)}
+    return {"size": (4 * extent, 4 * extent, deep), "pos": at, "zaxis": in_space(normal)}
 
 
 def meshes(scene: Scene) -> Iterator[str]:

@@ -321,3 +321,19 @@ def test_a_cracked_facade_that_falls_away_from_a_side_wall_has_fallen():
         assert (run.outcome, set(run.fallen)) == (mr.Outcome.OVERTURNED, {"low", "high"})
         times.append(run.fallen["low"])
     assert times[0] == pytest.approx(times[1], rel=0.01)
+
+
+@pytest.mark.parametrize("length", [0.01, 50.0])
+def test_masonry_moves_alike_whatever_its_length_out_of_the_plane(length):
+    """Also where joints are so soft that blocks sink into one another by more than this length."""
+
+    def soft(length):
+        sizes = ((-2, -1, 4, 1, True), (0, 0, 1, 1, False), (0, 1, 1, 1, False))
+        blocks = [
+            mr.Polygon([(x, z), (x + w, z), (x + w, z + h), (x, z + h)], length=length, fixed=fixed)
+            for x, z, w, h, fixed in sizes
+        ]
+        return mr.Masonry(blocks, k_n=1e6, friction=0.7, xi=0.05)
+
+    runs = [follow(soft(of), 0.5, PULSE, timestep=1e-3) for of in (1.0, length)]
+    np.testing.assert_allclose(runs[1].pose, runs[0].pose, atol=1e-9)
