@@ -152,3 +152,9 @@ def test_a_stack_at_rest_stays_at_rest():
         steps = fitted_steps(engine, scene, still, 1e-3)
     assert np.abs(steps.pose - scene.at_rest.ravel()).max() < 1e-12
     assert len(steps.t) < 2000
+
+
+def test_the_title_says_what_stands(one_sided, contacts):
+    wall = one_sided.block
+    size = f"{2 * wall.b:g} m thick, {2 * wall.h:g} m high, {wall.length:g} m long, {wall.density:g} kg/m3"
+    assert wall_scene(one_sided, contacts).title == f"A masonry wall, {size}, rocking against a side stop"
