@@ -27,6 +27,8 @@ TINTS = (
     (0.83, 0.53, 0.40, 1.0),
 )
 """Colours of the blocks of masonry in space, of which MuJoCo draws no edges."""
+LEAST_MOMENT = 1e-14
+"""Smallest principal moment of a tensor of inertia that MuJoCo takes [kg m2]."""
 
 
 def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
@@ -102,6 +104,12 @@ def _inertia(scene: Scene, j: int) -> dict[str, object]:
     moments = np.diagonal(scene.bodies.inertia[j])
     if not scene.bodies.products[j].any():
         return {"diaginertia": moments}
+    least = float(np.linalg.eigvalsh(scene.bodies.inertia[j])[0])
+    if least < LEAST_MOMENT:
+        raise ValueError(
+            f"{scene.bodies.names[j]} has a moment of inertia of {least:.3g} kg m2; MuJoCo takes those of at least "
+            f"{LEAST_MOMENT:g} kg m2, and mr.solve_explicit any"
+        )
     return {"fullinertia": np.concatenate([moments, scene.bodies.products[j]])}
 
 
