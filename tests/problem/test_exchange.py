@@ -68,6 +68,7 @@ def test_an_obj_file_and_back(tmp_path):
     masonry = mr.Masonry.from_obj(path, fixed=["ground"], density=1800.0, k_n=1e9, xi=0)
     assert same(masonry, FACADE)
     assert masonry.blocks[1].density == 1800.0
+    assert mr.Masonry.from_obj(path, fixed=["ground"], xi=0).blocks[1].density == 2000.0
     assert [joint.name for joint in masonry.joints] == [joint.name for joint in FACADE.joints]
 
 

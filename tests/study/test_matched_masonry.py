@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -267,3 +268,15 @@ def test_properties_by_kind_and_by_name():
     assert named(bed) == 3.0
     with pytest.raises(ValueError, match=r"the joint side\|block_0 has no value among those of ground\|block_0"):
         named(side)
+
+
+@pytest.mark.parametrize("towards", [1.0, -1.0])
+def test_rebounds_count_from_the_release_to_either_side(towards):
+    """The last sample is on its way to a maximum, which is none; the one before it may be one."""
+    theta = towards * np.array([0.8, 1.0, 0.5, -0.5, -0.6, -0.3, 0.001, 0.2, 0.4, 0.3])
+    released = SimpleNamespace(theta=np.column_stack([theta, theta]), energy=np.arange(10.0, 0.0, -1.0))
+    pile = SimpleNamespace(masses=np.array([1.0, 3.0]))
+    assert peaks(released, pile) == [1, 4, 8]
+    np.testing.assert_allclose(restitutions(released, pile), np.sqrt([6 / 9, 2 / 6]))
+    rising = SimpleNamespace(theta=released.theta[:9], energy=released.energy[:9])
+    assert peaks(rising, pile) == [1, 4]
