@@ -11,7 +11,9 @@ A name is imported when it is first asked for: who wants `contact_for` alone wai
 import contextlib
 import importlib
 import importlib.metadata
+import re
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ._version import __version__
@@ -103,74 +105,12 @@ __all__ = [
     "solve_compliant", "solve_explicit", "stiffness_range", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
-HOMES = {
-    "anymodel.contact": "PairContact",
-    "anymodel.coulomb": "CoulombFriction",
-    "anymodel.inspect": "InspectedContact inspect_contacts",
-    "anymodel.make": "contact_for",
-    "anymodel.many": "PairContacts contacts_for",
-    "anymodel.notes": "ContactWarning",
-    "distinct.explicit": "solve_explicit",
-    "engine.solref": "ContactParameters ManyContactParameters contact_parameters contact_stiffness",
-    "engine.model": "SimulationError",
-    "engine.simulation": "automatic_timestep simulate",
-    "engine.text": "masonry_mjcf mjcf_of wall_mjcf",
-    "problem.damping.contacts": "Contacts",
-    "problem.damping.forms": "PowerLaw",
-    "problem.damping.inputs": "MASONRY_TYPES MasonryType StiffnessRange crushed_inset stiffness_range",
-    "problem.damping.interface": "Interface reference_frequency",
-    "problem.damping.law": "CALIBRATED CALIBRATED_BED PUBLISHED DampingLaw",
-    "problem.damping.measured": "MeasuredContact hertz_stiffness measured_contact",
-    "problem.damping.restitution": "Restitution",
-    "problem.damping.stiffness": "joint_stiffness layered_stiffness measured_stiffness wall_stiffness",
-    "problem.ground.motion": "GroundMotion",
-    "problem.ground.spectrum": "ResponseSpectrum response_spectrum scaled_to_sa scaled_to_spectrum",
-    "problem.masonry.case": "MasonryCase",
-    "problem.masonry.collapse": "Collapse collapse_multiplier",
-    "problem.masonry.joints": "Joint",
-    "problem.masonry.joints_in_space": "SpaceJoint",
-    "problem.masonry.masonry": "Masonry",
-    "problem.masonry.polygon": "Polygon",
-    "problem.masonry.polyhedron": "Polyhedron",
-    "problem.wall.block": "Block",
-    "problem.wall.case": "Case",
-    "problem.wall.damper": "Damper",
-    "problem.wall.effects": "AddedMass Load SideStop Thrust",
-    "problem.wall.friction_damper": "FrictionDamper",
-    "problem.wall.section": "Opening",
-    "problem.wall.tie": "Tie",
-    "quantities": "GRAVITY Implausible",
-    "reference.compliant": "solve_compliant",
-    "reporting.page": "report",
-    "result.compare": "Comparison compare",
-    "result.ledger": "Ledger",
-    "result.ending": "Outcome",
-    "result.response": "MasonryResponse Response",
-    "result.rocking": "Impact",
-    "scene.masonry": "masonry_scene",
-    "scene.of_case": "scene_of",
-    "scene.scene": "Scene",
-    "scene.wall": "wall_scene",
-    "study.analysis": "Analysis MasonryAnalysis",
-    "study.calibration": "Plan calibrate",
-    "study.campaign": "campaign results",
-    "study.capacities": "PairedRatio fit_capacities lost paired_ratio",
-    "study.capacity": "Capacity",
-    "study.contacts_by_matching": "as_theory matched_contacts",
-    "study.fragility": "Fragility fit_fragility",
-    "study.grid": "Grid",
-    "study.ida": "ida overturning_intensity",
-    "study.masonry_by_matching": "matched_masonry",
-    "study.mechanism": "MechanismCheck mechanism_check",
-    "study.pushover": "pushover",
-    "study.rocking_spectrum": "RockingSpectrum rocking_spectrum",
-    "study.sensitivity": "Sensitivity sensitivity",
-    "study.store": "Store",
-    "theory.analytical": "solve_analytical",
-    "theory.impact": "RigidImpact rigid_impact",
+IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)
+"""What a type checker imports above: a module and its public names."""
+HOME = {
+    name: module for module, names in IMPORTED.findall(Path(__file__).read_text("utf-8")) for name in names.split(", ")
 }
-"""The public names of each module."""
-HOME = {name: module for module, names in HOMES.items() for name in names.split()}
+"""The module of each public name."""
 
 
 def _require_mujoco(version: str) -> None:

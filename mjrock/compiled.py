@@ -94,10 +94,12 @@ def _imported_numba() -> Any:
             self._cache_file._source_stamp = stamp(Path(function.__code__.co_filename))
 
         def load_overload(self, *key: Any) -> Any:
-            """The compiled function, or None where it cannot be read."""
+            """The compiled function, or None where it cannot be read. What is stored then makes room for it."""
             try:
                 return super().load_overload(*key)
             except Exception:
+                with contextlib.suppress(OSError):
+                    self.flush()
                 return None
 
         def save_overload(self, *key: Any) -> None:

@@ -93,12 +93,12 @@ def require_file(path: Path) -> Path:
     """The path of a file that is to be read.
 
     Raises:
-        OSError: with the path, if there is nothing, or what is no file, such as a pipe, which may never end.
+        OSError: with the path, if there is nothing, or what is not a file, such as a pipe, which may never end.
     """
     mode = path.stat().st_mode
     if not stat.S_ISREG(mode):
         folder = stat.S_ISDIR(mode)
-        raise OSError(errno.EISDIR if folder else errno.EINVAL, "is no file", str(path))
+        raise OSError(errno.EISDIR if folder else errno.EINVAL, "is not a file", str(path))
     return path
 
 

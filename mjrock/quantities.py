@@ -249,7 +249,7 @@ def require_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     """Return a copy of `value` as an array of finite numbers.
 
     Raises:
-        TypeError: if it is no array of real numbers.
+        TypeError: if it is not an array of real numbers.
         ValueError: if it is ragged or masked, has another shape, or a value that is not finite.
     """
     array = np.array(require_reals(name, value, f"an array of real numbers of the shape {shape}"))

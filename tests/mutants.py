@@ -35,11 +35,11 @@ OTHERS = (
     "scene/masonry.py",
     "scene/rest_in_space.py",
     "result/history.py",
-    "reference/sliders.py",
+    "reference/equations.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
-    *("contact", "numbers", "make", "geoms", "mixing", "inspect", "felt", "landing", "holding", "row_of_model"),
+    *("contact", "make", "geoms", "mixing", "inspect", "felt", "holding", "row_of_model"),
     *("filters", "meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
@@ -52,7 +52,7 @@ OWN = {
     },
     "geometry/frames.py": ("frames", "kinematics"),
     "geometry/kinematics.py": ("kinematics", "frames", "slipping", "friction_damper"),
-    "reference/sliders.py": ("friction_damper",),
+    "reference/equations.py": ("friction_damper",),
     "geometry/vectors.py": ("frames", "kinematics"),
     "scene/dampers.py": ("damper",),
     "scene/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),
@@ -66,19 +66,16 @@ OWN = {
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
     "distinct/looking.py": ("encounters", "encounters_in_space"),
     "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
-    "result/joint_motion.py": ("masonry_motion", "masonry"),
-    "result/joint_motion_in_space.py": ("masonry_in_space", "explicit_in_space", "motion_in_space"),
+    "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
     "problem/masonry/polygon.py": ("polygon",),
     "problem/wall/ties_on_wall.py": ("effects", "pushover"),
     "study/masonry_by_matching.py": ("matched_masonry",),
     "study/pushover.py": ("pushover",),
-    "study/tilted.py": ("pushover",),
-    "theory/forced.py": ("forced", "analytical"),
+    "theory/forced.py": ("forced", "analytical", "effects"),
     "theory/impact.py": ("impact",),
     "theory/law.py": ("forced", "analytical"),
-    "theory/ties.py": ("effects", "forced"),
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 ROUNDS = (

@@ -42,7 +42,7 @@ def answer(argv: Sequence[str]) -> str:
     """
     args = parser().parse_args(argv)
     if not args.model.is_file():
-        raise FileNotFoundError(f"model {args.model} is no file")
+        raise FileNotFoundError(f"model {args.model} is not a file")
     read = mujoco.MjModel.from_binary_path if args.model.suffix == ".mjb" else mujoco.MjModel.from_xml_path
     keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
     model = read(str(args.model))

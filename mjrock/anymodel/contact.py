@@ -4,26 +4,126 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import mujoco
+import numpy as np
 
+from ..engine.solref import inertia_of
+from ..problem.damping.falling import rebound_at
+from ..problem.damping.rebound import rebound_restitution
 from ..quantities import require_flag, require_text
-from .geoms import GeomPair, compiled
-from .notes import ContactWarning, missing, spoilers
-from .numbers import ContactNumbers
+from .filters import kept_apart
+from .geoms import GeomPair, compiled_model
+from .mixing import Mixed
+from .notes import (
+    SCATTER,
+    UNSOUND,
+    ContactWarning,
+    duplicates,
+    model_spoilers,
+    resolving_step,
+    rounded_down,
+    stiffest,
+    uneven,
+)
 from .others import Changed, Others, sentence
+
+DEEP = 0.01
+"""Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
+GAINS = 0.5
+"""omega h from which a contact of the pyramidal cone is said to gain energy [-]. Undamped it rebounds with 1.03 there,
+with 1.09 at 0.9 and with 2.4 at 1.9."""
+NOTHING, SMALL = 0.03, 0.2999
+"""Restitutions between which gravity is warned of where no speed is given [-]."""
+MOST_SPEED = 1e4
+"""Largest speed of approach that is looked at [m/s]."""
 
 
 @dataclass(frozen=True)
-class PairContact(ContactNumbers):
+class PairContact:
     """A spring and dashpot between two geoms that never pull, and the numbers with which MuJoCo has them.
 
-    Its numbers are those of `ContactNumbers`.
+    Args:
+        geom1, geom2: names of the geoms; an empty name is a geom without one.
+        ids: the numbers of the geoms.
+        k, c: spring [N/m] and dashpot [N s/m] of each contact point.
+        mass: effective mass that each contact point stops [kg].
+        inverse_weight: W of the pair [1/kg], the sum of `body_invweight0` of both bodies.
+        timestep, integrator: step [s] and integrator of MuJoCo for which the numbers hold.
+        contacts: contact points that share the mass.
+        solref, solimp, solreffriction, friction, condim: what the `<pair>` carries.
+        impratio: smallest impratio of the model with which the friction holds [-]; 1 without friction.
+        speed: speed of approach for which the contact was made [m/s], or None where it leaves out gravity.
+        gravity: acceleration with which gravity brings the geoms together [m/s2], not negative.
+        pose: the pose in which they meet: `qpos0`, a keyframe, or `qpos`.
+        load: static load of each contact point [N], the weight of the lighter of the two trees of bodies, shared.
+        remarks: what in this pose keeps the contact from being what was asked, one sentence each.
     """
+
+    geom1: str
+    geom2: str
+    ids: tuple[int, int]
+    k: float
+    c: float
+    mass: float
+    inverse_weight: float
+    timestep: float
+    integrator: str
+    contacts: int
+    solref: tuple[float, float]
+    solimp: tuple[float, float, float, float, float]
+    solreffriction: tuple[float, float]
+    friction: tuple[float, float, float, float, float]
+    condim: int
+    impratio: float
+    speed: float | None = None
+    gravity: float = 0.0
+    pose: str = "qpos0"
+    load: float = 0.0
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """The names of the geoms, or their numbers in brackets."""
+        names = zip((self.geom1, self.geom2), self.ids, strict=True)
+        return " on ".join(name or f"[{number}]" for name, number in names)
+
+    def is_like(self, other: PairContact) -> bool:
+        """Whether another contact has the same spring and dashpot."""
+        return math.isclose(self.k, other.k) and math.isclose(self.c, other.c, rel_tol=1e-6)
+
+    @property
+    def frequency(self) -> float:
+        """Circular frequency omega of the mass on the spring [rad/s]."""
+        return math.sqrt(self.k / self.mass)
+
+    @property
+    def xi(self) -> float:
+        """Damping ratio [-]."""
+        return self.c / (2 * math.sqrt(self.k * self.mass))
+
+    @property
+    def depth(self) -> float:
+        """How deep the static load presses the geoms into each other [m], load / k."""
+        return self.load / self.k
+
+    @property
+    def restitution(self) -> float:
+        """Coefficient of restitution e of an approach along the normal [-], at the speed for which the contact was made
+        with gravity, otherwise without gravity, see `rebound_restitution`."""
+        return rebound_restitution(self.xi) if self.speed is None else self.restitution_at(self.speed)
+
+    def restitution_at(self, speed: float) -> float:
+        """Coefficient of restitution e at a speed of approach [m/s], with gravity [-]; 0 if the body stays.
+
+        Raises:
+            TypeError, ValueError: unless the speed is a positive number.
+        """
+        return rebound_at(speed, self.xi, self.frequency, self.gravity)
 
     @property
     def xml(self) -> str:
@@ -131,7 +231,7 @@ class PairContact(ContactNumbers):
         if require_text("prefix", prefix):
             self._require_names()
             return replace(self, geom1=prefix + self.geom1, geom2=prefix + self.geom2).caveats(model)
-        pair = self._pair_in(compiled(model))
+        pair = self._pair_in(compiled_model(model))
         return (*missing(pair, self), *spoilers(pair, self), *self.remarks)
 
     def __str__(self) -> str:
@@ -184,7 +284,7 @@ def write(
     contacts: Sequence[PairContact], model: mujoco.MjModel | mujoco.MjSpec, on_geoms: bool, keep_others: bool
 ) -> None:
     """Write contacts of one time step into a model or a specification, and warn of others that this changes."""
-    whole, on_geoms = compiled(model), require_flag("on_geoms", on_geoms)
+    whole, on_geoms = compiled_model(model), require_flag("on_geoms", on_geoms)
     require_flag("keep_others", keep_others)
     option = model.option if isinstance(model, mujoco.MjSpec) else model.opt
     rubs = any(contact.condim > 1 for contact in contacts)
@@ -238,3 +338,112 @@ def document(contacts: Sequence[PairContact]) -> str:
     """The options that contacts of one time step need together, and their explicit pairs."""
     pairs = "".join(f"  {_element('pair', contact.attributes)}\n" for contact in contacts)
     return f"{_element('option', options_of(contacts))}\n<contact>\n{pairs}</contact>\n"
+
+
+def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
+    """What `apply` does not mend."""
+    model = pair.model
+    yield from model_spoilers(model)
+    yield from duplicates(pair)
+    if pair.explicit < 0 and (reason := kept_apart(pair)):
+        yield f"MuJoCo keeps these geoms apart, since {reason}; an explicit <pair> overrides that and lets them collide"
+    if pair.explicit >= 0:
+        mixed = Mixed.of(pair)
+        if mixed.margin != 0:
+            yield f"the pair has a margin of {mixed.margin:g} m, at which the spring begins; set it to 0"
+        if mixed.adhesion != 0:
+            yield f"the pair has an adhesion of {mixed.adhesion:g} N, with which the contact pulls"
+    if pair.is_uneven:
+        yield uneven(contact.contacts)
+    yield from step_spoilers(contact)
+
+
+def weight_spoilers(contact: PairContact) -> Iterator[str]:
+    """What the weight of the bodies does to a small restitution."""
+    e = rebound_restitution(contact.xi)
+    if contact.speed is not None or contact.gravity <= 0 or not NOTHING < e < SMALL:
+        return
+    slow, fast = NOTHING * contact.gravity, MOST_SPEED
+    for _ in range(60):
+        middle = math.sqrt(slow * fast)
+        slow, fast = (slow, middle) if contact.restitution_at(middle) > 0.5 * e else (middle, fast)
+    yield (
+        f"gravity lowers so small a restitution: e = {e:.3g} becomes {contact.restitution_at(1.0):.2g} at 1 m/s, and "
+        f"less than half of it below {slow:.2g} m/s; give speed, that of the approach"
+    )
+
+
+def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Iterator[str]:
+    """Where the stiffest contact that the step resolves is soft under the weight: against that of the model [N/m], and
+    against the smallest half extent of the geoms [m]."""
+    h, k = contact.timestep, contact.k
+    if k < (1 - SCATTER) * model_k:
+        yield (
+            f"k = {k:.3g} N/m, the stiffest that a step of {h:g} s resolves, is softer than the contact that "
+            f"the model had, {model_k:.3g} N/m under the weight; "
+            f"{rounded_down(h * math.sqrt(k / model_k))} s resolves as much"
+        )
+    if contact.depth > DEEP * thickness:
+        resolving = h * math.sqrt(DEEP * thickness / contact.depth)
+        yield (
+            f"the weight presses the geoms into each other by {contact.depth:.2g} m with the stiffest contact that a "
+            f"step of {h:g} s resolves, {contact.depth / thickness:.0%} of their smallest half extent; "
+            f"{rounded_down(resolving)} s resolves a hundredth of it"
+        )
+
+
+def step_spoilers(contact: PairContact) -> Iterator[str]:
+    """What a long step does to the restitution."""
+    h, omega = contact.timestep, contact.frequency
+    longest = resolving_step(contact.k, contact.c, contact.mass)
+    softer = f"or k = {rounded_down(0.999 * stiffest(h, contact.xi, contact.mass))} N/m at this step"
+    if omega * h > UNSOUND:
+        yield (
+            f"timestep = {h:g} s does not resolve a contact of omega = {omega:.4g} rad/s: it rebounds with less than "
+            f"0.6 whatever is asked; {rounded_down(longest)} s resolves it, {softer}"
+        )
+    elif h > longest:
+        yield (
+            f"timestep = {h:g} s is long for a contact of omega = {omega:.4g} rad/s and xi = {contact.xi:.3g}: the "
+            f"restitution depends on where in a step the geoms touch; {rounded_down(longest)} s resolves it, {softer}"
+        )
+
+
+def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
+    """What a model lacks that `apply` would write."""
+    option, mixed = pair.model.opt, Mixed.of(pair)
+    names = ["solref", "solimp"] + (["friction"] if contact.condim > 1 else [])
+    if pair.explicit < 0:
+        yield "the model has no explicit <pair> of the geoms, so that MuJoCo mixes the parameters of the two geoms"
+        if contact.condim > 1:
+            yield "geoms have no solreffriction, so that sliding changes the normal force"
+    elif contact.condim > 1:
+        names.append("solreffriction")
+    for name in names:
+        if not np.allclose(getattr(mixed, name), getattr(contact, name), rtol=1e-5, atol=1e-12):
+            yield f"the pair has another {name}: {getattr(mixed, name)} for {getattr(contact, name)}"
+    if mixed.condim != contact.condim:
+        yield f"the pair has condim {mixed.condim} for {contact.condim}"
+    if not math.isclose(option.timestep, contact.timestep, rel_tol=1e-9):
+        yield f"the model steps by {option.timestep:g} s, and the contact was made for {contact.timestep:g} s"
+    stage = mujoco.mjtIntegrator.mjINT_RK4
+    if (option.integrator == stage) != (contact.integrator == stage.name.removeprefix("mjINT_")):
+        yield f"the contact was made for the integrator {contact.integrator}, and the model has another"
+    if contact.condim == 1:
+        return
+    if option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
+        yield f"the friction cone is pyramidal, which {_pyramidal(pair, contact)}"
+    if option.impratio < contact.impratio * (1 - 1e-5):
+        yield f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force"
+
+
+def _pyramidal(pair: GeomPair, contact: PairContact) -> str:
+    """What the pyramidal cone does to a contact: all three numbers of the row grow, the mass and the step do not."""
+    factor, h, d = Mixed.of(pair).pyramid(float(pair.model.opt.impratio)), contact.timestep, contact.solimp[0]
+    dashpot = -contact.solref[1] / ((1 - d) * contact.inverse_weight)
+    used = 0.0 if contact.integrator == "RK4" else 0.5 * h * dashpot
+    inertia = factor * max(0.0, inertia_of(d, contact.inverse_weight) - used)
+    text = f"makes stiffness and damping of a contact with friction {factor:.3g} times as large"
+    if h * math.sqrt(factor * contact.k / (contact.mass + inertia)) <= GAINS:
+        return text
+    return f"{text}: the step is too long for it, and the contact can gain energy; set cone to elliptic"

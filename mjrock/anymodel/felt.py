@@ -17,6 +17,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
+from ..geometry.vectors import tangents
 from ..quantities import Array, Flags, Integers
 from .geoms import GeomPair
 
@@ -35,7 +36,7 @@ EQUALITY = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 
 
 @dataclass(frozen=True)
-class Felt:
+class EffectiveMass:
     """What a contact feels.
 
     Args:
@@ -57,14 +58,14 @@ class Felt:
 
 def felt(
     pair: GeomPair,
-    held: Held,
+    held: PoseConstraints,
     away: Array,
     points: tuple[Array, Array],
     *,
     friction: float = 0.0,
     frequency: float | None = None,
     k: float | None = None,
-) -> Felt:
+) -> EffectiveMass:
     """What a contact feels in a pose.
 
     Args:
@@ -82,9 +83,9 @@ def felt(
         rows = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, rows, None, point, body)
         jacobian += sign * rows
-    rows = _frame(away) @ jacobian
+    rows = np.array((away, *tangents(tuple(away.tolist())))) @ jacobian
     if not np.any(np.abs(rows[0]) > 1e-9):
-        return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
+        return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     free = held.free(rows)
     soft = held.answer(free, held.softness, held.equality)
     mass = _mass(soft, rows, friction)[0]
@@ -94,7 +95,7 @@ def felt(
     softness = np.where((held.rate < HOLDS * frequency) | limit, held.softness, 0.0)
     answer = held.answer(free, softness, held.equality)
     if not _free(answer, rows) > FIXED * _free(free, rows):
-        return Felt(math.inf, False, np.zeros(model.nv), 0.0, (), ())
+        return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
     mass, impulse = _mass(answer, rows, friction)
     slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * TIED > _stuck(answer, rows))
     if slides:
@@ -106,7 +107,7 @@ def felt(
     pressed = limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
     limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer
     stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
-    return Felt(
+    return EffectiveMass(
         mass=mass,
         slides=slides,
         motion=motion,
@@ -116,7 +117,7 @@ def felt(
     )
 
 
-class Held:
+class PoseConstraints:
     """The constraints of a model in its pose but for contacts, and what the joints feel of gravity.
 
     Attributes:
@@ -167,15 +168,6 @@ class Held:
         scale = np.abs(inner).max(initial=1e-300)
         solved = np.linalg.lstsq(inner / scale, held @ free / scale, rcond=1e-10)[0]
         return np.array(free - own @ solved)
-
-
-def _frame(normal: Array) -> Array:
-    """The normal and two tangents, as rows."""
-    x, y, z = normal.tolist()
-    least = min(abs(x), abs(y), abs(z))
-    first = (0.0, z, -y) if abs(x) == least else (-z, 0.0, x) if abs(y) == least else (y, -x, 0.0)
-    a, b, c = (part / math.hypot(*first) for part in first)
-    return np.array([(x, y, z), (a, b, c), (y * c - z * b, z * a - x * c, x * b - y * a)])
 
 
 def _free(answer: Array, rows: Array) -> float:

@@ -23,7 +23,7 @@ UNEVEN = (int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_SDF))
 """Geoms that are not convex."""
 
 
-def compiled(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
+def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
     """The compiled model of either; an MjSpec stays as it is. TypeError for any other, and a ValueError with the
     compiler's message for a specification that does not compile."""
     if isinstance(model, str | os.PathLike):
@@ -58,7 +58,7 @@ def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
         if body < 0:
             geoms, bodies = (", ".join(filter(None, names_of(model, kind))) or "none" for kind in (GEOM, BODY))
             raise ValueError(
-                f"{argument} = {value!r} is no geom or body of this model; its named geoms are: {geoms}; "
+                f"{argument} = {value!r} is not a geom or body of this model; its named geoms are: {geoms}; "
                 f"its named bodies are: {bodies}"
             )
         if model.body_geomnum[body] != 1:
@@ -188,7 +188,7 @@ class GeomPair:
         """The unit vector along which the first geom parts from the second, their distance [m], and the nearest points
         of both [m], shape (2, 3), or None where MuJoCo knows none.
 
-        The vector is the normal of a plane, else it points along the shortest distance of the geoms.
+        The vector is the normal of a plane, otherwise it points along the shortest distance of the geoms.
         """
         between = data.geom_xpos[self.geoms[0]] - data.geom_xpos[self.geoms[1]]
         distance, ends = self._shortest(data)

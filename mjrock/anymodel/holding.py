@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
+from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, named
-from .felt import Felt
+from .felt import EffectiveMass
 from .meeting import Pose
-from .numbers import rebound_at
 from .springs import ACTUATOR, JOINT, TENDON
 
 STIFF = 0.05
@@ -22,7 +22,7 @@ SHIFTS = 0.02
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
 
 
-def holding(pose: Pose, felt: Felt, k: float, xi: float, mass: float, speed: float = 1.0) -> Iterator[str]:
+def holding(pose: Pose, felt: EffectiveMass, k: float, xi: float, mass: float, speed: float = 1.0) -> Iterator[str]:
     """What holds the bodies of a contact besides, one sentence each. The whole contact has the stiffness k [N/m], the
     damping ratio xi [-] and the mass [kg]; dry friction is judged at the speed of approach [m/s]."""
     model, data = pose.model, pose.data

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 
 import mujoco
 
+from ..problem.damping.falling import rebound_at
 from ..problem.damping.rebound import rebound_restitution
 from ..quantities import Array, require_flag, require_whole, require_within
 from .filters import every_pair
-from .geoms import GeomPair, compiled
+from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Meeting, Pose, elsewhere, meeting
+from .meeting import PairMeeting, Pose, meeting, other_keyframes
 from .notes import UNSOUND, duplicates, model_spoilers, resolving_step, rounded_down, uneven
-from .numbers import rebound_at
-from .row_of_model import Row
+from .row_of_model import ModelRow
 
 IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is said to be hardly able to move [-]."""
@@ -128,13 +128,13 @@ def inspect_contacts(
     require_flag("candidates", candidates)
     points = None if contacts is None else require_whole("contacts", contacts, 1, mujoco.mjMAXCONPAIR)
     force = None if load is None else require_within("load", load, 1e-12, 1e15, "N")
-    whole = compiled(model)
+    whole = compiled_model(model)
     pose = Pose(whole, keyframe, qpos)
     return tuple(_inspected(pair, pose, points, force) for pair in every_pair(whole, candidates=candidates))
 
 
 def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | None) -> InspectedContact:
-    row = Row(pair)
+    row = ModelRow(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
     met = meeting(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
     force = load if load is not None else pair.load / met.points
@@ -157,7 +157,7 @@ def _inspected(pair: GeomPair, pose: Pose, contacts: int | None, load: float | N
 
 
 def _notes(
-    pair: GeomPair, pose: Pose, row: Row, met: Meeting, found: InspectedContact, contacts: int | None
+    pair: GeomPair, pose: Pose, row: ModelRow, met: PairMeeting, found: InspectedContact, contacts: int | None
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
@@ -185,7 +185,7 @@ def _notes(
     if found.k > 0:
         yield from holding(pose, met.felt, found.k * met.points, found.xi, found.mass)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
-        yield from elsewhere(pair, pose, met, contacts, row.mixed.sliding)
+        yield from other_keyframes(pair, pose, met, contacts, row.mixed.sliding)
 
 
 def _step_notes(contact: InspectedContact, h: float) -> Iterator[str]:

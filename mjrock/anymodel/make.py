@@ -15,10 +15,10 @@ from ..method import METHOD
 from ..problem.damping.falling import MOST_PULL, falling_damping
 from ..problem.damping.rebound import rebound_damping
 from ..quantities import Array, named, require_whole, require_within, shown, spelt
-from .contact import PairContact
-from .geoms import GeomPair, compiled
+from .contact import PairContact, soft_spoilers, spoilers, weight_spoilers
+from .geoms import GeomPair, compiled_model
 from .holding import holding
-from .meeting import Company, Meeting, Pose, elsewhere, meeting
+from .meeting import Company, PairMeeting, Pose, meeting, other_keyframes
 from .mixing import Grip, unused
 from .notes import (
     RESOLVED,
@@ -26,12 +26,9 @@ from .notes import (
     ContactWarning,
     resolving_step,
     rounded_down,
-    soft_spoilers,
-    spoilers,
     stiffest,
-    weight_spoilers,
 )
-from .row_of_model import Row
+from .row_of_model import ModelRow
 
 LEAST_RESTITUTION = 1e-3
 """The smallest coefficient of restitution that a contact is given [-]. e = 0 is the limit of an infinite dashpot."""
@@ -102,9 +99,9 @@ def contact_for(
             else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
             which the contact stops another mass, and without k of a contact that is soft.
     """
-    whole = compiled(model)
+    whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    asked = Asked(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
+    asked = ContactRequest(k, c, restitution, xi, friction, mass, at, contacts, speed, timestep, newmark_beta)
     contact = beside(*contact_of(pair, Pose(whole, keyframe, qpos), asked), {})
     for sentence in (*spoilers(pair, contact), *contact.remarks):
         warnings.warn(sentence, ContactWarning, stacklevel=2)
@@ -112,7 +109,7 @@ def contact_for(
 
 
 @dataclass(frozen=True)
-class Asked:
+class ContactRequest:
     """What is asked of a contact: the arguments of `contact_for` by name, as they were given."""
 
     k: Any = None
@@ -128,7 +125,7 @@ class Asked:
     newmark_beta: Any = 0.25
 
 
-def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> tuple[PairContact, Company]:
+def contact_of(pair: GeomPair, pose: Pose, asked: ContactRequest) -> tuple[PairContact, Company]:
     """The contact of a pair in a pose, which says in `remarks` what keeps it from being what was asked, and what lands
     with it."""
     option = pair.model.opt
@@ -171,7 +168,8 @@ def contact_of(pair: GeomPair, pose: Pose, asked: Asked) -> tuple[PairContact, C
         remarks=(*unused(asked.friction, grip), *_remarks(pair, pose, asked, met, k, c, grip.sliding)),
     )
     weighed = () if asked.restitution is None else tuple(weight_spoilers(contact))
-    soft = () if asked.k is not None else tuple(soft_spoilers(contact, Row(pair).loaded(contact.load), pair.thickness))
+    load = contact.load
+    soft = () if asked.k is not None else tuple(soft_spoilers(contact, ModelRow(pair).loaded(load), pair.thickness))
     return replace(contact, remarks=(*contact.remarks, *weighed, *soft)), met.company
 
 
@@ -197,7 +195,7 @@ def beside(contact: PairContact, company: Company, made: Mapping[frozenset[int],
     return replace(contact, remarks=(*contact.remarks, *remarks))
 
 
-def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:
+def _mass(pair: GeomPair, pose: Pose, mass: object, met: PairMeeting) -> float:
     """The effective mass of a contact point [kg]."""
     if mass is not None:
         return require_within("mass", mass, 1e-30, 1e30, "kg") / met.points
@@ -209,7 +207,7 @@ def _mass(pair: GeomPair, pose: Pose, mass: object, met: Meeting) -> float:
     return met.share
 
 
-def _damping_ratio(asked: Asked, omega: float, gravity: float) -> float:
+def _damping_ratio(asked: ContactRequest, omega: float, gravity: float) -> float:
     """The damping ratio [-] of a frequency, from the restitution or the damping ratio that is given."""
     if asked.restitution is None:
         return require_within("damping ratio xi", asked.xi, 0.0, 1e6)
@@ -225,7 +223,7 @@ def _damping_ratio(asked: Asked, omega: float, gravity: float) -> float:
     return falling_damping(e, pull)
 
 
-def _require_one_loss(asked: Asked) -> None:
+def _require_one_loss(asked: ContactRequest) -> None:
     losses = {"c": asked.c, "restitution": asked.restitution, "xi": asked.xi}
     given = {name: value for name, value in losses.items() if value is not None}
     if len(given) != 1:
@@ -233,14 +231,14 @@ def _require_one_loss(asked: Asked) -> None:
         raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
 
 
-def _dashpot(k: float, mass: float, asked: Asked, gravity: float) -> float:
+def _dashpot(k: float, mass: float, asked: ContactRequest, gravity: float) -> float:
     """The dashpot of a contact point [N s/m], from the one of the three that is given."""
     if asked.c is not None:
         return require_within("damping c", asked.c, 0.0, 1e30, "N s/m")
     return 2 * _damping_ratio(asked, math.sqrt(k / mass), gravity) * math.sqrt(k * mass)
 
 
-def _stiffest(pair: GeomPair, asked: Asked, h: float, mass: float, gravity: float) -> float:
+def _stiffest(pair: GeomPair, asked: ContactRequest, h: float, mass: float, gravity: float) -> float:
     """The stiffest contact that the step resolves, rounded down [N/m]."""
     if asked.c is not None:
         raise ValueError(f"k = None takes restitution or xi, and c = {spelt(asked.c)} is given; give k")
@@ -252,7 +250,9 @@ def _stiffest(pair: GeomPair, asked: Asked, h: float, mass: float, gravity: floa
     return float(rounded_down(min(0.999 * k, most), 3))
 
 
-def _remarks(pair: GeomPair, pose: Pose, asked: Asked, met: Meeting, k: float, c: float, mu: float) -> tuple[str, ...]:
+def _remarks(
+    pair: GeomPair, pose: Pose, asked: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
+) -> tuple[str, ...]:
     """What in the pose keeps a contact from being what was asked, one sentence each."""
     if asked.mass is not None or not met.felt.mass < math.inf:
         return ()
@@ -260,7 +260,7 @@ def _remarks(pair: GeomPair, pose: Pose, asked: Asked, met: Meeting, k: float, c
     found = list(holding(pose, met.felt, k * met.points, xi, met.felt.mass, float(asked.speed or 1.0)))
     if asked.c is None and asked.at is None:
         contacts = None if asked.contacts is None else met.points
-        found += elsewhere(pair, pose, met, contacts, mu)
+        found += other_keyframes(pair, pose, met, contacts, mu)
     return tuple(found)
 
 

@@ -12,14 +12,14 @@ from typing import Any
 import mujoco
 
 from ..quantities import Array, named, shown
-from .contact import PairContact, document, options_of, write
+from .contact import PairContact, document, options_of, spoilers, write
 from .filters import makes
-from .geoms import BODY, GEOM, GeomPair, compiled, geom_id, names_of
-from .make import Asked, beside, contact_of
+from .geoms import BODY, GEOM, GeomPair, compiled_model, geom_id, names_of
+from .make import ContactRequest, beside, contact_of
 from .meeting import Pose
-from .notes import VARIES, ContactWarning, spoilers
+from .notes import VARIES, ContactWarning
 
-TAKES = tuple(field.name for field in fields(Asked) if field.name != "timestep")
+TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
 """What can be asked of each contact."""
 Geom = str | int
 
@@ -68,7 +68,7 @@ class PairContacts:
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
         """What in a model keeps the contacts from being what they say, alike sentences once with the geoms that they
         are about; see `PairContact.caveats`."""
-        whole = compiled(model)
+        whole = compiled_model(model)
         return tuple(_merged((contact, sentence) for contact in self for sentence in contact.caveats(whole, prefix)))
 
     def __str__(self) -> str:
@@ -106,14 +106,14 @@ def contacts_for(
     Warns:
         ContactWarning: as `contact_for` does, sentences that are alike once, with the geoms that they are about.
     """
-    whole = compiled(model)
+    whole = compiled_model(model)
     if not isinstance(pairs, Mapping):
         raise TypeError(
             f"pairs = {shown(pairs)} has to be a dictionary, such as "
             '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
         )
     pose = Pose(whole, keyframe, qpos)
-    meant: dict[frozenset[int], tuple[tuple[int, int], Asked, bool]] = {}
+    meant: dict[frozenset[int], tuple[tuple[int, int], ContactRequest, bool]] = {}
     for key, values in pairs.items():
         asked = _asked(key, values, timestep)
         for geoms in _meant(whole, key):
@@ -135,7 +135,7 @@ def contacts_for(
     return contacts
 
 
-def _asked(key: object, values: object, timestep: object) -> Asked:
+def _asked(key: object, values: object, timestep: object) -> ContactRequest:
     if not isinstance(key, tuple) or len(key) != 2:
         raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
     if not isinstance(values, Mapping):
@@ -143,7 +143,7 @@ def _asked(key: object, values: object, timestep: object) -> Asked:
     unknown = [str(name) for name in values if name not in TAKES]
     if unknown:
         raise ValueError(f"pairs of {shown(key)} have {named(unknown)}; each takes {', '.join(TAKES)}")
-    return Asked(**values, timestep=timestep)
+    return ContactRequest(**values, timestep=timestep)
 
 
 def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,14 +13,18 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ..quantities import Array, Integers, require_array, shown
-from .felt import Felt, Held, felt
+from ..quantities import Array, Integers, require_array, require_whole, shown
+from .felt import EffectiveMass, PoseConstraints, felt
 from .filters import makes
 from .geoms import FARTHEST, GeomPair
-from .landing import DEPTH, Ground, Landing, landing
-from .springs import Springs
-from .state import keyframe_names, state_of
+from .springs import JointSprings
 
+DEPTH = 1e-3
+"""How far the geoms are pressed into each other, as a share of the smaller one's radius [-]: a face that is level to
+one in a thousand meets in all of its points."""
+DIRECTIONLESS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
+"""Geoms that stay where they are."""
+KEY = mujoco.mjtObj.mjOBJ_KEY
 FOREIGN = 1.2
 """Ratio of the masses of two poses from which a contact is said to be made for one of them [-]."""
 LEVEL = 0.05
@@ -27,6 +33,130 @@ SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
 MOST_KEYFRAMES = 20
 """Most keyframes in which a contact is looked at."""
+
+
+class Trial:
+    """A copy of a model in a pose, see `state_of`, in which geoms are tried against each other."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self.model = copy.copy(model)
+        option, disabled = self.model.opt, mujoco.mjtDisableBit
+        option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
+        option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
+        option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        self.data = mujoco.MjData(self.model)
+        for name in ("qpos", "mocap_pos", "mocap_quat"):
+            getattr(self.data, name)[:] = getattr(data, name)
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        for name in ("geom_contype", "geom_conaffinity", "body_contype", "body_conaffinity"):
+            getattr(self.model, name)[:] = 0
+
+    def points(self, pair: GeomPair, away: Array, distance: float) -> Array:
+        """The points in which the geoms meet, with the first moved by `distance` against `away`, shape (n, 3)."""
+        bodies, geoms = list(pair.bodies), list(pair.geoms)
+        self._let_meet(geoms, bodies, 1)
+        moves = 1 if self.model.geom_type[geoms[0]] in DIRECTIONLESS else 0
+        place = np.array(self.data.geom_xpos[geoms[moves]])
+        radii = self.model.geom_rbound[geoms]
+        depth = DEPTH * float(min((radius for radius in radii if radius > 0), default=1.0))
+        shift = (distance + depth) * away
+        self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
+        try:
+            mujoco.mj_collision(self.model, self.data)
+            contact = self.data.contact
+            met = contact.pos[(np.sort(contact.geom, axis=1) == sorted(geoms)).all(axis=1)]
+        finally:
+            self.data.geom_xpos[geoms[moves]] = place
+            self._let_meet(geoms, bodies, 0)
+        points = met[:: max(1, len(pair.listed))]
+        return points + shift if moves == 0 else points
+
+    def _let_meet(self, geoms: list[int], bodies: list[int], value: int) -> None:
+        self.model.geom_contype[geoms] = self.model.geom_conaffinity[geoms] = value
+        self.model.body_contype[bodies] = self.model.body_conaffinity[bodies] = value
+
+
+class Landing(NamedTuple):
+    """Where two geoms meet.
+
+    Args:
+        away: unit vector along which the first geom parts from the second, shape (3,).
+        distance: their distance [m].
+        first, second: the points of the contact on each of them where it is now, in the world's frame [m], shape
+            (n, 3). They are the same points once the geoms have met.
+    """
+
+    away: Array
+    distance: float
+    first: Array
+    second: Array
+
+
+def landing(pair: GeomPair, data: mujoco.MjData, ground: Trial | None) -> Landing:
+    """Where two geoms meet.
+
+    Args:
+        pair: the geoms.
+        data: the pose, see `state_of`.
+        ground: a copy of the model in this pose; None for geoms that meet in a single point.
+    """
+    away, distance, ends = pair.apart(data)
+    if ground is not None:
+        points = ground.points(pair, away, distance)
+        if len(points):
+            return Landing(away, distance, points, points - distance * away)
+    first, second = [pair.centre(data, body) for body in pair.bodies] if ends is None else ends
+    return Landing(away, distance, first[None, :], second[None, :])
+
+
+def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:
+    """The names of all keyframes, with a number in brackets where there is none."""
+    return tuple(mujoco.mj_id2name(model, KEY, i) or f"[{i}]" for i in range(model.nkey))
+
+
+def keyframe_id(model: mujoco.MjModel, keyframe: object) -> int:
+    """The number of a keyframe given by name or number; TypeError or ValueError with what the model has for none."""
+    known = ", ".join(keyframe_names(model)) or "none"
+    if isinstance(keyframe, str):
+        number = mujoco.mj_name2id(model, KEY, keyframe) if "\0" not in keyframe and keyframe.isprintable() else -1
+        if number < 0:
+            raise ValueError(f"keyframe = {shown(keyframe)} is not a keyframe of this model; it has: {known}")
+        return int(number)
+    if model.nkey == 0:
+        raise ValueError(f"keyframe = {shown(keyframe)} is given, and this model has none")
+    return require_whole("keyframe", keyframe, 0, model.nkey - 1)
+
+
+def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> mujoco.MjData:
+    """The model in a pose, at rest, with its mass matrix, its constraints but for contacts, and its weight.
+
+    Arguments are those of `Pose`. TypeError or ValueError for a keyframe or positions that the model cannot have, or
+    both.
+    """
+    if keyframe is not None and qpos is not None:
+        raise ValueError(f"keyframe = {shown(keyframe)} and qpos are both given; give one of them")
+    data = mujoco.MjData(model)
+    if keyframe is not None:
+        mujoco.mj_resetDataKeyframe(model, data, keyframe_id(model, keyframe))
+        data.qvel[:] = 0
+    elif qpos is not None:
+        data.qpos[:] = require_array("qpos", qpos, (model.nq,))
+        if np.abs(data.qpos).max(initial=0) > 1e10:
+            raise ValueError("qpos holds a value outside the valid range -1e10 to 1e10")
+        mujoco.mj_normalizeQuat(model, data.qpos)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_flex(model, data)
+        mujoco.mj_tendon(model, data)
+        mujoco.mj_transmission(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_factorM(model, data)
+        mujoco.mj_makeConstraint(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+    return data
 
 
 class Pose:
@@ -59,23 +189,23 @@ class Pose:
         return self._groups[bodies]
 
     @cached_property
-    def ground(self) -> Ground:
+    def ground(self) -> Trial:
         """A copy of the model in which geoms are tried against each other."""
-        return Ground(self.model, self.data)
+        return Trial(self.model, self.data)
 
     @cached_property
-    def held(self) -> Held:
+    def held(self) -> PoseConstraints:
         """The constraints of the pose."""
-        return Held(self.model, self.data)
+        return PoseConstraints(self.model, self.data)
 
     @cached_property
-    def springs(self) -> Springs:
+    def springs(self) -> JointSprings:
         """The springs and dampers of joints, tendons and actuators."""
-        return Springs(self.model, self.data)
+        return JointSprings(self.model, self.data)
 
     @cached_property
     def others(self) -> tuple[Pose, ...]:
-        """The poses of the model's keyframes, if this one is none of them and was not asked for."""
+        """The poses of the model's keyframes, if this one is not among them and was not asked for."""
         return () if self.given else tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
 
 
@@ -84,7 +214,7 @@ class Company(NamedTuple):
 
     Args:
         level: those that land together with it, and share the mass.
-        late: how much sooner or later they touch [m], where that is more than on a level face, else zero.
+        late: how much sooner or later they touch [m], where that is more than on a level face, otherwise zero.
         apart: those that land before or after it.
     """
 
@@ -94,7 +224,7 @@ class Company(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Meeting:
+class PairMeeting:
     """The contact of two geoms in a pose.
 
     Args:
@@ -104,7 +234,7 @@ class Meeting:
     """
 
     points: int
-    felt: Felt
+    felt: EffectiveMass
     company: Company
 
     @property
@@ -123,7 +253,7 @@ def meeting(
     friction: float = 0.0,
     frequency: float | None = None,
     k: float | None = None,
-) -> Meeting:
+) -> PairMeeting:
     """How two geoms meet in a pose.
 
     Args:
@@ -151,7 +281,7 @@ def meeting(
         places = first.mean(axis=0), second.mean(axis=0)
     whole = None if k is None else k * count
     felt_there = felt(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
-    return Meeting(count, felt_there, others)
+    return PairMeeting(count, felt_there, others)
 
 
 class Group:
@@ -200,7 +330,9 @@ def company(pair: GeomPair, pose: Pose) -> Company:
     )
 
 
-def elsewhere(pair: GeomPair, pose: Pose, here: Meeting, contacts: int | None, friction: float) -> Iterator[str]:
+def other_keyframes(
+    pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
+) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
     names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):

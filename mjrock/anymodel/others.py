@@ -22,7 +22,7 @@ from ..quantities import named
 from .filters import every_pair
 from .geoms import GeomPair
 from .mixing import Mixed
-from .row_of_model import Row
+from .row_of_model import ModelRow
 
 SAME = 0.05
 """Change of stiffness from which a contact is another [-]."""
@@ -40,12 +40,12 @@ class Others:
 
     def __init__(self, model: mujoco.MjModel, written: Collection[frozenset[int]]) -> None:
         pairs = (pair for pair in every_pair(model) if frozenset(pair.geoms) not in written)
-        self.before = [(pair, Row(pair)) for pair in pairs]
+        self.before = [(pair, ModelRow(pair)) for pair in pairs]
 
     def changed(self) -> Iterator[Changed]:
         """Those that are stiffer or softer now."""
         for pair, before in self.before:
-            after = Row(pair)
+            after = ModelRow(pair)
             if not math.isclose(before.loaded(pair.load), after.loaded(pair.load), rel_tol=SAME):
                 yield Changed(pair, before, after)
 
@@ -54,8 +54,8 @@ class Changed(NamedTuple):
     """A contact that the options change, and its rows before and after."""
 
     pair: GeomPair
-    before: Row
-    after: Row
+    before: ModelRow
+    after: ModelRow
 
     @property
     def kept(self) -> Mixed | None:
@@ -68,7 +68,7 @@ class Changed(NamedTuple):
         spring = before.spring * math.sqrt(d * dw / (near * full))
         made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
         load = self.pair.load
-        return made if math.isclose(Row(self.pair, made).loaded(load), before.loaded(load), rel_tol=KEPT) else None
+        return made if math.isclose(ModelRow(self.pair, made).loaded(load), before.loaded(load), rel_tol=KEPT) else None
 
     @property
     def stiffness(self) -> tuple[float, float]:

@@ -5,7 +5,7 @@ W of the two bodies,
 
     k = K d^2 / ((1 - d) W),    c = B d / ((1 - d) W),    m_i = d / ((1 - d) W).
 
-In the direct format K = stiffness / dw^2 and B = damping / dw, else K = 1 / (dw timeconst dampratio)^2 and
+In the direct format K = stiffness / dw^2 and B = damping / dw, otherwise K = 1 / (dw timeconst dampratio)^2 and
 B = 2 / (dw timeconst), where dw is the impedance at the full width. With friction and the pyramidal cone all three
 change by the factor of `Mixed.pyramid`. An Euler step of length h uses up h c / 2 of the inertia m_i (see `contact`).
 What is left moves with the mass in a contact.
@@ -25,7 +25,7 @@ from .geoms import GeomPair
 from .mixing import Mixed
 
 
-class Row:
+class ModelRow:
     """The row of a contact of two geoms of a model.
 
     Attributes:

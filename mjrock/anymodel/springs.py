@@ -17,7 +17,7 @@ Owner = tuple[mujoco.mjtObj, int]
 """What holds: a joint, a tendon or an actuator, and its number."""
 
 
-class Springs:
+class JointSprings:
     """The springs and dampers of a model in its pose.
 
     Attributes:
@@ -73,8 +73,7 @@ def _first(values: Array, count: int) -> Array:
 
 def _dense(values: Array, count: Integers, start: Integers, columns: Integers, width: int) -> Array:
     """A sparse matrix with all of its zeros."""
-    rows = np.repeat(np.arange(len(count)), count)
-    places = np.concatenate([np.arange(a, a + n) for a, n in zip(start, count, strict=True)] or [np.zeros(0)])
     dense = np.zeros((len(count), width))
-    dense[rows, np.ravel(columns)[places.astype(int)]] = np.ravel(values)[places.astype(int)]
+    if dense.size:
+        mujoco.mju_sparse2dense(dense, np.ravel(values), count, start, np.ravel(columns))
     return dense

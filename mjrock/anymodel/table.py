@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 import mujoco
 
 from ..quantities import named, require_within
+from ..result.table import aligned
 from .geoms import BODY, label_of, names_of
 from .inspect import InspectedContact
 from .notes import VARIES
@@ -78,7 +79,8 @@ def report(found: Sequence[InspectedContact], *, speed: float = 1.0, most: int |
     for contact in shown:
         marks = sorted({numbers[VARIES.sub("#", note)] for note in contact.notes})
         rows.append([*values(contact, speed), ",".join(str(mark) for mark in marks)])
-    lines = [_aligned([list(HEADER), *rows])]
+    head, *body = aligned([list(HEADER), *rows])
+    lines = [head, "-" * len(head), *body]
     if len(shown) < len(found):
         lines.append(
             f"and {len(found) - len(shown)} more; --all shows them, --geom, --body and --pair choose among them"
@@ -113,9 +115,3 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
 def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:
     """Whether one of the names is as one of the patterns says."""
     return any(name == pattern or fnmatchcase(name, pattern) for name in names for pattern in patterns)
-
-
-def _aligned(rows: Sequence[Sequence[str]]) -> str:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])

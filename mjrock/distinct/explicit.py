@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from ..quantities import require_flag, require_size, require_within
 from ..result.response import Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
+from ..result.stopwatch import Stopwatch
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
@@ -43,8 +43,8 @@ def solve_explicit(
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
         contacts: the interfaces of the wall; masonry has its own joints.
-        timestep: length of a step [s]; None takes 0.4 of the longest stable one for masonry and 0.005 of it for a wall,
-            whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
+        timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry and 0.005 of it
+            for a wall, whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.
@@ -62,11 +62,11 @@ def solve_explicit(
         UserWarning: of steps that would take more than some ten seconds, and how long.
         Implausible: of a given timestep that is far below what the contacts need.
     """
-    begun = time.perf_counter()
+    watch = Stopwatch()
     require_case(case, contacts)
     require_flag("ledger", ledger)
     if timestep is not None:
-        timestep = require_within("timestep", timestep, 1e-9, min(1.0, case.duration), "s")
+        timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
     setup = carried_on(setup_of(case, contacts, state), start)
@@ -83,21 +83,20 @@ def solve_explicit(
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
-    stepping = time.perf_counter()
+    stepping = Stopwatch()
     followed = follow(setup, books, samples, steps)
-    took = time.perf_counter() - stepping
+    took = stepping.stepping()
     stats: dict[str, Any] = {
         "steps": followed.steps,
         "timestep": steps.h,
         "stable_timestep": limit,
         "share": steps.h / limit,
         "friction": "springs" if np.isfinite(followed.system.lines["k_s"]).any() else "rigid",
-        "stepping_time": took,
+        **took,
     }
     kept = slice(followed.samples)
-    run = Run(
-        case, contacts, scene, setup.course, followed, books, samples.taken(kept).since_the_start(), steps.times()[kept]
-    )
+    samples = samples.taken(kept).since_the_start()
+    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept])
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
-    response.stats["wall_time"] = time.perf_counter() - begun
+    response.stats.update(watch.took())
     return response

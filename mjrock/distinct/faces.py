@@ -50,10 +50,10 @@ def outlines_of_joints(masonry: Masonry) -> list[tuple[Outline, Outline]]:
     if masonry.in_space:
         return [(_polygonal(below), _polygonal(above)) for below, above in faces_of_joints(masonry)]
     pairs = []
-    for joint in masonry.joints:
+    for joint in masonry.plane_joints:
         ways, normal = np.array([-joint.along, joint.along]), np.array([-joint.along[1], joint.along[0]])
         below, above = (
-            Outline(joint.middle + np.outer(edge_ends(masonry.blocks[block], joint), joint.along), way, ways)
+            Outline(joint.middle + np.outer(edge_ends(masonry.polygons[block], joint), joint.along), way, ways)
             for block, way in ((joint.below, normal), (joint.above, -normal))
         )
         pairs.append((below, above))

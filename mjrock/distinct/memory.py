@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.vectors import Vector
-from ..problem.masonry.support import Support
 from ..quantities import Array, Integers
 from ..result.response import State
 from .assembly import copied

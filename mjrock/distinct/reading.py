@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..geometry.frames import SPACE
-from ..problem.damping.contacts import Contacts
-from ..problem.damping.uplift import Uplift
+from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import GRAVITY, Array, Integers
@@ -21,7 +20,6 @@ from ..result.ending import ending, masonry_ending
 from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
-from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion
 from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
 from ..result.motion import SampledMotion
@@ -30,8 +28,7 @@ from ..result.rocking import Rocking
 from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
-from ..scene.quiet import is_quiet
-from ..scene.scene import Scene
+from ..scene.scene import Scene, is_quiet
 from .following import Followed
 from .memory import remembered
 from .system import Books, Samples
@@ -135,8 +132,8 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     """Openings, slidings and falls of masonry, and the sample at which the first block falls."""
     masonry, scene, pose = case.masonry, run.scene, run.samples.pose
     flat = pose.reshape(len(pose), -1)
-    followed, up = (joint_motion_in_space, 2) if run.in_space else (joint_motion, 1)
-    motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
+    up = scene.freedom.translations - 1
+    motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""

@@ -16,7 +16,14 @@ from ..result.response import State
 from ..scene.course import Course
 from ..scene.equilibrium import UnsettledError
 from ..scene.explicit_step import SHARE
-from ..scene.masonry import masonry_course, require_carried, require_standing, standing_masonry, unsettled
+from ..scene.masonry import (
+    drawn_masonry,
+    masonry_course,
+    require_carried,
+    require_standing,
+    standing_masonry,
+    unsettled,
+)
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
 from .assembly import copied, friction_at_rest, moved_by, started, system_of, take_grips
@@ -86,7 +93,7 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     """Masonry at the start of a case, or in a given state."""
     masonry = case.masonry
-    scene, at_rest = standing(masonry, case.effects)
+    scene, at_rest = standing(masonry, case.effects, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
@@ -101,12 +108,15 @@ def continued(course: Course, state: State | None) -> Course:
 
 
 @lru_cache(maxsize=16)
-def standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[Scene, System]:
-    """Masonry and its system at rest, which all cases of it with the same effects share.
+def standing(masonry: Masonry, effects: tuple[Effect, ...] = (), settled: bool = True) -> tuple[Scene, System]:
+    """Masonry and its system at rest, or as drawn where it is not settled, which cases with the same effects share.
 
     Raises:
-        ValueError: if it does not stand. The message names the blocks that fall.
+        ValueError: if it is to settle and does not stand. The message names the blocks that fall.
     """
+    if not settled:
+        drawn = drawn_masonry(masonry, effects)
+        return drawn, system_of(drawn, masonry)
     if not masonry.in_space:
         require_standing(masonry, effects)
     scene = standing_masonry(masonry, effects)

@@ -27,7 +27,7 @@ from ..scene.ground import Shaking, mean_acceleration
 from ..scene.scene import Scene
 from ..scene.structure import breaks, spring_energy
 from .points import Points, points_of
-from .record import Kinds, Record, Steps, Windows
+from .record import Record, StepKinds, Steps, Windows
 from .rows import Step, impratio_of, row_of
 from .sliding import slip_of
 
@@ -69,7 +69,7 @@ def contact_work(scene: Scene, steps: Steps) -> ContactWork:
     """What the contacts take from a motion."""
     joints = scene.contacts.joints
     work = Work(np.zeros((len(steps.t), len(joints))), np.zeros(len(steps.t)), np.zeros(2))
-    points, room = points_of(scene, steps.method), Room.of(scene)
+    points, room = points_of(scene, steps.method), LedgerRoom.of(scene)
     _contact_work(points, scene.contacts.joint, steps.record, steps.windows, steps.kinds, room, work)
     lift, pressed = work.impulses.tolist()
     return ContactWork(joints, work.dashpots, work.friction, lift / pressed if pressed else 0.0)
@@ -110,7 +110,7 @@ def given_back(scene: Scene, steps: Steps) -> Array:
     """Energy that ties and constant forces regain after each step but the last [J], shape (steps - 1,).
 
     An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken on the
-    way is then there again. It would else add up under a thrust that a resting wall bears for long.
+    way is then there again. Otherwise it would add up under a thrust that a resting wall bears for long.
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
     pose[::2], pose[1::2] = steps.pose, moved(steps.pose, steps.h[:, None] * steps.record.after, scene.freedom)[:-1]
@@ -170,7 +170,7 @@ class Work(NamedTuple):
     impulses: Array
 
 
-class Room(NamedTuple):
+class LedgerRoom(NamedTuple):
     """Room for one step.
 
     Args:
@@ -189,7 +189,7 @@ class Room(NamedTuple):
     inertia: Array
 
     @classmethod
-    def of(cls, scene: Scene) -> Room:
+    def of(cls, scene: Scene) -> LedgerRoom:
         """Room for a step of a scene."""
         freedom, coordinates, contacts = scene.freedom, len(scene.bodies.masses), len(scene.contacts.k)
         frames = (freedom.frames(len(scene.bodies.mass)) for _ in range(3))
@@ -197,7 +197,7 @@ class Room(NamedTuple):
 
 
 @jitable
-def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, room: Room) -> None:
+def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, room: LedgerRoom) -> None:
     """Write frames and rates of step n of the record."""
     take_frames(record.pose[n], room.frames, axes)
     take_frames(windows.pose[n], room.seam, axes)
@@ -209,7 +209,7 @@ def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, r
 
 
 @jitable
-def take_rows(points: Points, step: Step, room: Room) -> float:
+def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
     """Write dashpot and inertia of the row of every contact in a step, and return impratio [-]."""
     impratio = math.inf
     for i in range(len(room.inertia)):
@@ -247,7 +247,7 @@ def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> f
 
 @compiled
 def _contact_work(
-    points: Points, joint: Integers, record: Record, windows: Windows, kinds: Kinds, room: Room, work: Work
+    points: Points, joint: Integers, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, work: Work
 ) -> None:
     """Add up the work of dashpots and friction in the window of each step; `joint` is that of each contact."""
     places, law = points.places, points.law

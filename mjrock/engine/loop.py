@@ -19,13 +19,13 @@ from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, Memory
 from .pace import Pace, judged, step_of, while_loaded, while_taut
 from .points import Points, Reach
-from .progress import Clock, Progress
+from .progress import Progress, StepClock
 from .record import Record
 from .rows import set_rows
 from .setting import Setting, push
 from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .sticking import Moved, put_sticking_edges_back
-from .touches import Openings, closure_changed, follow, step_to_break, step_to_touch
+from .touches import Openings, closure_changed, follow_openings, step_to_break, step_to_touch
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
 """x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
@@ -34,7 +34,7 @@ FAR = 1e9
 
 
 @jitable
-def copied(values: Array, to: Array) -> None:
+def copy_into(values: Array, to: Array) -> None:
     """Copy values into another array."""
     for j in range(len(values)):
         to[j] = values[j]
@@ -73,18 +73,18 @@ def out_of_reach(reach: Reach, openings: Openings) -> bool:
 
 
 @inlined
-def at_the_pose(memory: Memory, state: Progress, last: float) -> None:
+def at_the_pose(memory: Memory, state: Progress, previous: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
     for j in range(len(state.rate)):
-        state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * last
-        state.velocity_now[j] = memory.velocity[j] + 0.5 * last * state.acceleration_now[j]
+        state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * previous
+        state.velocity_now[j] = memory.velocity[j] + 0.5 * previous * state.acceleration_now[j]
 
 
 @jitable
 def acceleration_from_engine(memory: Memory, setting: Setting, state: Progress, t: float) -> None:
     """Acceleration at the time of the pose, found by the engine, where a contact has just opened or closed."""
     find_acceleration(memory, setting, state.sliding, state.frames, t)
-    copied(memory.acceleration, state.acceleration_now)
+    copy_into(memory.acceleration, state.acceleration_now)
     follow_now(setting, state)
 
 
@@ -92,22 +92,22 @@ def acceleration_from_engine(memory: Memory, setting: Setting, state: Progress, 
 def follow_now(setting: Setting, state: Progress) -> None:
     """Bring gaps and slack up to date."""
     places, ties = setting.points.places, setting.ties
-    follow(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
+    follow_openings(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
 
 
 @inlined
-def shift_velocity(memory: Memory, state: Progress, now: float, last: float) -> None:
+def shift_velocity(memory: Memory, state: Progress, step: float, previous: float) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
-    late, lag = 0.5 * (now - last), last - 0.25 * (last + now)
+    late, lag = 0.5 * (step - previous), previous - 0.25 * (previous + step)
     for j in range(len(state.rate)):
         memory.velocity[j] -= late * (state.acceleration[j] + lag * state.rate[j])
 
 
 @inlined
-def set_step(memory: Memory, points: Points, pace: Pace, now: float) -> None:
+def set_step(memory: Memory, points: Points, pace: Pace, step: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
-    memory.options[TIMESTEP] = now
-    memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, now), memory.rows)
+    memory.options[TIMESTEP] = step
+    memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, step), memory.rows)
 
 
 @jitable
@@ -126,7 +126,7 @@ def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, v
 
 @inlined
 def change_of_acceleration(
-    memory: Memory, setting: Setting, state: Progress, last: float, now: float, fresh: bool
+    memory: Memory, setting: Setting, state: Progress, previous: float, step: float, no_rate: bool
 ) -> float:
     """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
     change, masses = 0.0, setting.masses
@@ -134,19 +134,19 @@ def change_of_acceleration(
         difference = memory.acceleration[j] - state.acceleration[j]
         change += masses[j] * difference * difference
         state.change[j] = difference
-        state.rate[j] = 0.0 if fresh else difference / last
+        state.rate[j] = 0.0 if no_rate else difference / previous
         state.acceleration[j] = memory.acceleration[j]
     if len(setting.products) > 0:
         change += coupling(setting.products, state.change)
-    return now * now * change
+    return step * step * change
 
 
 @inlined
 def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, record: Record, n: int) -> None:
     """Let the engine make step n of the record, whose time and length are set."""
     t = record.t[n]
-    copied(memory.pose, record.pose[n])
-    copied(memory.velocity, record.before[n])
+    copy_into(memory.pose, record.pose[n])
+    copy_into(memory.velocity, record.before[n])
     if slide(memory, setting, sliding, frames, t):
         memory.finish(memory.model, memory.data)
         for i in range(len(sliding.slides)):
@@ -156,8 +156,8 @@ def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array,
         push(memory, setting, frames, t)
         memory.step(memory.model, memory.data)
         record.friction[n, :] = math.nan
-    copied(setting.damping, record.damping[n])
-    copied(memory.velocity, record.after[n])
+    copy_into(setting.damping, record.damping[n])
+    copy_into(memory.velocity, record.after[n])
 
 
 @inlined
@@ -166,7 +166,7 @@ def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, r
     moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
     put_sticking_edges_back(setting.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
     for body in range(len(state.frames)):
-        copied(state.next_frames[body], state.frames[body])
+        copy_into(state.next_frames[body], state.frames[body])
     settle_ties(memory, setting, state.frames)
 
 
@@ -189,65 +189,65 @@ def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> 
 
 @compiled
 def fitted_loop(
-    memory: Memory, setting: Setting, pace: Pace, state: Progress, clock: Clock, record: Record
+    memory: Memory, setting: Setting, pace: Pace, state: Progress, clock: StepClock, record: Record
 ) -> tuple[tuple[Any, ...], int]:
     """Steps that fit the motion until the record is full or the run is over.
 
     Returns the values of the clock, see `compiled`, and how many steps they were.
     """
-    t, h, last, energy, calm, fresh, abrupt, touches, ended = clock
+    t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
     axes = points.places.axes
-    if last == 0:
-        set_step(memory, points, pace, h)
-        find_acceleration(memory, setting, sliding, state.frames, -h)
-        copied(memory.acceleration, state.acceleration)
+    if previous == 0:
+        set_step(memory, points, pace, allowed)
+        find_acceleration(memory, setting, sliding, state.frames, -allowed)
+        copy_into(memory.acceleration, state.acceleration)
     while n < len(record.t) and not ended:
-        at_the_pose(memory, state, last)
+        at_the_pose(memory, state, previous)
         follow_now(setting, state)
-        if closure_changed(openings, state.closed) and last > pace.short and not fresh:
+        if closure_changed(openings, state.closed) and previous > pace.short and not no_rate:
             acceleration_from_engine(memory, setting, state, t)
-            h, calm, fresh = pace.short, 0, True
+            allowed, calm_steps, no_rate = pace.short, 0, True
 
         # predict
-        now = allowed_step(setting, pace, openings, h)
+        step = allowed_step(setting, pace, openings, allowed)
         least = pace.method.faded * pace.accuracy * energy
         to_touch = 0.0
-        if not abrupt:
-            to_touch = step_to_touch(state.springs, openings, now, h, least, pace.short, state.touches)
-            to_break = step_to_break(setting.ties, openings, now, pace.short)
+        if not unpredictable:
+            to_touch = step_to_touch(state.springs, openings, step, allowed, least, pace.short, state.touches)
+            to_break = step_to_break(setting.ties, openings, step, pace.short)
             if to_break > 0 and not 0 < to_touch < to_break:
                 to_touch = to_break
         if to_touch > 0:
-            now = to_touch
+            step = to_touch
 
         # step
-        if last == 0:
-            set_step(memory, points, pace, now)
+        if previous == 0:
+            set_step(memory, points, pace, step)
             release(memory, setting, sliding, state.frames, state.velocity_now)
-            copied(memory.acceleration, state.acceleration)
-        elif now != last:
-            shift_velocity(memory, state, now, last)
-            set_step(memory, points, pace, now)
-        record.t[n], record.h[n] = t, now
+            copy_into(memory.acceleration, state.acceleration)
+        elif step != previous:
+            shift_velocity(memory, state, step, previous)
+            set_step(memory, points, pace, step)
+        record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
-        turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting, state, last, now, fresh or turned) / energy
-        abrupt = change > pace.method.abrupt**2
+        sliding_turned = sliding_changed(sliding)
+        change = change_of_acceleration(memory, setting, state, previous, step, no_rate or sliding_turned) / energy
+        unpredictable = change > pace.method.abrupt**2
         settle_pose(memory, setting, pace, state, record, n)
 
         # judge
-        t, last = t + now, now
+        t, previous = t + step, step
         if to_touch > 0:
             energy = max(kinetic(setting.masses, setting.products, memory.velocity), pace.least_energy)
             touches += 1
-            h, calm, fresh = pace.short, 0, True
+            allowed, calm_steps, no_rate = pace.short, 0, True
         else:
-            h, calm = judged(pace, now, math.inf if fresh else change, calm)
-            fresh = False
+            allowed, calm_steps = judged(pace, step, math.inf if no_rate else change, calm_steps)
+            no_rate = False
         n += 1
-    return (t, h, last, energy, calm, fresh, abrupt, touches, ended), n
+    return (t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended), n
 
 
 @compiled

@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 
 from ..quantities import Array, Integers
-from .rows import Rows
+from .rows import ContactRows
 
 TIMESTEP, IMPRATIO = 0, 1
 """Places of the two options in `Memory.options`."""
@@ -57,7 +57,7 @@ class Memory(NamedTuple):
     acceleration: Array
     guess: Array
     applied: Array
-    rows: Rows
+    rows: ContactRows
     dimension: Integers
     plastic: Array
     upper: Integers
@@ -83,7 +83,7 @@ class Memory(NamedTuple):
             data.qacc,
             data.qacc_warmstart,
             data.qfrc_applied,
-            Rows(model.pair_solref, model.pair_solimp, model.pair_solreffriction),
+            ContactRows(model.pair_solref, model.pair_solimp, model.pair_solreffriction),
             model.pair_dim,
             data.plastic,
             model.tendon_plasticadr.astype(np.int64) + 1,

@@ -23,7 +23,7 @@ from ..quantities import GRAVITY, Array
 from ..scene.checks import GROUND
 from ..scene.scene import Scene
 from .points import points_of
-from .rows import Rows, Step, set_rows
+from .rows import ContactRows, Step, set_rows
 from .shapes import in_space, meshes, sites, world
 from .tags import section, tag, value_text
 
@@ -148,7 +148,7 @@ class Keyframe(NamedTuple):
 class FixedRows(NamedTuple):
     """The rows of all pairs at one step, the impratio of the model [-], and the dashpots of the links [N s/m], (t,)."""
 
-    rows: Rows
+    rows: ContactRows
     impratio: float
     damping: Array
 
@@ -156,7 +156,7 @@ class FixedRows(NamedTuple):
 def pair_rows(scene: Scene, timestep: float, newmark_beta: float, method: Method = METHOD) -> FixedRows:
     """The rows of a scene at a fixed step."""
     points, m = points_of(scene, method), len(scene.contacts.k)
-    rows, step = Rows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
+    rows, step = ContactRows.of(m), Step(timestep, np.full(m, newmark_beta), np.zeros(m))
     return FixedRows(rows, set_rows(points.law, points.inertia, step, rows), scene.links.c)
 
 
@@ -188,7 +188,7 @@ def _forces(scene: Scene) -> Iterator[str]:
         )
 
 
-def _pairs(scene: Scene, rows: Rows) -> Iterator[str]:
+def _pairs(scene: Scene, rows: ContactRows) -> Iterator[str]:
     """The contacts."""
     for i, (point, face) in enumerate(zip(scene.contacts.point_names, scene.contacts.face_names, strict=True)):
         mu = scene.contacts.friction[i]

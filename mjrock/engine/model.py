@@ -29,7 +29,7 @@ KEPT = 16
 
 
 def _noted(text: str) -> None:
-    """Log a warning of MuJoCo, which would else write MUJOCO_LOG.TXT into the current folder."""
+    """Log a warning of MuJoCo, which would otherwise write MUJOCO_LOG.TXT into the current folder."""
     logging.getLogger("mujoco").warning(text)
 
 

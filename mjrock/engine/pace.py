@@ -104,7 +104,7 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
 
 @jitable
 def resolves(pace: Pace, h: float) -> int:
-    """Which row of `pace.beta` and `pace.ringing` a step of length h takes: 0 where it resolves the contacts, else
+    """Which row of `pace.beta` and `pace.ringing` a step of length h takes: 0 where it resolves the contacts, otherwise
     1."""
     return 0 if h * pace.frequency < pace.method.smooth else 1
 

@@ -11,7 +11,7 @@ from ..geometry.kinematics import Places
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, frozen
 from ..scene.scene import Scene
-from .rows import Law, RowInertia
+from .rows import ContactLaw, RowInertia
 from .solref import body_weight
 
 
@@ -40,7 +40,7 @@ class Points(NamedTuple):
     """
 
     places: Places
-    law: Law
+    law: ContactLaw
     inertia: RowInertia
     reach: Reach
     rubs: Flags
@@ -65,7 +65,7 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
     mild = scene.limits.damped_joints & (scene.bears > 0) & (scene.contacts.c * weight < scene.highest_frequency)
     return Points(
         places=scene.places,
-        law=Law(scene.contacts.k, scene.contacts.c, scene.contacts.friction),
+        law=ContactLaw(scene.contacts.k, scene.contacts.c, scene.contacts.friction),
         inertia=RowInertia(
             weight=weight,
             overdamped=np.where(mild, method.borne, method.overdamped),

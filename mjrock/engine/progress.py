@@ -59,32 +59,32 @@ class Progress(NamedTuple):
         return cls(*rates, frames, frames.copy(), *touching, joints, sliding)
 
 
-class Clock(NamedTuple):
+class StepClock(NamedTuple):
     """Where a run of fitted steps is.
 
     Args:
         t: time of the next pose [s].
-        h: length of step that the pace allows [s].
-        last: length of the last step, zero at the release [s].
+        allowed: length of step that the pace allows [s].
+        previous: length of the last step, zero at the release [s].
         energy: twice the kinetic energy at the last touch [J], by which changes are measured.
-        calm: how many steps in a row changed little.
-        fresh: whether no rate of the acceleration is known: after a touch, and at the release.
-        abrupt: whether the last step changed the velocity so much that it says nothing of the next.
+        calm_steps: how many steps in a row changed little.
+        no_rate: whether no rate of the acceleration is known: after a touch, and at the release.
+        unpredictable: whether the last step changed the velocity so much that it says nothing of the next.
         touches: how many touches have been met.
         ended: whether the run is over.
     """
 
     t: float
-    h: float
-    last: float
+    allowed: float
+    previous: float
     energy: float
-    calm: int
-    fresh: bool
-    abrupt: bool
+    calm_steps: int
+    no_rate: bool
+    unpredictable: bool
     touches: int
     ended: bool
 
     @classmethod
-    def started(cls, pace: Pace, energy: float) -> Clock:
+    def started(cls, pace: Pace, energy: float) -> StepClock:
         """At the release, with the energy of the release [J]."""
         return cls(0.0, pace.short, 0.0, max(2 * energy, pace.least_energy), 0, True, False, 0, False)

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..geometry.kinematics import gaps
 from ..geometry.poses import angles
-from ..problem.damping.contacts import Contacts
-from ..problem.damping.uplift import Uplift
+from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
@@ -18,12 +17,10 @@ from ..result.ending import Outcome, ending, masonry_ending
 from ..result.fallen import fallen_blocks
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
-from ..result.joint_motion_in_space import joint_motion_in_space
 from ..result.joints import JointMotion
 from ..result.rocking import Rocking
 from ..scene.course import Course
-from ..scene.quiet import is_quiet
-from ..scene.scene import Scene
+from ..scene.scene import Scene, is_quiet
 from .record import Steps
 
 MARKS = 1000
@@ -104,8 +101,8 @@ class AskedMasonry:
     def read(self, scene: Scene, course: Course, steps: Steps, energy: Array) -> Reading:
         """Openings, slidings and falls. No energy may appear from one of MARKS times to a later one before a fall."""
         masonry, t = self.case.masonry, steps.t
-        followed, up = (joint_motion_in_space, 2) if masonry.in_space else (joint_motion, 1)
-        motion = followed(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose)
+        up = scene.freedom.translations - 1
+        motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose)
         drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
         fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))

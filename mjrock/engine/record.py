@@ -69,7 +69,7 @@ class Record(NamedTuple):
         return parts[0] if len(parts) == 1 else Record(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-class Kinds(NamedTuple):
+class StepKinds(NamedTuple):
     """The rows of the steps, which are of two kinds: those that resolve the contacts, and those that do not.
 
     Args:
@@ -98,7 +98,7 @@ class Steps:
     """
 
     record: Record
-    kinds: Kinds
+    kinds: StepKinds
     touches: int = 0
     method: Method = METHOD
     freedom: Freedom = PLANE

@@ -19,7 +19,7 @@ from ..quantities import Array
 from .solref import pair_values, row
 
 
-class Law(NamedTuple):
+class ContactLaw(NamedTuple):
     """The contact law.
 
     Args:
@@ -62,7 +62,7 @@ class Step(NamedTuple):
     ringing: Array
 
 
-class Rows(NamedTuple):
+class ContactRows(NamedTuple):
     """The rows as MuJoCo keeps them, shapes (m, 2), (m, 2 or more) and (m, 2)."""
 
     solref: Array
@@ -70,7 +70,7 @@ class Rows(NamedTuple):
     solreffriction: Array
 
     @classmethod
-    def of(cls, contacts: int) -> Rows:
+    def of(cls, contacts: int) -> ContactRows:
         """Room for the rows of some contacts."""
         return cls(
             np.zeros((contacts, 2)), np.tile((0.0, 0.0, 0.001, 0.5, 2.0), (contacts, 1)), np.zeros((contacts, 2))
@@ -78,7 +78,7 @@ class Rows(NamedTuple):
 
 
 @jitable
-def row_of(law: Law, inertia: RowInertia, i: int, step: Step) -> tuple[float, float]:
+def row_of(law: ContactLaw, inertia: RowInertia, i: int, step: Step) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `solref.row`."""
     return row(law.k[i], law.c[i], step.h, inertia.weight[i], step.beta[i], step.ringing[i], inertia.overdamped[i])
 
@@ -92,7 +92,7 @@ def impratio_of(inertia: RowInertia, i: int, normal: float, h: float) -> float:
 
 
 @jitable
-def set_rows(law: Law, inertia: RowInertia, step: Step, rows: Rows) -> float:
+def set_rows(law: ContactLaw, inertia: RowInertia, step: Step, rows: ContactRows) -> float:
     """Write the rows of all contacts for a step, and return the `impratio` of the model [-]."""
     impratio = math.inf
     for i in range(len(law.k)):

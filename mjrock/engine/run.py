@@ -32,7 +32,7 @@ def sound_timestep(frequency: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class EngineRun:
     """A run of the engine that has been checked.
 
     Args:
@@ -42,7 +42,8 @@ class Run:
         taken: what ties have taken up to each step [J], shape (steps, t).
         broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
-        scale: energy of the release, of the springs at rest, and of what the ground put in or took [J].
+        scale: energy of the release, of the springs at rest, or at most where they start empty, and of what the ground
+            put in or took [J].
     """
 
     asked: Asked
@@ -56,7 +57,7 @@ class Run:
     scale: float
 
     @classmethod
-    def judged(cls, asked: Asked, scene: Scene, course: Course, steps: Steps) -> Run:
+    def judged(cls, asked: Asked, scene: Scene, course: Course, steps: Steps) -> EngineRun:
         """The run of these steps.
 
         Raises:
@@ -67,7 +68,8 @@ class Run:
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
         reading = asked.read(scene, course, steps, energy)
         work = ground_work(scene, course, steps)[: reading.count]
-        scale = max(float(energy[0]), 0.0) + float(np.abs(work).sum()) + float(scene.rest_energies[2])
+        elastic = float(scene.rest_energies[2]) or float(stored[: reading.count, 2].max())  # as drawn springs hold none
+        scale = max(float(energy[0]), 0.0) + float(np.abs(work).sum()) + elastic
         require_no_gain(scene, steps, work, reading.marks, scale)
         return cls(asked, scene, course, steps, energy, taken, broken, reading, scale)
 

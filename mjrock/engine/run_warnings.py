@@ -15,7 +15,7 @@ from .energy_work import contact_work
 from .points import points_of
 from .reading import AskedWall
 from .record import Steps
-from .run import Run, sound_timestep
+from .run import EngineRun, sound_timestep
 
 SCATTER = 0.1
 """Standard deviation of |e| at a fixed step against a side stop, over omega h, relative [-]: a touch lies anywhere in a
@@ -82,7 +82,7 @@ def warn_if_lifted(scene: Scene, steps: Steps) -> None:
         )
 
 
-def warn_if_slid(run: Run, asked: AskedWall) -> None:
+def warn_if_slid(run: EngineRun, asked: AskedWall) -> None:
     """Warn of a base that has slid although it should hold."""
     half_base, slid = asked.case.block.half_base, run.reading.slid
     if asked.contacts.base.friction is None and slid > SLID * half_base:
@@ -93,7 +93,7 @@ def warn_if_slid(run: Run, asked: AskedWall) -> None:
         )
 
 
-def warn_if_open(response: Response, run: Run, asked: AskedWall, advice: str) -> None:
+def warn_if_open(response: Response, run: EngineRun, asked: AskedWall, advice: str) -> None:
     """Warn of a ledger with energy that nothing has put in, with advice."""
     if response.ledger is None:
         return

@@ -27,12 +27,12 @@ class Setting(NamedTuple):
         points: the contacts.
         ties: the ties.
         masses: the generalised ones, shape (n nv,).
-        products: products of inertia of bodies of space, see `mjrock.scene.masses`, shape (n, 3), else (0, 3).
+        products: products of inertia of bodies of space, see `mjrock.scene.masses`, shape (n, 3), or (0, 3).
         ground: how the ground moves.
         dampers: the dampers.
         damping: their forces in the last step [N], shape (d,).
         refines: whether dampers, and what MuJoCo's gyroscopic moments lack, act as applied forces at the velocity of
-            the pose; else the engine does what is in its text.
+            the pose; otherwise the engine does what is in its text.
         duration: how long the motion is followed [s].
     """
 
@@ -55,7 +55,7 @@ class Setting(NamedTuple):
 
 
 @jitable
-def turn_on(memory: Memory, setting: Setting, ahead: float) -> None:
+def add_gyroscopic_correction(memory: Memory, setting: Setting, ahead: float) -> None:
     """Add to the applied forces what MuJoCo's gyroscopic moments lack in space.
 
     MuJoCo has -w x I w at the velocity that it keeps, half a step before the pose. This is first order in the step, and
@@ -91,5 +91,5 @@ def push(memory: Memory, setting: Setting, frames: Array, t: float) -> None:
     if setting.refines:
         damp(dampers, frames, setting.damping, axes, memory.applied)
         if len(axes) == 3:
-            turn_on(memory, setting, ahead)
+            add_gyroscopic_correction(memory, setting, ahead)
     push_ground(setting.ground, setting.masses, axes, t, memory.options[TIMESTEP], memory.applied)

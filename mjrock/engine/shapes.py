@@ -27,6 +27,8 @@ TINTS = (
     (0.83, 0.53, 0.40, 1.0),
 )
 """Colours of the blocks of masonry in space, of which MuJoCo draws no edges."""
+LEAST_MOMENT = 1e-14
+"""Smallest principal moment of a tensor of inertia that MuJoCo takes [kg m2]."""
 
 
 def in_space(vector: Array, raised: float = 0.0) -> tuple[float, ...]:
@@ -102,6 +104,12 @@ def _inertia(scene: Scene, j: int) -> dict[str, object]:
     moments = np.diagonal(scene.bodies.inertia[j])
     if not scene.bodies.products[j].any():
         return {"diaginertia": moments}
+    least = float(np.linalg.eigvalsh(scene.bodies.inertia[j])[0])
+    if least < LEAST_MOMENT:
+        raise ValueError(
+            f"{scene.bodies.names[j]} has a moment of inertia of {least:.3g} kg m2; MuJoCo takes those of at least "
+            f"{LEAST_MOMENT:g} kg m2, and mr.solve_explicit any"
+        )
     return {"fullinertia": np.concatenate([moments, scene.bodies.products[j]])}
 
 
@@ -157,19 +165,19 @@ def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[st
 
 
 def _plate(scene: Scene, i: int) -> dict[str, object]:
-    """The face of a body as a plate that is wider than any slip and thicker than any penetration.
+    """The face of a body as a plate that is wider than any slip and thicker than any penetration. MuJoCo pushes a point
+    out of the nearest side of it, so that it is as wide out of the plane too, where blocks may be short.
 
     It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
     be at the origin, and a thinner plate of a square block would have its middle a radius away from there.
     """
     extent, deep, normal = scene.bodies.extent, 2 * scene.bodies.extent, scene.contacts.normal[i]
-    across = 0.6 * scene.bodies.length if scene.freedom == PLANE else 4 * extent
     at = in_space(scene.contacts.face_at[i] - (deep + scene.radius) * normal)
-    return {"size": (4 * extent, across, deep), "pos": at, "zaxis": in_space(normal)}
+    return {"size": (4 * extent, 4 * extent, deep), "pos": at, "zaxis": in_space(normal)}
 
 
 def meshes(scene: Scene) -> Iterator[str]:
-    """The bodies that are no boxes; those of the plane as prisms."""
+    """The bodies that are not boxes; those of the plane as prisms."""
     for name, outline in zip(scene.bodies.names, scene.bodies.outlines, strict=True):
         if not _is_box(outline):
             vertices = outline

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+from dataclasses import dataclass
 from typing import Any
 
 from ..method import METHOD, Method
@@ -11,10 +11,11 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
-from ..quantities import require_flag, require_kind
+from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
 from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
+from ..result.stopwatch import Stopwatch
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
@@ -23,13 +24,78 @@ from ..scene.scene import Scene
 from .estimate import warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
-from .options import Options
 from .pace import short_step
 from .reading import Asked, AskedMasonry, AskedWall
 from .record import StepError
-from .run import Run, explained, sound_timestep
+from .run import EngineRun, explained, sound_timestep
 from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_sheared, warn_if_slid
 from .stepping import fitted_steps, fixed_steps
+
+SPACING = 1e-3
+"""Distance of samples between fitted steps, where none is asked for [s]."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a case is stepped and what is kept of the run, as `simulate` explains them.
+
+    Args:
+        duration: how long the motion is followed [s].
+        timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method: those of `simulate`.
+
+    Raises:
+        TypeError, ValueError: for a value of another type or outside its range, or more samples or steps than fit into
+            memory.
+    """
+
+    duration: float
+    timestep: float | None
+    accuracy: float
+    newmark_beta: float
+    coulomb: bool | None
+    output_step: float | None
+    ledger: bool
+    method: Method
+
+    def __post_init__(self) -> None:
+        require_kind("method", self.method, Method)
+        keep(
+            self,
+            accuracy=require_within("accuracy", self.accuracy, 1e-8, 0.1),
+            newmark_beta=require_within("newmark_beta", self.newmark_beta, 0.0, 10.0),
+            ledger=require_flag("ledger", self.ledger),
+        )
+        if self.coulomb is not None:
+            keep(self, coulomb=require_flag("coulomb", self.coulomb))
+        if self.output_step is not None:
+            keep(self, output_step=require_within("output_step", self.output_step, 1e-9, self.duration, "s"))
+        if self.timestep is None:
+            samples = self.duration / (self.output_step or SPACING)
+            require_size("the samples of this answer", samples, "raise output_step or follow it for less")
+        else:
+            keep(self, timestep=require_within("timestep", self.timestep, 1e-9, min(1.0, self.duration), "s"))
+            steps = self.duration / self.timestep
+            require_size("the steps of this run", steps, "take a longer timestep, or fitted steps")
+
+    @property
+    def slides(self) -> bool:
+        """Whether contacts that slide obey Coulomb's law."""
+        return self.timestep is None if self.coulomb is None else self.coulomb
+
+    @property
+    def spacing(self) -> float | None:
+        """Distance of samples that are interpolated [s]; None at a fixed step, whose steps are the samples."""
+        return (self.output_step or SPACING) if self.timestep is None else None
+
+    @property
+    def stride(self) -> int:
+        """Every how many steps there is a sample at a fixed step."""
+        return max(1, round(self.output_step / self.timestep)) if self.output_step and self.timestep else 1
+
+    @property
+    def remedy(self) -> str:
+        """What to change where energy is lost or gained by the steps."""
+        return f"lower accuracy = {self.accuracy:g}" if self.timestep is None else "take a shorter timestep"
 
 
 def automatic_timestep(wall: Block, contacts: Contacts, *, side_stop: bool) -> float:
@@ -89,7 +155,7 @@ def simulate(
             than eight blocks in a fraction of the time, or if a tie without an `ultimate` was drawn out by more than a
             bar or an anchor follows.
     """
-    begun = time.perf_counter()
+    watch = Stopwatch()
     require_case(case, contacts)
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method)
     if isinstance(case, MasonryCase):
@@ -121,11 +187,11 @@ def simulate(
         warn_if_open(response, run, asked, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
-    response.stats["wall_time"] = time.perf_counter() - begun
+    response.stats.update(watch.took())
     return response
 
 
-def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[Run, dict[str, Any]]:
+def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:
     """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
 
     Raises:
@@ -137,18 +203,18 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
         try:
             with engine_of(scene) as engine:
                 engine.place(course)
-                begun = time.perf_counter()
+                watch = Stopwatch()
                 steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
-            took = time.perf_counter() - begun
-            run = Run.judged(asked, scene, course, steps)
-            return run, {"timestep": h, "accuracy": used, "newmark_beta": None, "stepping_time": took}
+            took = watch.stepping()
+            run = EngineRun.judged(asked, scene, course, steps)
+            return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
             if used < 0.02 * options.accuracy:
                 raise explained(error, scene, h, used) from None
             used /= 10
 
 
-def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float) -> tuple[Run, dict[str, Any]]:
+def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float) -> tuple[EngineRun, dict[str, Any]]:
     """A run at steps of one length h [s], and what it took.
 
     Raises:
@@ -159,10 +225,10 @@ def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float
         with engine_of(scene) as engine:
             engine.follow(h, pair_rows(scene, h, beta, method))
             engine.release(course)
-            begun = time.perf_counter()
+            watch = Stopwatch()
             steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
-        took = time.perf_counter() - begun
-        run = Run.judged(asked, scene, course, steps)
+        took = watch.stepping()
+        run = EngineRun.judged(asked, scene, course, steps)
     except StepError as error:
         raise explained(error, scene, h, None) from None
-    return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, "stepping_time": took}
+    return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, **took}

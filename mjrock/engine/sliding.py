@@ -46,7 +46,7 @@ class Sliding(NamedTuple):
         slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
         force: friction of each that does, along its way on the body that carries the point [N], shape (m,). The way is
             (nz, -nx) in the plane. In space it is that of the slip, and the force is negative.
-        way: unit vectors of the ways in space, shape (m, 3), else (0, 3).
+        way: unit vectors of the ways in space, shape (m, 3), or (0, 3).
     """
 
     coulomb: bool
@@ -58,7 +58,7 @@ class Sliding(NamedTuple):
 
     @classmethod
     def of(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
-        """None slides yet."""
+        """No contact slides at the start."""
         m = len(points.rubs)
         none, ways = np.zeros((2, m), dtype=np.bool_), m if len(points.places.axes) == 3 else 0
         return cls(coulomb and bool(points.rubs.any()), method, none[0], none[1], np.zeros(m), np.zeros((ways, 3)))
@@ -118,7 +118,7 @@ def take_way(memory: Memory, places: Places, sliding: Sliding, i: int, meets: Me
 
 
 @jitable
-def normal_force(memory: Memory, points: Points, i: int, meets: Meeting, frames: Array) -> float:
+def pressing_force(memory: Memory, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
     places, d, W = points.places, memory.rows.solimp[i, 0], points.inertia.weight[i]
     rate = dot(meets.normal, over_face(places, i, meets, frames, memory.velocity))
@@ -144,7 +144,7 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
         mu, now = points.law.friction[i], slipping(places, i, meets, frames, memory.velocity)
         inertia = inertia_of(memory.rows.solimp[i, 0], points.inertia.weight[i])
         stopping = inertia * abs(now.speed) / memory.options[TIMESTEP]
-        pressing = normal_force(memory, points, i, meets, frames)
+        pressing = pressing_force(memory, points, i, meets, frames)
         beyond = memory.options[IMPRATIO] * stopping > sliding.method.slides * mu * pressing
         if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
@@ -179,7 +179,7 @@ def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
             slip = slipping(places, i, meets, frames, memory.velocity).speed
-            pressing = normal_force(memory, points, i, meets, frames)
+            pressing = pressing_force(memory, points, i, meets, frames)
             force = -math.copysign(points.law.friction[i] * pressing, slip)
             turned = take_way(memory, places, sliding, i, meets, frames)
             change = max(change, abs(force - sliding.force[i]), turned * abs(force))

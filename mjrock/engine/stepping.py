@@ -21,8 +21,8 @@ from ..scene.scene import Scene
 from .loop import fitted_loop, fixed_loop, release, settle_ties
 from .model import Engine
 from .pace import Pace
-from .progress import Clock, Progress
-from .record import Kinds, Record, StepError, Steps
+from .progress import Progress, StepClock
+from .record import Record, StepError, StepKinds, Steps
 from .setting import Setting
 from .sliding import Sliding
 from .sticking import Joints
@@ -44,17 +44,17 @@ def fitted_steps(
     settle_ties(memory, setting, frames_of(memory.pose, places.freedom))
     sliding = Sliding.of(setting.points, coulomb=coulomb, method=method)
     state = Progress.of(memory, setting, Joints.of_scene(scene), sliding)
-    clock = Clock.started(pace, course.energy(scene))
+    clock = StepClock.started(pace, course.energy(scene))
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal clock
         values, n = fitted_loop(memory, setting, pace, state, clock, record)
-        clock = Clock(*values)
+        clock = StepClock(*values)
         return n, clock.t, clock.ended
 
     record = _recorded(engine, course.duration, advance)
     kind = (record.h * pace.frequency >= method.smooth).astype(np.int64)
-    return Steps(record, Kinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method, places.freedom)
+    return Steps(record, StepKinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method, places.freedom)
 
 
 def fixed_steps(
@@ -89,7 +89,7 @@ def fixed_steps(
 
     record, contacts = _recorded(engine, course.duration, advance), len(scene.contacts.k)
     kind = np.zeros(len(record.t), dtype=np.int64)
-    kinds = Kinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on)
+    kinds = StepKinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on)
     return Steps(record, kinds, method=method, freedom=setting.points.places.freedom)
 
 

@@ -55,7 +55,7 @@ class Joints(NamedTuple):
 
     @classmethod
     def of_scene(cls, scene: Scene) -> Joints:
-        """The joints of a scene in which every body stands on one other body or on the ground; else none."""
+        """The joints of a scene in which every body stands on one other body or on the ground; otherwise none."""
         rough = (scene.contacts.friction > 0) & (scene.bears > 0)
         below = {
             int(body): set(scene.contacts.face_body[rough & (scene.contacts.body == body)])

@@ -16,7 +16,7 @@ import numpy as np
 from ..compiled import jitable
 from ..geometry.kinematics import Places, Ties, opening
 from ..quantities import Array, Flags
-from .rows import Law
+from .rows import ContactLaw
 
 ROUNDING = 1e-12
 """Gap below which a contact has neither opened nor closed [m]. A joint that bears nothing rests at a gap of zero."""
@@ -29,7 +29,7 @@ class Springs(NamedTuple):
     c: Array
 
     @classmethod
-    def of(cls, law: Law, ties: Ties) -> Springs:
+    def of(cls, law: ContactLaw, ties: Ties) -> Springs:
         """Those of a scene."""
         return cls(np.append(law.k, ties.k), np.append(law.c, np.zeros_like(ties.k)))
 
@@ -61,7 +61,7 @@ class Touches(NamedTuple):
 
 
 @jitable
-def follow(places: Places, ties: Ties, frames: Array, v: Array, a: Array, openings: Openings) -> None:
+def follow_openings(places: Places, ties: Ties, frames: Array, v: Array, a: Array, openings: Openings) -> None:
     """Write how the gap of every contact and the slack of every tie change. A tie that goes taut is a touch too.
 
     A link that also pushes is never slack. It counts as one that is taut by its elongation or its shortening.

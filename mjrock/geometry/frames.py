@@ -132,7 +132,10 @@ def displaced(start: Vector, frames: Array, body: int, r: Vector) -> Vector:
 
 @inlined
 def unswung(frames: Array, body: int, r: Vector) -> Vector:
-    """(R^T - 1) r, in space: the reverse of `swung`."""
+    """(R^T - 1) r: the reverse of `swung`."""
+    if len(r) == 2:
+        sine, versine = frames[body, 2], frames[body, 3]
+        return -r[1] * sine - r[0] * versine, r[0] * sine - r[1] * versine
     return (
         frames[body, 3] * r[0] + frames[body, 6] * r[1] + frames[body, 9] * r[2],
         frames[body, 4] * r[0] + frames[body, 7] * r[1] + frames[body, 10] * r[2],

@@ -43,7 +43,7 @@ class Bulk(NamedTuple):
 def hull_of(points: Array) -> Hull:
     """The convex hull of points, shape (n, 3). Facets of one plane are one face.
 
-    A point in the middle of a face or on an edge is no corner.
+    A point in the middle of a face or on an edge is not a corner.
 
     Raises:
         ValueError: for points that lie in a plane, with the thickness that they have.

@@ -227,7 +227,7 @@ def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vec
 
 @inlined
 def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array, axes: tuple[int, ...]) -> Gap:
-    """How much longer tie i may still become before it pulls [m], and how that changes; else as `gap`."""
+    """How much longer tie i may still become before it pulls [m], and how that changes; otherwise as `gap`."""
     at = ends(ties, i, frames, axes)
     across, velocity = at.across, parting(ties, i, at, frames, v, axes)
     turning = spin(frames, v, ties.body[i], axes)

@@ -104,7 +104,7 @@ def mapping(check: Check, least: int = 1) -> Check:
 
     def checked(name: str, value: Any) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
-            raise TypeError(f"{name} = {shown(value)} is no mapping of names, at least {least}")
+            raise TypeError(f"{name} = {shown(value)} is not a mapping of names, at least {least}")
         for key, one in value.items():
             require_text(f"a name of {name}", key)
             check(f"{name}[{key!r}]", one)
@@ -117,7 +117,7 @@ def listed(check: Check) -> Check:
 
     def checked(name: str, value: Any) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or not len(value):
-            raise TypeError(f"{name} = {shown(value)} is no sequence of at least one")
+            raise TypeError(f"{name} = {shown(value)} is not a sequence of at least one")
         for i, one in enumerate(value):
             check(f"{name}[{i}]", one)
 
@@ -129,7 +129,7 @@ def pair(first: Check, second: Check) -> Check:
 
     def checked(name: str, value: Any) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or len(value) != 2:
-            raise TypeError(f"{name} = {shown(value)} is no pair")
+            raise TypeError(f"{name} = {shown(value)} is not a pair")
         first(f"{name}[0]", value[0])
         second(f"{name}[1]", value[1])
 
@@ -146,7 +146,7 @@ def of_wall(name: str, value: Any) -> None:
 def drawing(name: str, value: Any) -> None:
     """A function that draws on an Axes."""
     if not callable(value):
-        raise TypeError(f"{name} = {shown(value)} is no function that draws on an Axes")
+        raise TypeError(f"{name} = {shown(value)} is not a function that draws on an Axes")
 
 
 def number(name: str, value: Any) -> None:

@@ -60,7 +60,7 @@ def _outlines(name: str, given: object) -> tuple[Array, ...]:
     if isinstance(given, np.ndarray) and given.ndim:
         given = list(given)
     if not isinstance(given, Sequence) or isinstance(given, str):
-        raise TypeError(f"{name} = {shown(given)} is no sequence of outlines")
+        raise TypeError(f"{name} = {shown(given)} is not a sequence of outlines")
     outlines = []
     for i, outline in enumerate(given):
         corners = require_reals(f"{name}[{i}]", outline, "corners x, z [m], shape (n, 2)")

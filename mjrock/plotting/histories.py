@@ -183,14 +183,14 @@ def required_labels(responses: Sequence[Response], labels: object) -> list[str] 
     """The labels of responses: those given, or solvers and numbers where cases differ, or None where solvers say it.
 
     Raises:
-        TypeError, ValueError: if they are no texts, or another number of them.
+        TypeError, ValueError: if they are not texts, or another number of them.
     """
     if labels is None:
         if len({response.solver for response in responses}) == len(responses):
             return None
         return [f"{response.solver} {i + 1}" for i, response in enumerate(responses)]
     if isinstance(labels, str) or not isinstance(labels, Sequence):
-        raise TypeError(f"labels = {shown(labels)} is no sequence of texts")
+        raise TypeError(f"labels = {shown(labels)} is not a sequence of texts")
     if len(labels) != len(responses):
         raise ValueError(f"labels has {len(labels)} texts for {len(responses)} responses; one for each is needed")
     return [require_text(f"labels[{i}]", label) for i, label in enumerate(labels)]

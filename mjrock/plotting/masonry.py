@@ -74,7 +74,7 @@ def blocks(
         drawn[block.fixed].append(corners)
         colour = STONE if block.fixed else BRICK
         ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))
-    for joint in masonry.joints if joints and pose is None else ():
+    for joint in masonry.plane_joints if joints and pose is None else ():
         ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=width, solid_capstyle="butt")
     _view(ax, masonry, drawn[False], drawn[True])
     return ax

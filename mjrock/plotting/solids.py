@@ -93,7 +93,7 @@ class Solids:
     @property
     def ground(self) -> list[Polyhedron]:
         """The fixed blocks below all that move."""
-        return [block for block, is_ground in zip(self.masonry.blocks, self._are_ground, strict=True) if is_ground]
+        return [block for block, is_ground in zip(self.masonry.polyhedra, self._are_ground, strict=True) if is_ground]
 
     @cached_property
     def _are_ground(self) -> list[bool]:
@@ -115,7 +115,7 @@ class Solids:
     @cached_property
     def facets(self) -> Facets:
         """The faces of the blocks that are shown."""
-        blocks = [self.masonry.blocks[i] for i in self.shown]
+        blocks = [self.masonry.polyhedra[i] for i in self.shown]
         counts = np.array([len(face) for block in blocks for face in block.faces])
         body = np.repeat(np.arange(len(blocks)), [len(block.faces) for block in blocks])
         corners = np.empty((len(counts), counts.max(), 3))

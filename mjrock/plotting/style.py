@@ -104,7 +104,7 @@ def save(figure: Figure, path: str | Path) -> Path:
     A path without a suffix is that of a PNG. Returns the path that was written.
 
     Raises:
-        TypeError: for what is no figure.
+        TypeError: for what is not a figure.
         ValueError: for a suffix that Matplotlib does not write.
     """
     require_kind("figure", figure, Figure)

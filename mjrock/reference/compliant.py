@@ -9,15 +9,13 @@ there. An edge that lands with a sliding velocity loses it at once, in the impul
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
-from ..problem.damping.contacts import Contacts
-from ..problem.damping.uplift import Uplift
+from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
@@ -27,6 +25,7 @@ from ..result.motion import SampledMotion
 from ..result.response import Response
 from ..result.rocking import Rocking
 from ..result.samples import intervals, required_spacing, thinned
+from ..result.stopwatch import Stopwatch
 from ..result.ties import Plastic
 from .equations import Wall
 
@@ -62,7 +61,7 @@ def solve_compliant(
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)
     warn_of_low_stop(case)
-    started = time.perf_counter()
+    watch = Stopwatch()
     system = Wall(case, contacts)
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)
     count = intervals(case.duration, spacing)
@@ -89,7 +88,7 @@ def solve_compliant(
             for name, slider in system.sliders.items()
         },
         stats={
-            "wall_time": time.perf_counter() - started,
+            **watch.took(),
             "evaluations": evaluations,
             "switches": switches,
             "rtol": rtol,

@@ -19,14 +19,14 @@ from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
 
-Rows = list[tuple[str, ...]]
+TableRows = list[tuple[str, ...]]
 """Rows of a table."""
 
 
-def of_wall(case: Case) -> Rows:
+def of_wall(case: Case) -> TableRows:
     """The wall: quantity, value with unit."""
     block, wall = case.block, case.wall
-    rows: Rows = [
+    rows: TableRows = [
         ("thickness", f"{2 * block.b:.4g} m"),
         ("height", f"{2 * block.h:.4g} m"),
         ("length", f"{block.length:.4g} m"),
@@ -44,7 +44,7 @@ def of_wall(case: Case) -> Rows:
     return [*rows, ("side_stop", stop)]
 
 
-def of_effects(case: Case) -> Rows:
+def of_effects(case: Case) -> TableRows:
     """The effects: name and values with units."""
     own = [(name, effect) for name, effect in case.named.items() if not effect.mass_added]
     return [
@@ -53,9 +53,9 @@ def of_effects(case: Case) -> Rows:
     ]
 
 
-def of_contacts(e: Restitution | None, contacts: Contacts | None) -> Rows:
+def of_contacts(e: Restitution | None, contacts: Contacts | None) -> TableRows:
     """Restitution, stiffness and damping."""
-    rows: Rows = []
+    rows: TableRows = []
     if e is not None:
         rows += [("e, base", f"{e.base:.4f}"), ("e, side", f"{e.side:.4f}"), ("e, lumped", f"{e.lumped:.4f}")]
     if contacts is not None:
@@ -69,9 +69,9 @@ def of_contacts(e: Restitution | None, contacts: Contacts | None) -> Rows:
     return rows
 
 
-def of_motions(responses: Sequence[Response]) -> Rows:
+def of_motions(responses: Sequence[Response]) -> TableRows:
     """The ground motions of the responses, each once."""
-    rows: Rows = []
+    rows: TableRows = []
     for case in (response.case for response in responses):
         for direction, motion in (("horizontal", case.motion), ("vertical", case.vertical)):
             if motion is not None:
@@ -81,9 +81,9 @@ def of_motions(responses: Sequence[Response]) -> Rows:
     return list(dict.fromkeys(rows))
 
 
-def of_results(responses: Sequence[Response], names: Sequence[str]) -> Rows:
+def of_results(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
     """Outcome, peak and impacts of each response."""
-    rows: Rows = []
+    rows: TableRows = []
     for response, name in zip(responses, names, strict=True):
         over, height = response.peak_over_alpha, 2 * response.case.block.h
         top = "-" if over == float("inf") else f"{1e3 * over * response.case.wall.alpha * height:.0f} mm"
@@ -100,9 +100,9 @@ def _settings(response: Response) -> str:
     return ", ".join(f"{name} {value:.3g}" if name != "steps" else f"{value} steps" for name, value in values if value)
 
 
-def of_ties(responses: Sequence[Response], names: Sequence[str]) -> Rows:
+def of_ties(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
     """What each tie did in each response."""
-    rows: Rows = []
+    rows: TableRows = []
     for response, name in zip(responses, names, strict=True):
         for tie, motion in response.ties.items():
             drawn = response.plastic.get(tie, Plastic(0.0, 0.0))
@@ -145,7 +145,7 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
     return said
 
 
-def versions() -> Rows:
+def versions() -> TableRows:
     """Versions of what has computed this."""
     return [
         ("mjrock", __version__),

@@ -116,7 +116,7 @@ def required_responses(case: Case, responses: object) -> list[Response]:
     """At least one response, each of a wall of the size of the case; TypeError or ValueError for any other."""
     given = [responses] if isinstance(responses, Response) else responses
     if not isinstance(given, Sequence) or isinstance(given, str):
-        raise TypeError(f"responses = {shown(responses)} is no Response and no sequence of them")
+        raise TypeError(f"responses = {shown(responses)} is neither a Response nor a sequence of them")
     if not given:
         raise ValueError("responses is empty; at least one response is needed")
     for i, response in enumerate(given):
@@ -133,18 +133,18 @@ def required_basis(basis: object, known: set[str]) -> dict[str, str]:
     if basis is None:
         return {}
     if not isinstance(basis, Mapping):
-        raise TypeError(f"basis = {shown(basis)} is no mapping of names to texts")
+        raise TypeError(f"basis = {shown(basis)} is not a mapping of names to texts")
     for name, text in basis.items():
         if name not in known:
-            raise ValueError(f"basis has {name!r}, which is none of {', '.join(sorted(known))}")
+            raise ValueError(f"basis has {name!r}, which is not one of {', '.join(sorted(known))}")
         require_text(f"basis[{name!r}]", text)
     return dict(basis)
 
 
 def required_sections(sections: object) -> dict[str, object]:
-    """Further sections by their headings; TypeError if they are no mapping of texts."""
+    """Further sections by their headings; TypeError if they are not a mapping of texts."""
     if not isinstance(sections, Mapping | None):
-        raise TypeError(f"sections = {shown(sections)} is no mapping of headings to texts, figures and results")
+        raise TypeError(f"sections = {shown(sections)} is not a mapping of headings to texts, figures and results")
     return {require_text("a heading of sections", name): pieces for name, pieces in (sections or {}).items()}
 
 
@@ -159,7 +159,7 @@ def section(name: str, pieces: object) -> list[str]:
         elif callable(made := getattr(piece, "table", None)):
             parts.append(f"<pre>{html.escape(made())}</pre>")
         else:
-            raise TypeError(f"sections[{name!r}] = {shown(piece)} is no text, no figure and no result with a table")
+            raise TypeError(f"sections[{name!r}] = {shown(piece)} is not a text, a figure or a result with a table")
     return parts
 
 
@@ -195,7 +195,7 @@ def heading(text: str) -> str:
 def listed(texts: Sequence[str], kind: str = "cautions") -> str:
     """Texts as a list; a sentence where there are none."""
     if not texts:
-        return "<p>Nothing that the program can tell.</p>"
+        return "<p>No warnings.</p>"
     return f'<ul class="{kind}">' + "".join(f"<li>{html.escape(text)}</li>" for text in texts) + "</ul>"
 
 

@@ -9,6 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..problem.masonry.joints import Joint
+from ..problem.masonry.joints_in_space import SpaceJoint
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags
 
@@ -39,7 +40,7 @@ def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[
     return {masonry.names[block]: gone[block] for block in sorted(gone, key=gone.__getitem__)}
 
 
-def _cut_off(masonry: Masonry, held: Sequence[Joint]) -> list[int]:
+def _cut_off(masonry: Masonry, held: Sequence[Joint | SpaceJoint]) -> list[int]:
     """Blocks that no joint in `held` connects with a fixed block."""
     pairs, count = [(joint.below, joint.above) for joint in held], len(masonry.blocks)
     graph = coo_array((np.ones(len(pairs)), np.reshape(pairs, (-1, 2)).T.astype(int)), shape=(count, count))

@@ -7,9 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled
-from ..geometry.frames import frames_of, take_frames
-from ..geometry.kinematics import Places, along, depth
+from ..compiled import compiled, jitable
+from ..geometry.frames import frames_of, take_frames, unswung
+from ..geometry.kinematics import Places, meeting
+from ..geometry.vectors import Vector, minus, plus, scaled
+from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
 from .fallen import LOST
@@ -52,48 +54,102 @@ def in_parts(pose: Array, joints: int, look: Callable[[Array], Followed]) -> Fol
 def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Followed:
     """What the joints of masonry did.
 
+    A joint holds no longer when it has opened by 0.7 of its width, or when one block has slid off the other.
+
     Args:
         masonry: the masonry.
-        places, joint: its contact lines, and the number of the joint of each.
+        places, joint: its contact points, and the number of the joint of each.
         start: pose at rest, shape (n nq,).
         pose: of the steps or samples, shape (steps, n nq).
     """
-    joints = masonry.joints
-    widths = np.array([joint.width for joint in joints])
-    (back, forth), frames = np.array([joint.travel for joint in joints]).T, frames_of(start, places.freedom)
-    at_rest = np.array([along(places, i, frames, start).place for i in range(len(joint))])  # of each line on its face
+    joints, frames = masonry.joints, frames_of(start, places.freedom)
+    above = np.array([each.above for each in joints])[joint] == np.array(masonry.free)[places.body]
+    at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
+    points = JointPoints(joint, at_rest, np.where(above, 1.0, -1.0))
+    slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
+    widths = LOST * np.array([each.width for each in joints])
 
     def look(some: Array) -> Followed:
-        opened, slid = np.empty((2, len(some), len(joints)))
-        deepest = _look(places, Lines(joint, at_rest), some, frames, np.empty(len(joints)), opened, slid)
-        return Followed(opened, np.abs(slid), deepest, (opened > LOST * widths) | (slid > forth) | (slid < -back))
+        opened, slid = np.empty((len(some), len(joints))), np.empty((len(some), len(joints), at_rest.shape[1]))
+        deepest = _look(places, points, some, frames, np.empty(len(joints)), opened, slid)
+        far, off = slid_off(slid)
+        return Followed(opened, far, deepest, (opened > widths) | off)
 
     return in_parts(pose, len(joints), look)
 
 
-class Lines(NamedTuple):
-    """The joint of each contact line, and the place of the line on its face at rest [m], shape (m,) each."""
+SlidOff = Callable[[Array], tuple[Array, Flags]]
+"""How far joints have slid [m], and whether one block has left the other, (steps, joints) each, from their slips."""
+
+
+def _slid_off_in_plane(masonry: Masonry) -> SlidOff:
+    ways = np.array([joint.along for joint in masonry.plane_joints])
+    back, forth = np.array([joint.travel for joint in masonry.plane_joints]).T
+
+    def slid_off(slid: Array) -> tuple[Array, Flags]:
+        along = np.einsum("sji,ji->sj", slid, ways)
+        return np.abs(along), (along > forth) | (along < -back)
+
+    return slid_off
+
+
+def _slid_off_in_space(masonry: Masonry) -> SlidOff:
+    widths, faces = np.array([joint.width for joint in masonry.joints]), faces_of_joints(masonry)
+
+    def slid_off(slid: Array) -> tuple[Array, Flags]:
+        far = np.linalg.norm(slid, axis=2)
+        off = far >= widths
+        for j in np.flatnonzero(off.any(axis=0)):
+            ways = slid[:, j] / np.maximum(far[:, j], widths[j])[:, None]
+            off[:, j] &= far[:, j] > travels(faces[j], ways)
+        return far, off
+
+    return slid_off
+
+
+class JointPoints(NamedTuple):
+    """The joint of each contact point, its place along its face at rest [m], and 1 if the block above has it, or -1."""
 
     joint: Integers
     at_rest: Array
+    sign: Array
+
+
+@jitable
+def _along(places: Places, i: int, frames: Array) -> Vector:
+    """Where point i is along its face, from the origin of the face, in the axes of the face [m]."""
+    meets, face = meeting(places, i, frames), places.face_body[i]
+    along = minus(meets.across, scaled(meets.gap, meets.normal))
+    return along if face < 0 else plus(along, unswung(frames, face, along))
 
 
 @compiled
-def _look(places: Places, lines: Lines, pose: Array, frames: Array, most: Array, opened: Array, slid: Array) -> float:
-    """Write the opening of each joint at its widest line, and its sliding at its most pressed, shape (steps, joints).
+def _look(
+    places: Places, points: JointPoints, pose: Array, frames: Array, most: Array, opened: Array, slid: Array
+) -> float:
+    """Write the opening of each joint at its widest point, and how far the block above has slid at its most pressed.
 
-    Returns the deepest penetration [m]. `most` is room for the deepest line of each joint, shape (joints,).
+    Args:
+        places, points: the points.
+        pose: of the steps, shape (steps, n nq).
+        frames, most: room for the frames of a pose, and for the deepest point of each joint, shape (joints,).
+        opened, slid: shapes (steps, joints) and (steps, joints, d).
+
+    Returns:
+        The deepest penetration [m].
     """
     deepest = 0.0
     for n in range(len(pose)):
         take_frames(pose[n], frames, places.axes)
         for j in range(len(most)):
-            most[j], opened[n, j], slid[n, j] = -np.inf, 0.0, 0.0
-        for i in range(len(lines.joint)):
-            pressed, j = depth(places, i, frames), lines.joint[i]
-            opened[n, j] = max(opened[n, j], -pressed)
-            if pressed > most[j]:
-                most[j] = pressed
-                slid[n, j] = along(places, i, frames, pose[n]).place - lines.at_rest[i]
-                deepest = max(deepest, pressed)
+            opened[n, j], most[j] = 0.0, -np.inf
+        for i in range(len(points.joint)):
+            gap, j = meeting(places, i, frames).gap, points.joint[i]
+            opened[n, j] = max(opened[n, j], gap)
+            if -gap > most[j]:
+                most[j] = -gap
+                along = _along(places, i, frames)
+                for axis in range(len(along)):
+                    slid[n, j, axis] = points.sign[i] * (along[axis] - points.at_rest[i, axis])
+                deepest = max(deepest, -gap)
     return deepest

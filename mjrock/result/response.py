@@ -13,7 +13,7 @@ import numpy as np
 
 from ..files import write_text
 from ..geometry.frames import SPACE
-from ..geometry.rotations import angle_of, tilt_of
+from ..geometry.poses import angle_of, tilt_of
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path
 from .ending import Outcome
@@ -48,8 +48,9 @@ class Response:
         joints: openings and slidings of joints, and fallen blocks; None for a wall.
         plastic: what ties have yielded, and when they broke, by tie.
         ledger: every part of the energy, or None where none was asked for.
-        stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time` [s]. MuJoCo adds the deepest
-            penetrations, `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
+        stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time`, `processor_time` [s], and
+            of the steps alone `stepping_time` and `stepping_processor_time` [s]. MuJoCo adds the deepest penetrations,
+            `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
             `base_displacement` when the duration is over [m].
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
     """

@@ -1,4 +1,4 @@
-"""Tables as CSV text that NumPy, pandas and a spreadsheet read."""
+"""Tables as CSV text that NumPy, pandas and a spreadsheet read, and as aligned text."""
 
 from __future__ import annotations
 
@@ -31,6 +31,12 @@ def written(rows: Iterable[Sequence[object]]) -> str:
     return text.getvalue()
 
 
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of cells as lines whose columns end below each other."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+
+
 def _cell(value: object) -> object:
     if not isinstance(value, str):
         return value
@@ -38,7 +44,7 @@ def _cell(value: object) -> object:
 
 
 def _guarded(value: object) -> object:
-    """A cell that no spreadsheet computes: text that begins like a formula, and is no number, gets an apostrophe."""
+    """A cell that no spreadsheet computes: text that begins like a formula, and is not a number, gets an apostrophe."""
     if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
         return value
     try:

@@ -6,11 +6,11 @@ import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.frames import SPACE
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import held_at, laden, placed
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored
@@ -65,12 +65,14 @@ class TieMotion:
         return float(np.nanmax(np.abs(self.elongation), initial=0.0))
 
 
-def motion_of_ties(case: Any, t: Array, pose: Array, plastic: Mapping[str, Plastic]) -> dict[str, TieMotion]:
+def motion_of_ties(
+    case: Case | MasonryCase, t: Array, pose: Array, plastic: Mapping[str, Plastic]
+) -> dict[str, TieMotion]:
     """The ties of a case, of a wall or of masonry, at poses as of a `Response` and times t [s]."""
     return {name: _motion(case, tie, t, pose, plastic.get(name)) for name, tie in case.springs.items()}
 
 
-def _motion(case: Any, tie: Anchored, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
+def _motion(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
     elongation, law = elongation_of(case, tie, pose), tie.law
     if law.push > 0:
         elongation = elongation - (0.0 if ended is None else ended.start)
@@ -88,9 +90,9 @@ def _motion(case: Any, tie: Anchored, t: Array, pose: Array, ended: Plastic | No
     return TieMotion(elongation, drawn, force, law.strength if spent else float(force.max()), broken)
 
 
-def elongation_of(case: Any, tie: Anchored, pose: Array) -> Array:
+def elongation_of(case: Case | MasonryCase, tie: Anchored, pose: Array) -> Array:
     """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack."""
-    if pose.shape[2] == SPACE.nq:
+    if isinstance(case, MasonryCase) and case.masonry.in_space:
         held = held_at(tie)
         anchor = tie.anchor_of(held)
         between = held - anchor + _displaced(case, tie.block, held, pose)
@@ -105,7 +107,7 @@ def elongation_of(case: Any, tie: Anchored, pose: Array) -> Array:
     return np.asarray(np.hypot(across, up) - tie.law.reach)
 
 
-def _displaced(case: Any, block: int, point: Array, pose: Array) -> Array:
+def _displaced(case: MasonryCase, block: int, point: Array, pose: Array) -> Array:
     """Displacement of a point of a block in space from rest [m], zero of a fixed one, shape (n, 3)."""
     free = case.masonry.free
     if block not in free:
@@ -117,7 +119,7 @@ def _displaced(case: Any, block: int, point: Array, pose: Array) -> Array:
     return np.asarray(moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned))
 
 
-def held_by(case: Any, tie: Anchored) -> tuple[int, Array, Array]:
+def held_by(case: Case | MasonryCase, tie: Anchored) -> tuple[int, Array, Array]:
     """The body that a tie holds, the point where it does and the centroid of the body, at rest [m]."""
     if isinstance(case, Case):
         wall = case.wall
@@ -139,7 +141,7 @@ def overdrawn(tie: Anchored, drawn: Plastic) -> bool:
     return tie.law.holds and tie.law.ultimate == math.inf and drawn.elongation > PLAUSIBLE * tie.span
 
 
-def warn_of_ties(case: Any, plastic: Mapping[str, Plastic]) -> None:
+def warn_of_ties(case: Case | MasonryCase, plastic: Mapping[str, Plastic]) -> None:
     """Warn of ties without an `ultimate` that were drawn out beyond PLAUSIBLE of their length."""
     for name, drawn in plastic.items():
         length = case.links[name].span

@@ -33,14 +33,14 @@ def keep_array(
     """Keep a field of a part as an array of the kind that compiled functions take.
 
     Raises:
-        TypeError, ValueError: for what is no array of numbers, another shape or a value out of range. The message names
-            it.
+        TypeError, ValueError: for what is not an array of numbers, another shape or a value out of range. The message
+            names it.
     """
     given, said = getattr(part, name), f"{name} of the {said_of(part)}"
     try:
         values: NDArray[Any] = np.ascontiguousarray(given, dtype=kind)
     except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{said} = {shown(given)} is no array of numbers") from None
+        raise TypeError(f"{said} = {shown(given)} is not an array of numbers") from None
     values = values if values.size else values.reshape(shape)
     if values.shape != shape:
         raise ValueError(f"{said} has the shape {values.shape}; {shape} is needed")
@@ -85,7 +85,7 @@ def require_inertia(inertia: Array) -> None:
     for tensor in inertia:
         moments = np.linalg.eigvalsh(tensor)
         if not (np.allclose(tensor, tensor.T, rtol=0, atol=1e-9 * np.abs(tensor).max()) and moments[0] > 0):
-            raise ValueError(f"inertia = {tensor.tolist()} is no symmetric tensor with three positive moments")
+            raise ValueError(f"inertia = {tensor.tolist()} is not a symmetric tensor with three positive moments")
         if moments[2] > (1 + 1e-9) * (moments[0] + moments[1]):
             raise ValueError(
                 f"inertia with the principal moments {', '.join(f'{moment:g}' for moment in moments)}: no body has one "

@@ -19,7 +19,7 @@ class Course:
         duration: how long to follow the motion [s].
         motion, vertical: acceleration of the ground, horizontal and upwards, or None.
         transverse: the same along y, in space.
-        released: whether the start is a release, whose rotation is the first peak; else it carries on an earlier run.
+        released: whether the start is a release, whose rotation is the first peak. Otherwise an earlier run goes on.
     """
 
     pose: Array

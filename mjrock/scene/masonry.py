@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,6 +11,8 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.polygon import Polygon
+from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.masonry.statics import falling, friction_lacking, slippery
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
@@ -26,14 +29,16 @@ GONE = 0.1
 
 
 def masonry_scene(case: MasonryCase) -> Scene:
-    """The scene of a case: the masonry under its weight, which all cases of it with the same effects share.
+    """The scene of a case: the masonry under its weight, or as drawn, which cases of it with the same effects share.
 
     Bodies have the names of the blocks that are not fixed, in order. The groups of contacts are the joints, by name.
 
     Raises:
-        ValueError: if the masonry does not stand. The message names the blocks that fall.
+        ValueError: if masonry that is to settle does not stand. The message names the blocks that fall.
     """
     require_kind("case", case, MasonryCase)
+    if not case.settled:
+        return drawn_masonry(case.masonry, case.effects)
     require_standing(case.masonry, case.effects)
     return standing_masonry(case.masonry, case.effects)
 
@@ -108,7 +113,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             inertia=inertia[free],
             rest=centroids[free],
             outlines=tuple(blocks[i].corners - centroids[i] for i in free),
-            length=max(float(np.ptp(blocks[i].corners[:, 1])) if masonry.in_space else blocks[i].length for i in free),
+            length=max(map(_length, (blocks[i] for i in free))),
         ),
         ContactPoints(
             body=number[lines.body],
@@ -126,6 +131,18 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
         limits=limits,
         title=f"Masonry of {len(free)} blocks on {len(masonry.joints)} joints",
     )
+
+
+@lru_cache(maxsize=16)
+def drawn_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
+    """The same scene with the blocks as drawn in the place of the pose of rest."""
+    scene = standing_masonry(masonry, effects)
+    return replace(scene, settled=scene.potential.unmoved)
+
+
+def _length(block: Polygon | Polyhedron) -> float:
+    """Extent along the facade [m]."""
+    return block.length if isinstance(block, Polygon) else float(np.ptp(block.corners[:, 1]))
 
 
 def _sorted(lines: Lines, number: Integers) -> Lines:

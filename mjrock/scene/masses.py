@@ -26,7 +26,7 @@ def mass_diagonals(mass: Array, inertia: Array) -> Array:
 
 
 def products_of(inertia: Array) -> Array:
-    """Ixy, Ixz and Iyz of tensors of inertia [kg m2], shape (n, 3), zero where they are rounding; else (0, 3)."""
+    """Ixy, Ixz and Iyz of tensors of inertia [kg m2], shape (n, 3), zero where they are rounding, or (0, 3)."""
     if inertia.ndim == 1:
         return np.empty((0, 3))
     products = np.column_stack([inertia[:, 0, 1], inertia[:, 0, 2], inertia[:, 1, 2]])

@@ -6,6 +6,8 @@ Vectors have d = 2 numbers in the plane and 3 in space.
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
@@ -19,7 +21,6 @@ from ..problem.wall.effect import LinkLaw
 from ..quantities import Array, Flags, Integers, frozen
 from .checks import keep_array, require_inertia, require_others
 from .masses import mass_diagonals, principal, products_of
-from .names import face_names, point_names
 
 
 def _none() -> NDArray[Any]:
@@ -72,7 +73,7 @@ class Bodies:
 
     @cached_property
     def products(self) -> Array:
-        """Products of inertia of the bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), else (0, 3)."""
+        """Products of inertia of the bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), or (0, 3)."""
         return frozen(products_of(self.inertia))
 
     @cached_property
@@ -251,3 +252,24 @@ class Limits:
     reach: float = math.inf
     overlap: float = math.inf
     damped_joints: bool = False
+
+
+def point_names(group: Sequence[str]) -> tuple[str, ...]:
+    """Name of each contact point: its group and its number in it."""
+    numbers: Counter[str] = Counter()
+    names = []
+    for name in group:
+        names.append(f"{name}_{numbers[name]}")
+        numbers[name] += 1
+    return tuple(names)
+
+
+def face_names(group: Sequence[str], bodies: Integers, faces: Array, normals: Array) -> tuple[str, ...]:
+    """Name of the face that each point meets: its group, with a number where the points of a group meet several."""
+    known: dict[tuple[object, ...], str] = {}
+    names = []
+    for name, body, face, normal in zip(group, bodies, faces, normals, strict=True):
+        mark = (name, int(body), *face.tolist(), *normal.tolist())
+        number = sum(met[0] == name for met in known)
+        names.append(known.setdefault(mark, f"{name}_face_{number}" if number else name))
+    return tuple(names)

@@ -26,6 +26,7 @@ from .checks import require_on
 from .dampers import Dampers
 from .equilibrium import lowered, settled
 from .frequencies import highest_frequency, rocking_frequency, tie_frequency
+from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, Limits, Links
 from .potential import Potential
 from .rest_in_space import settled_in_space
@@ -201,3 +202,19 @@ class Scene:
         if (self.links.push > 0).any():
             digest.update(self.ties.reach.tobytes())
         return digest.hexdigest()
+
+
+def is_quiet(scene: Scene, energy: float, velocity: Array) -> bool:
+    """Whether masonry rests: neither the energy that is left nor the motion of a block opens a joint.
+
+    The energy above rest is less than that of the springs at rest. What falls freely keeps its energy, and what slides
+    down loses some. So the kinetic energy of every block is less than its share of that of the springs too, by mass.
+
+    Args:
+        scene: the masonry.
+        energy: at the end, above the scene at rest [J].
+        velocity: at the end, shape (bodies, nv).
+    """
+    springs, bodies = float(scene.rest_energies[2]), scene.bodies
+    moving = kinetic_energies(bodies.masses, bodies.products, velocity) / bodies.mass
+    return abs(energy) < springs and bool((moving < springs / bodies.mass.sum()).all())

@@ -28,7 +28,7 @@ class Structure(NamedTuple):
         k: their springs [N/m], shape (m,).
         ties, forces: the ties and the constant forces.
         masses: the generalised ones, the mass in every direction and then the moments of inertia of each body, (n nv,).
-        products: products of inertia of bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), else (0, 3).
+        products: products of inertia of bodies of space [kg m2], see `mjrock.scene.masses`, shape (n, 3), or (0, 3).
     """
 
     places: Places

@@ -98,10 +98,10 @@ class Analysis:
         for name in ("options", "labels"):
             value = getattr(self, name)
             if not isinstance(value, Mapping):
-                raise TypeError(f"{name} = {shown(value)} is no mapping of names to values")
+                raise TypeError(f"{name} = {shown(value)} is not a mapping of names to values")
             keep(self, **{name: dict(value)})
         if not isinstance(self.solver, str) or self.solver not in SOLVERS:
-            raise ValueError(f"solver = {spelt(self.solver)} is none of {', '.join(SOLVERS)}")
+            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(SOLVERS)}")
         if isinstance(self.case, Case):
             self._require_wall(self.case)
         elif self.solver not in OF_MASONRY or self.e is not None or self.contacts is not None:

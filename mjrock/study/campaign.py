@@ -15,7 +15,7 @@ from .campaign_pool import Workers
 from .campaign_run import Runner
 from .campaign_task import Row, Task, carry_out_all, column_names, keyed
 from .overheard import listening
-from .progress import Progress
+from .progress import CampaignProgress
 from .store import Store
 
 MOST_WORKERS = 10_000
@@ -76,14 +76,14 @@ def campaign(
     path, tasks = require_path("store", store), required_tasks(tasks)
     count = (os.cpu_count() or 1) if workers is None else require_whole("workers", workers, 1, MOST_WORKERS)
     if executor is not None and not callable(getattr(executor, "submit", None)):
-        raise TypeError(f"executor = {shown(executor)} is no executor of concurrent.futures")
+        raise TypeError(f"executor = {shown(executor)} is not an executor of concurrent.futures")
     limit = None if time_limit is None else _required_limit(time_limit, executor)
     retry = require_flag("retry", retry)
     folder = None if histories is None else require_path("histories", histories)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     total = len(tasks) if isinstance(tasks, Sequence) else None
-    with Store(path, writing=True) as file, Progress(file.path, len(file), total) as progress:
+    with Store(path, writing=True) as file, CampaignProgress(file.path, len(file), total) as progress:
         if isinstance(tasks, list | tuple):
             for names in dict.fromkeys(column_names(keyed(task)[1]) for task in tasks):
                 file.add_columns(names)
@@ -115,7 +115,7 @@ def _required_limit(limit: float, executor: Executor | None) -> float:
 def required_tasks(tasks: object) -> Iterable[Task]:
     """Tasks as something that can be gone through; TypeError unless they are, and for a text."""
     if not is_iterable(tasks):
-        raise TypeError(f"tasks = {shown(tasks)} are no tasks that can be gone through")
+        raise TypeError(f"tasks = {shown(tasks)} are not tasks that can be gone through")
     return cast(Iterable[Task], tasks)
 
 

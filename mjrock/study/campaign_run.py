@@ -20,7 +20,7 @@ from pebble import ProcessExpired
 from .campaign_pool import CHUNK_SECONDS, QUIT
 from .campaign_task import VERSION, Refused, Row, Task, carry_out, column_names, failed_row, keyed
 from .overheard import Overheard
-from .progress import Progress
+from .progress import CampaignProgress
 from .store import Store
 
 DEATHS = 2
@@ -51,7 +51,7 @@ class Runner:
     """A running campaign: its store, its counts, and where its tasks are."""
 
     def __init__(
-        self, file: Store, progress: Progress, folder: Path | None, *, retry: bool, limit: float | None
+        self, file: Store, progress: CampaignProgress, folder: Path | None, *, retry: bool, limit: float | None
     ) -> None:
         self.file, self.progress, self.folder, self.retry, self.limit = file, progress, folder, retry, limit
         self.statuses: Counter[str] = Counter()

@@ -12,7 +12,7 @@ import mujoco
 
 from .._version import __version__
 from .fingerprint import fingerprint
-from .values import plain, shown
+from .values import plain, table_text
 
 VERSION = f"mjrock {__version__}, MuJoCo {mujoco.__version__}"
 """What made a row; another version makes other rows."""
@@ -23,7 +23,7 @@ Row = dict[str, Any]
 class Task(Protocol):
     """What a campaign runs: a frozen dataclass that can be pickled, whose content is its key.
 
-    `labels` tell the user which case it was, and are no part of its content; `COLUMNS` names what the call returns.
+    `labels` tell the user which case it was, and are not part of its content; `COLUMNS` names what the call returns.
     """
 
     @property
@@ -55,7 +55,7 @@ class Refused:
             try:
                 held[name] = plain(value)
             except ValueError:
-                held[name] = shown(value)
+                held[name] = table_text(value)
         return cls(failed_row(error)["error"], held)
 
     def __call__(self, history: Path | None = None) -> Row:
@@ -68,7 +68,7 @@ def keyed(task: Task) -> tuple[str, Task]:
     labels = getattr(task, "labels", {})
     try:
         if not (callable(task) and hasattr(task, "labels") and hasattr(task, "COLUMNS")):
-            raise TypeError(f"{shown(task)} is not a task, which can be called and has labels and COLUMNS")
+            raise TypeError(f"{table_text(task)} is not a task, which can be called and has labels and COLUMNS")
         for name, value in labels.items():
             _named(f"the label {name}", value)
         return fingerprint(VERSION, task), task

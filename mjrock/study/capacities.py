@@ -30,14 +30,14 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
         rows: rows of walls, as `Store.rows` gives them.
 
     Raises:
-        ValueError: for a row without a result, or one that is none of a wall.
+        ValueError: for a row without a result, or one that is not of a wall.
     """
     if isinstance(rows, Mapping) or not is_iterable(rows):
-        raise TypeError(f"rows = {shown(rows)} are no rows of a campaign")
+        raise TypeError(f"rows = {shown(rows)} are not rows of a campaign")
     found = []
     for i, row in enumerate(rows):
         if not isinstance(row, Mapping):
-            raise TypeError(f"rows[{i}] = {shown(row)} is no row of a campaign")
+            raise TypeError(f"rows[{i}] = {shown(row)} is not a row of a campaign")
         outcome, peak = row.get("outcome"), row.get("peak_over_alpha")
         if not isinstance(outcome, str) or outcome not in OUTCOMES or peak is None:
             raise ValueError(

@@ -31,7 +31,7 @@ def _pieces(value: object) -> Iterator[bytes]:
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         yield type(value).__name__.encode()
         for field in dataclasses.fields(value):
-            unset = field.metadata.get("later") and getattr(value, field.name) is None
+            unset = field.metadata.get("later") and getattr(value, field.name) is field.default
             if field.compare and not unset:
                 yield field.name.encode()
                 yield from _pieces(getattr(value, field.name))

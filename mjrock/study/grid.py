@@ -16,20 +16,20 @@ class Grid(Sequence[Any]):
     """Every combination of the axes as a task. Each is built only when it is asked for, and labelled with its axes.
 
     A label is the value itself if that is text, a number or None; a NumPy number counts as the Python number. For any
-    other value it is its `name`, or else its `repr`.
+    other value it is its `name`, or its `repr`.
 
     Args:
         build: makes the task of a point, `build(slenderness=7, scale=0.5)`.
         axes: the values of each axis; the last one varies fastest.
 
     Raises:
-        TypeError: for a build that is no function, or values that cannot be gone through.
+        TypeError: for a build that is not a function, or values that cannot be gone through.
         ValueError: if an axis has no values, or more than memory holds.
     """
 
     def __init__(self, build: Callable[..., Any], **axes: Iterable[object]) -> None:
         if not callable(build):
-            raise TypeError(f"build = {shown(build)} is no function that makes the task of a point")
+            raise TypeError(f"build = {shown(build)} is not a function that makes the task of a point")
         self.build = build
         self.axes = {name: _listed(name, values) for name, values in axes.items()}
 
@@ -73,7 +73,7 @@ class Grid(Sequence[Any]):
 def _listed(name: str, values: object) -> list[Any]:
     """The values of an axis; a TypeError or ValueError with its name if there are none."""
     if not is_iterable(values) and not isinstance(values, str):
-        raise TypeError(f"the axis {name} = {shown(values)} is no row of values")
+        raise TypeError(f"the axis {name} = {shown(values)} is not a row of values")
     try:
         listed: list[Any] = list(values)  # type: ignore[call-overload]
     except MemoryError:
@@ -84,9 +84,9 @@ def _listed(name: str, values: object) -> list[Any]:
 
 
 def labelled(task: Any, labels: Mapping[str, object]) -> Any:
-    """The task with these labels; its own count where both have one of a name. TypeError for what is no task."""
+    """The task with these labels; its own count where both have one of a name. TypeError for what is not a task."""
     if not hasattr(task, "labels"):
-        raise TypeError(f"build gives {shown(task)}, which is no task of a campaign, such as an Analysis")
+        raise TypeError(f"build gives {shown(task)}, which is not a task of a campaign, such as an Analysis")
     labels = dict(labels) | dict(task.labels)
     if hasattr(task, "labelled"):
         return task.labelled(labels)

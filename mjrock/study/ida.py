@@ -101,7 +101,7 @@ def ida(
         options: those of `campaign`, such as `workers`.
 
     Raises:
-        TypeError: if `build` is no function, or returns no `Analysis`.
+        TypeError: if `build` is not a function, or returns no `Analysis`.
         ValueError: if the scales are none, negative or do not increase, or there are no records; and as `campaign`.
         RuntimeError: if a run has failed; its row in the store says how.
     """
@@ -146,7 +146,7 @@ def overturning_intensity(
         The upper end of the last interval.
 
     Raises:
-        TypeError: if `build` is no function, or returns no `Analysis`.
+        TypeError: if `build` is not a function, or returns no `Analysis`.
         ValueError: for a value outside its range, if the wall overturns at `low` or does not at `high`, or if no scale
             from 1e-6 to 1e3 times the start parts the two.
     """
@@ -183,7 +183,7 @@ def _peak(build: Build, scale: float) -> float:
 def built(build: Build, scale: float, name: str) -> Analysis:
     """The analysis that a function makes of a scale; TypeError with its name unless it returns an `Analysis`."""
     if not callable(build):
-        raise TypeError(f"{name} = {shown(build)} is no function of a scale")
+        raise TypeError(f"{name} = {shown(build)} is not a function of a scale")
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="the record peaks at ", category=Implausible)  # low scales are meant
         analysis = build(scale)

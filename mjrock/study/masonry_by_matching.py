@@ -18,8 +18,8 @@ from ..problem.masonry.lines import Lines, lowest_frequency
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.of_joint import ByName
 from ..problem.masonry.pile import Pile
-from ..quantities import require_kind, require_within
-from ..result.as_one import restitutions
+from ..quantities import Array, require_kind, require_within
+from ..result.response import Response
 from ..theory.impact import as_one
 from .contacts_by_matching import TOUCH_DOWN
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, highest_branch
@@ -34,6 +34,8 @@ MISSED = 0.02
 """Relative difference to the energy that is to be lost from which a match has missed it [-]."""
 STEP = 5e-4
 """Spacing of the samples, over the time of a rebound [-]."""
+LEAST = 0.01
+"""Smallest rotation that counts as a rebound, over the largest [-]."""
 
 
 def matched_masonry(
@@ -59,7 +61,7 @@ def matched_masonry(
         accuracy: of the simulations, see `simulate`.
 
     Raises:
-        ValueError: for a value outside its range, masonry that is no stack, or a side stop from which it would not
+        ValueError: for a value outside its range, masonry that is not a stack, or a side stop from which it would not
             rebound.
 
     Warns:
@@ -142,3 +144,25 @@ def _matched(name: str, closest: Found, target: float) -> float:
             stacklevel=3,
         )
     return closest.xi
+
+
+def restitutions(answer: Response, pile: Pile) -> Array:
+    """|e| of each rebound of a stack: the root of the energy at a peak over that at the peak before, shape (rebounds,).
+
+    It is the whole energy above the stack at rest, as in `Response.settled_restitution`.
+    """
+    energy = answer.energy[peaks(answer, pile)]
+    return np.asarray(np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1]))
+
+
+def peaks(answer: Response, pile: Pile) -> list[int]:
+    """The samples at which the rotation of a stack, the mean over its mass, has a maximum to either side."""
+    theta = answer.theta @ pile.masses / pile.masses.sum()
+    beyond = np.sign(theta) * (np.abs(theta) > LEAST * np.abs(theta).max())
+    starts = np.flatnonzero(np.diff(beyond, prepend=0)).tolist()
+    tops = []
+    for start, end in zip(starts, [*starts[1:], len(theta)], strict=True):
+        top = start + int(np.abs(theta[start:end]).argmax())
+        if beyond[start] and top < len(theta) - 1:
+            tops.append(top)
+    return tops

@@ -122,7 +122,7 @@ class Match:
 
     def __post_init__(self) -> None:
         if not isinstance(self.measure, str) or self.measure not in MEASURES:
-            raise ValueError(f"measure = {spelt(self.measure)} is none of {', '.join(MEASURES)}")
+            raise ValueError(f"measure = {spelt(self.measure)} is not one of {', '.join(MEASURES)}")
         if self.xi_base is not None:
             keep(self, xi_base=require_within("damping ratio of the base xi_base", self.xi_base, 0.0, 1.0))
 

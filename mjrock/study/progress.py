@@ -15,7 +15,7 @@ EVERY = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
 
 
-class Progress:
+class CampaignProgress:
     """How far a campaign is, on the standard error. Use it in a `with` statement.
 
     `kept` rows are in the store already, and `total` is how many tasks there are, None if nobody knows.
@@ -33,7 +33,7 @@ class Progress:
         """Show how many tasks had a row already, how many have got one, and how many of these have failed."""
         failures = f"{failed} failed" if failed else ""
         if not self.bar.disable:
-            self.bar.initial = skipped  # what was there already is no part of the rate
+            self.bar.initial = skipped  # what was there already is not part of the rate
             self.bar.set_postfix_str(failures, refresh=False)
             self.bar.update(skipped + finished - self.bar.n)
         elif time.monotonic() - self.spoken >= EVERY:
@@ -65,7 +65,7 @@ class Progress:
     def _say(self, text: str) -> None:
         print(f"campaign: {text}", file=sys.stderr, flush=True)
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> CampaignProgress:
         return self
 
     def __exit__(self, *error: object) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..quantities import require_flag, require_kind, require_path, require_size, require_text, shown
-from ..result.table import csv_text
+from ..result.table import aligned, csv_text
 from .campaign import completed
 from .campaign_task import Row, Task
 from .grid import label_of, labelled
@@ -64,7 +64,7 @@ class Sensitivity:
             ValueError: for a setting that was not varied.
         """
         if setting not in self.settings:
-            raise ValueError(f"setting = {shown(setting)} is none of {', '.join(self.settings)}")
+            raise ValueError(f"setting = {shown(setting)} is not one of {', '.join(self.settings)}")
         own = self._alone(setting)
         return min(own), max(own)
 
@@ -114,10 +114,8 @@ class Sensitivity:
             rows.append([name, _short(self.base[name]), *map(self.written, ends), str(count)])
         if together:
             rows.append(["together", "", *map(self.written, self.range), str(together)])
-        widths = [max(len(row[i]) for row in rows) for i in range(5)]
-        lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
         what = f"{self.measure}{f' [{self.unit}]' if self.unit else ''}"
-        return "\n".join([f"{what}: {self.written(self.base_value)} in the base", *lines, self.sentence])
+        return "\n".join([f"{what}: {self.written(self.base_value)} in the base", *aligned(rows), self.sentence])
 
     def csv(self) -> str:
         """Every run as CSV text: its settings and the measure."""
@@ -156,8 +154,8 @@ def sensitivity(
         options: those of `campaign`, such as `workers`.
 
     Raises:
-        TypeError: for a build that is no function, or settings that are no mapping of names.
-        ValueError: for a setting without values, nothing to vary, a measure that is no column or no number, and as
+        TypeError: for a build that is not a function, or settings that are not a mapping of names.
+        ValueError: for a setting without values, nothing to vary, a measure that is not a column of numbers, and as
             `campaign`.
         RuntimeError: if a run has failed.
     """
@@ -187,10 +185,10 @@ def _points(
 ) -> tuple[list[dict[str, Any]], tuple[tuple[str, ...], ...]]:
     """The settings of each run, those of the base first, and the names of those that differ from the base."""
     if not callable(build):
-        raise TypeError(f"build = {shown(build)} is no function of settings")
+        raise TypeError(f"build = {shown(build)} is not a function of settings")
     for name, value in (("base", base), ("vary", vary)):
         if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-            raise TypeError(f"{name} = {shown(value)} is no mapping of the names of settings")
+            raise TypeError(f"{name} = {shown(value)} is not a mapping of the names of settings")
     assert isinstance(base, Mapping)
     assert isinstance(vary, Mapping)
     if not vary:
@@ -198,7 +196,7 @@ def _points(
     choices: dict[str, list[Any]] = {}
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
-            raise ValueError(f"vary[{name!r}] = {shown(values)} is no row of at least one value")
+            raise ValueError(f"vary[{name!r}] = {shown(values)} is not a row of at least one value")
         given = [base[name], *values] if name in base else list(values)
         unlike: dict[object, Any] = {}
         for value in given:
@@ -227,7 +225,7 @@ def _column(task: Task, measure: str | None) -> str:
         return str(getattr(task, "PEAK", task.COLUMNS[0]))
     require_kind("measure", measure, str)
     if require_text("measure", measure) not in task.COLUMNS:
-        raise ValueError(f"measure = {shown(measure)} is none of the columns {', '.join(task.COLUMNS)}")
+        raise ValueError(f"measure = {shown(measure)} is not one of the columns {', '.join(task.COLUMNS)}")
     return measure
 
 

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 from ..files import require_file
 from ..quantities import require_path, spelt
 from ..result.table import written
-from .lock import locked
-from .values import checksum, plain, shown
+from .values import checksum, plain, table_text
 
 if TYPE_CHECKING:
     import pandas
+    from filelock import BaseFileLock
+if TYPE_CHECKING:
     from filelock import BaseFileLock
 
 APPLICATION = 0x6D6A726B
@@ -133,7 +134,7 @@ class Store:
         if code == sqlite3.SQLITE_NOTADB and not count:
             return ValueError(f"{self.path} is not a campaign, or is damaged: {error}; none of its rows is readable")
         return ValueError(
-            f"{self.path} is damaged ({shown(str(error))}); {count} of its rows are readable, and "
+            f"{self.path} is damaged ({table_text(str(error))}); {count} of its rows are readable, and "
             f"Store.rescue({str(self.path)!r}, new_path) copies them into a new store that a campaign can carry on from"
         )
 
@@ -196,7 +197,7 @@ class Store:
         """Write rows, all or none; a row of the same key is replaced.
 
         Raises:
-            ValueError: for a name that is no column, or a value that is neither text nor a number nor None.
+            ValueError: for a name that is not a column, or a value that is neither text nor a number nor None.
             OSError: if the disk is full or the file cannot be written. What was written before stays.
         """
         inserts = []
@@ -285,3 +286,28 @@ def readable(path: Path) -> list[dict[str, Any]]:
                 if row.pop(CHECKSUM, None) == checksum(row) and set(FIXED) <= row.keys():
                     kept[row["key"]] = row
     return sorted(kept.values(), key=lambda row: (row["position"] or 0, row["key"]))
+
+
+def locked(store: Path) -> BaseFileLock:
+    """The lock of a store, taken. One process at a time can hold it, and the system frees it however the process ends.
+
+    It is held on an empty file beside the store, `<store>.lock`. Whoever holds it deletes the file before the lock is
+    released; one that gets the lock of a file that was deleted in between tries again. A process that is killed leaves
+    the file behind, which locks nothing. Symbolic links to one store share one lock.
+
+    Raises:
+        OSError: if another process holds the lock, or the file beside the store cannot be made.
+    """
+    import filelock  # 30 ms, which only those who write need
+
+    path = Path(os.path.realpath(store) + ".lock")
+    try:
+        path.parent.stat()  # a missing folder is an error; filelock would make it
+        # Any thread may close the store. Without locks of the system there is an error, as a lock would outlive a kill.
+        lock = filelock.FileLock(path, blocking=False, thread_local=False, fallback_to_soft=False)
+        lock.acquire()
+    except filelock.Timeout:
+        raise OSError(f"{store}: another campaign is writing to it") from None
+    except OSError as error:
+        raise OSError(f"{store}: unable to open {path}: {error.strerror}") from None
+    return lock

@@ -21,18 +21,18 @@ def plain(value: object) -> Value:
         return None
     if isinstance(value, str):
         if not value.isascii() and value.encode("utf-8", "ignore").decode() != value:
-            raise ValueError(f"{shown(value)} is text that UTF-8 cannot hold")
+            raise ValueError(f"{table_text(value)} is text that UTF-8 cannot hold")
         return str(value)
     if isinstance(value, float):
         return None if value != value else float(value)
     if isinstance(value, int):
         if -(2**63) <= value < 2**63:
             return int(value)
-        raise ValueError(f"{shown(value)} is outside the valid range of an integer, -2**63 to 2**63 - 1")
-    raise ValueError(f"{shown(value)} is of type {type(value).__name__}, and a table holds text, numbers and None")
+        raise ValueError(f"{table_text(value)} is outside the valid range of an integer, -2**63 to 2**63 - 1")
+    raise ValueError(f"{table_text(value)} is of type {type(value).__name__}, and a table holds text, numbers and None")
 
 
-def shown(value: object) -> str:
+def table_text(value: object) -> str:
     """A value as short text that every table can hold."""
     text = value.encode("utf-8", "backslashreplace").decode() if isinstance(value, str) else spelt(value)
     return text if len(text) <= 200 else text[:200] + "..."

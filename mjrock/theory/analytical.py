@@ -6,7 +6,6 @@ This solver knows no stiffness and no MuJoCo.
 from __future__ import annotations
 
 import math
-import time
 import warnings
 
 import numpy as np
@@ -19,6 +18,7 @@ from ..result.ending import Outcome, describe
 from ..result.response import Response
 from ..result.rocking import Impact, Rocking
 from ..result.samples import intervals, required_spacing
+from ..result.stopwatch import Stopwatch
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
 from .forced import rock_forced
 from .free import rock_freely
@@ -72,7 +72,7 @@ def solve_analytical(
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warnings.warn(unlike, Implausible, stacklevel=2)
-    started = time.perf_counter()
+    watch = Stopwatch()
     motion = _rocking(case, e, rtol, atol, rest)
     outcome = _outcome(case, motion)
     t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
@@ -92,7 +92,7 @@ def solve_analytical(
         plastic=plastic,
         message=describe(outcome, case, t_end, float(theta[-1])) + told_of_ties(plastic),
         stats={
-            "wall_time": time.perf_counter() - started,
+            **watch.took(),
             "evaluations": motion.evaluations,
             "arcs": motion.arcs,
             "rtol": rtol,

@@ -14,19 +14,81 @@ import numpy as np
 
 from ..compiled import compiled, jitable
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import yielded
+from ..problem.wall.ties_on_wall import pulled, yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
 from ..result.samples import interpolated
-from .law import Law, Push, Ties, Toe, acceleration, nystroem, pushed
+from .law import BROKEN, SLACK, TAUT, YIELDING, Push, RockingLaw, Toe, WallTies, acceleration, nystroem, pull_of, pushed
 from .motion import RockingMotion
-from .ties import take_changes, until_change
 
+HALVINGS = 50
+"""Halvings of a step in the search of the time at which a tie changes."""
 NYSTROEM = 50.0
 """(p h)^4 of a forced step over rtol. Nystroem's method then errs by about rtol alpha in a fall from alpha/2."""
 NEWTON = 60
 """Most iterations of a root, of which bisection alone would need 53."""
 CHUNK = 4096
 """Room for knots, and for a quarter as many impacts and peaks, which is emptied when it is full."""
+
+
+@jitable
+def change_of(toe: Toe, ties: WallTies, i: int, theta: float) -> int:
+    """What tie i does at a rotation, other than what it does in this step; -1 where that is the same.
+
+    A tie that yields goes on until the wall turns or it breaks, and one that has broken stays so.
+    """
+    if ties.doing[i] == BROKEN:
+        return -1
+    tie = pull_of(ties, i)
+    elastic = pulled(tie, theta, toe.side)[0] - ties.plastic[i]
+    if ties.doing[i] == SLACK:
+        return TAUT if elastic > 0 else -1
+    if ties.doing[i] == TAUT:
+        if elastic < 0:
+            return SLACK
+        if elastic * tie.stiffness > tie.strength:
+            return YIELDING
+    if ties.doing[i] == YIELDING:
+        drawn = pulled(tie, theta, toe.side)[0] - tie.strength / tie.stiffness
+        if drawn > tie.ultimate:
+            return BROKEN
+    return -1
+
+
+@jitable
+def any_change(toe: Toe, ties: WallTies, theta: float) -> bool:
+    """Whether any tie does something else at a rotation."""
+    for i in range(len(ties.doing)):  # noqa: SIM110, numba knows no any()
+        if change_of(toe, ties, i, theta) >= 0:
+            return True
+    return False
+
+
+@jitable
+def until_change(toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
+    """The time within a step after which a tie first does something else, from just after it; `h` where none does."""
+    if len(ties.doing) == 0 or not any_change(toe, ties, nystroem(toe, ties, push, theta, omega, h)[0]):
+        return h
+    low, high = 0.0, h
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if any_change(toe, ties, nystroem(toe, ties, push, theta, omega, middle)[0]):
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@jitable
+def take_changes(toe: Toe, ties: WallTies, theta: float, turned: bool) -> None:
+    """Let every tie do what it does from here on. One that yields has yielded for good when the wall turns."""
+    for i in range(len(ties.doing)):
+        change = change_of(toe, ties, i, theta)
+        if change >= 0:
+            ties.doing[i] = change
+        elif ties.doing[i] == YIELDING and turned:
+            tie = pull_of(ties, i)
+            ties.plastic[i] = pulled(tie, theta, toe.side)[0] - tie.strength / tie.stiffness
+            ties.doing[i] = TAUT
 
 
 class Rules(NamedTuple):
@@ -47,7 +109,7 @@ class Rules(NamedTuple):
     duration: float
 
 
-class Clock(NamedTuple):
+class ArcClock(NamedTuple):
     """Where the motion is: time [s], rotation [rad], velocity [rad/s], side, and whether the wall rests or is done."""
 
     t: float
@@ -59,7 +121,7 @@ class Clock(NamedTuple):
     ended: bool
 
 
-class Room(NamedTuple):
+class ArcRoom(NamedTuple):
     """Arrays that a run of the loop fills.
 
     Args:
@@ -86,7 +148,7 @@ def free_moment(toe: Toe, x: float, z: float) -> float:
 
 
 @jitable
-def uplift(law: Law, one_sided: bool, t: float, duration: float) -> tuple[float, float]:
+def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple[float, float]:
     """When a wall that rests at time `t` is lifted, and to which side [s, +1 or -1]. Never is infinity."""
     begun = t
     while t < duration:
@@ -106,7 +168,7 @@ def uplift(law: Law, one_sided: bool, t: float, duration: float) -> tuple[float,
 
 
 @jitable
-def root(which: int, toe: Toe, ties: Ties, push: Push, theta: float, omega: float, h: float) -> float:
+def root(which: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
     """When within the next `h` rotation (0) or velocity (1) becomes zero [s].
 
     Newton's method, from the root at a constant acceleration, held by bisection. The other arguments are those of
@@ -136,7 +198,7 @@ def root(which: int, toe: Toe, ties: Ties, push: Push, theta: float, omega: floa
 
 
 @jitable
-def noted(room: Room, t: float, theta: float, omega: float) -> None:
+def noted(room: ArcRoom, t: float, theta: float, omega: float) -> None:
     """Write a knot."""
     n = room.counts[0]
     room.knots[n, 0], room.knots[n, 1], room.knots[n, 2] = t, theta, omega
@@ -144,7 +206,7 @@ def noted(room: Room, t: float, theta: float, omega: float) -> None:
 
 
 @jitable
-def met(room: Room, law: Law, rules: Rules, t: float, side: float, omega: float) -> float:
+def met(room: ArcRoom, law: RockingLaw, rules: Rules, t: float, side: float, omega: float) -> float:
     """Write an impact, and return the angular velocity after it."""
     impact, leaving = room.impacts[room.counts[1]], math.copysign(1.0, rules.e * omega)
     arriving = (law.outer if side > 0 else law.inner).inertia
@@ -157,7 +219,7 @@ def met(room: Room, law: Law, rules: Rules, t: float, side: float, omega: float)
 
 
 @compiled
-def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, ...]:
+def forced_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -> tuple[Any, ...]:
     """Follow the wall until the room is nearly full, or until it lies on its face or the time is over.
 
     Returns the values of the clock, see `compiled`.
@@ -209,16 +271,16 @@ def forced_loop(law: Law, rules: Rules, clock: Clock, room: Room) -> tuple[Any, 
 def rock_forced(case: Case, e: float, least: float, rtol: float) -> RockingMotion:
     """Rocking over a shaken base, or with ties; `e` and `least` as in `rock_freely`, `rtol` sets the longest step, see
     NYSTROEM."""
-    law = Law.of(case)
+    law = RockingLaw.of(case)
     rules = Rules(case.one_sided, e, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
-    clock = Clock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
+    clock = ArcClock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
         take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     few = CHUNK // 4
-    room, parts = Room(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64)), []
+    room, parts = ArcRoom(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64)), []
     while not clock.ended:
         room.counts[:] = 0
-        clock = Clock(*forced_loop(law, rules, clock, room))
+        clock = ArcClock(*forced_loop(law, rules, clock, room))
         parts.append(room.filled())
     knots, impacts, peaks = map(np.concatenate, zip(*parts, strict=True))
     t, theta, omega = np.ascontiguousarray(knots.T)

@@ -25,7 +25,7 @@ from .motion import RockingMotion
 
 Event = Literal["peak", "impact", "fall", "time"]
 """How an arc ended."""
-State = tuple[float, float, float]
+WallState = tuple[float, float, float]
 """Time [s], rotation [rad], angular velocity [rad/s]."""
 
 
@@ -44,7 +44,7 @@ class Arcs:
         self.evaluations = 0
         self.known: list[tuple[float, float, Callable[[Array], Array]]] = []
 
-    def advance(self, state: State, s: float) -> tuple[State, Event]:
+    def advance(self, state: WallState, s: float) -> tuple[WallState, Event]:
         """Follow the wall from `state` to the next event; RuntimeError if the integration fails."""
         moment, inertia = self.restoring.towards(s), self.wall.inertia_about(s)
         P, Q = moment.P / inertia, moment.Q / inertia

@@ -84,7 +84,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     before = require_array("velocity", velocity, (len(masonry.free), 3)).ravel()
     if not before.any():
         raise ValueError("velocity is zero everywhere; an impact needs a block that moves")
-    blocks, joints = masonry.blocks, masonry.joints
+    blocks, joints = masonry.polygons, masonry.plane_joints
     ends = lines_of(blocks, joints, np.ones(len(joints)), 2)
     root = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, blocks[i].inertia)])
     opens = rates(blocks, ends, ends.normal).toarray() / root
@@ -118,7 +118,7 @@ def as_one(pile: Pile) -> Restitution:
     base = math.sqrt(min(1.0, rigid_impact(pile.free_standing, pile.turning(outwards, -outwards)).kept))
     if not pile.sides:
         return Restitution(base, 0.0)
-    joints, mass, (x, z) = [pile.masonry.joints[i] for i in pile.sides], float(pile.masses.sum()), pile.centroid
+    joints, mass, (x, z) = [pile.masonry.plane_joints[i] for i in pile.sides], float(pile.masses.sum()), pile.centroid
     foot = pile.masonry.joints[pile.base].middle
     below = z + foot[1] - max(max(joint.start[1], joint.end[1]) for joint in joints)
     face = outwards * (x + foot[0] - joints[0].middle[0])

@@ -19,7 +19,7 @@ import numpy as np
 from ..compiled import jitable
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import Pull, pulled
+from ..problem.wall.ties_on_wall import TiePull, pulled
 from ..quantities import GRAVITY, Array, Integers
 
 SMALL = 0.05
@@ -67,11 +67,11 @@ class Toe(NamedTuple):
         return cls(side, inertia, *(float(moment / inertia) for moment in moments))
 
 
-class Ties(NamedTuple):
+class WallTies(NamedTuple):
     """The ties of a wall.
 
     Args:
-        pulls: the numbers of each `Pull`, shape (t, 9).
+        pulls: the numbers of each `TiePull`, shape (t, 9).
         doing: what each tie does, shape (t,).
         plastic: elongation that each tie has yielded [m], shape (t,).
     """
@@ -81,13 +81,13 @@ class Ties(NamedTuple):
     plastic: Array
 
     @classmethod
-    def of(cls, case: Case) -> Ties:
+    def of(cls, case: Case) -> WallTies:
         """The ties of a case."""
-        pulls = np.reshape(np.array(case.pulls, dtype=float), (-1, len(Pull._fields)))
+        pulls = np.reshape(np.array(case.pulls, dtype=float), (-1, len(TiePull._fields)))
         return cls(pulls, np.full(len(pulls), SLACK), np.zeros(len(pulls)))
 
 
-class Law(NamedTuple):
+class RockingLaw(NamedTuple):
     """A rigid wall with its effects over a shaken base, for compiled functions.
 
     Args:
@@ -100,13 +100,13 @@ class Law(NamedTuple):
     inner: Toe
     x: Shaken
     z: Shaken
-    ties: Ties
+    ties: WallTies
 
     @classmethod
-    def of(cls, case: Case) -> Law:
+    def of(cls, case: Case) -> RockingLaw:
         """The law of a case."""
         return cls(
-            Toe.of(case, 1.0), Toe.of(case, -1.0), Shaken.of(case.motion), Shaken.of(case.vertical), Ties.of(case)
+            Toe.of(case, 1.0), Toe.of(case, -1.0), Shaken.of(case.motion), Shaken.of(case.vertical), WallTies.of(case)
         )
 
     @property
@@ -114,7 +114,7 @@ class Law(NamedTuple):
         """The largest of p and the frequencies of the ties [rad/s]."""
         p2 = max(math.hypot(toe.P, toe.Q) for toe in (self.outer, self.inner))
         least = min(self.outer.inertia, self.inner.inertia)
-        stiff = sum(pulled(Pull(*tie), 0.0, 1.0)[1] ** 2 * tie[6] / least for tie in self.ties.pulls)
+        stiff = sum(pulled(TiePull(*tie), 0.0, 1.0)[1] ** 2 * tie[6] / least for tie in self.ties.pulls)
         return math.sqrt(max(p2, float(stiff)))
 
 
@@ -160,7 +160,7 @@ def turned_by(theta: float, sine: float, cosine: float, delta: float) -> tuple[f
 
 
 @jitable
-def held_back(toe: Toe, ties: Ties, theta: float) -> float:
+def held_back(toe: Toe, ties: WallTies, theta: float) -> float:
     """Acceleration by the ties, each doing in the step what it did at its start [rad/s2]."""
     total = 0.0
     for i in range(len(ties.doing)):
@@ -173,14 +173,14 @@ def held_back(toe: Toe, ties: Ties, theta: float) -> float:
 
 
 @jitable
-def pull_of(ties: Ties, i: int) -> Pull:
+def pull_of(ties: WallTies, i: int) -> TiePull:
     """Tie i."""
     tie = ties.pulls[i]
-    return Pull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7], tie[8])
+    return TiePull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7], tie[8])
 
 
 @jitable
-def acceleration(toe: Toe, ties: Ties, x: float, z: float, theta: float, sine: float, cosine: float) -> float:
+def acceleration(toe: Toe, ties: WallTies, x: float, z: float, theta: float, sine: float, cosine: float) -> float:
     """theta'' at accelerations x and z of the base over g [rad/s2]."""
     push = toe.side * x
     a, b = toe.P + toe.Wd * z + toe.Wz * push, toe.Q + toe.Wz * z - toe.Wd * push
@@ -190,7 +190,7 @@ def acceleration(toe: Toe, ties: Ties, x: float, z: float, theta: float, sine: f
 
 @jitable
 def nystroem(
-    toe: Toe, ties: Ties, push: Push, theta: float, omega: float, h: float
+    toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float
 ) -> tuple[float, float, float, float]:
     """Rotation and velocity a time `h` later by Nystroem's fourth-order method, and the accelerations at both ends."""
     sine, cosine = math.sin(theta), math.cos(theta)

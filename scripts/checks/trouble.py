@@ -19,7 +19,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import AddedMass, GroundMotion, Load, Opening, Outcome, SideStop, Thrust, Tie
-from mjrock.problem.damping.uplift import Uplift
+from mjrock.problem.damping.contacts import Uplift
 from scripts.shared import cli, random_masonry
 
 Effect = Tie | Thrust | Load | AddedMass

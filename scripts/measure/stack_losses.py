@@ -22,8 +22,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.pile import Pile
-from mjrock.result.as_one import restitutions
-from mjrock.study.masonry_by_matching import STEP, excess
+from mjrock.study.masonry_by_matching import STEP, excess, restitutions
 from mjrock.theory.impact import as_one
 from scripts.shared import cli
 from scripts.shared.paper import FIGURE_3
@@ -41,7 +40,7 @@ def stack(blocks: int, k_n: float, side_stop: bool, stiffer: float = 1.0) -> mr.
     block = mr.Block.from_size(2 * FIGURE_3.b, 2 * FIGURE_3.h / blocks, FIGURE_3.length, FIGURE_3.density)
     above = k_n * stiffer
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # few blocks of a stack are no slender wall
+        warnings.simplefilter("ignore", UserWarning)  # few blocks of a stack are not a slender wall
         return mr.Masonry.stack(
             [block] * blocks,
             lambda joint: k_n if joint.below == 0 else above,
@@ -70,7 +69,7 @@ def lost(made: mr.Masonry, rotation: float = ROTATIONS[0], accuracy: float = 1e-
 
 def uppermost(made: mr.Masonry) -> mr.Masonry:
     """The uppermost block on a fixed one, with the stiffness and the dashpots that its joint has in a stack."""
-    top, number = made.blocks[-1], len(made.joints) - 1
+    top, number = made.polygons[-1], len(made.joints) - 1
     under = mr.Polygon(top.corners - [0, np.ptp(top.corners[:, 1])], length=top.length, fixed=True)
     k_n, xi = float(made.joint_stiffness[number]), 0.5 * float(made.retardation[number])
     return mr.Masonry((under, dataclasses.replace(top, name="top")), k_n, HOLDS, xi=xi, frequency=1.0)

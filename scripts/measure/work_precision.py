@@ -17,8 +17,10 @@ import time
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from unittest import mock
+from functools import cache, partial
+from multiprocessing import get_context
 
 import mujoco
 import numpy as np
@@ -26,7 +28,6 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.engine import loop, stepping
 from mjrock.engine.model import Engine
 from mjrock.engine.points import inverse_weights
 from mjrock.engine.record import StepError
@@ -60,24 +61,34 @@ class Point:
     residual: float
 
 
+def simulated(
+    options: dict[str, float], case: mr.Case, contacts: mr.Contacts, ledger: bool = False
+) -> tuple[Response, float]:
+    """`simulate` with the options given."""
+    response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
+    return response, response.stats["wall_time"]
+
+
 def our_steps(**options: float) -> Solve:
     """`simulate` with the options given."""
+    return partial(simulated, options)
 
-    def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
-        response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
-        return response, response.stats["wall_time"]
 
-    return solve
+@cache
+def without_numba() -> ProcessPoolExecutor:
+    """A process in which nothing is compiled."""
+    os.environ["NUMBA_DISABLE_JIT"] = "1"
+    pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+    pool.submit(warnings.simplefilter, "ignore", UserWarning).result()
+    del os.environ["NUMBA_DISABLE_JIT"]
+    return pool
 
 
 def plain_steps(**options: float) -> Solve:
-    """`simulate` with its loop as plain Python, as it runs without numba."""
+    """`simulate` with its loops as plain Python, in a process of its own."""
 
     def solve(case: mr.Case, contacts: mr.Contacts, ledger: bool = False) -> tuple[Response, float]:
-        plain = getattr(loop.fitted_loop, "py_func", loop.fitted_loop)
-        with mock.patch.object(stepping, "fitted_loop", plain):
-            response = mr.simulate(case, contacts, ledger=ledger, **options)  # type: ignore[arg-type]
-        return response, response.stats["wall_time"]
+        return without_numba().submit(simulated, options, case, contacts, ledger).result()
 
     return solve
 

@@ -20,7 +20,7 @@ def law(name: str | None, points: int) -> mr.DampingLaw:
     if name is None:
         return mr.CALIBRATED if points == 2 else mr.CALIBRATED_BED
     if name not in LAWS and not name.endswith(".toml"):
-        raise ValueError(f"law = {name!r} is none of {', '.join(LAWS)} and no .toml file")
+        raise ValueError(f"law = {name!r} is not one of {', '.join(LAWS)} and not a .toml file")
     return LAWS[name] if name in LAWS else mr.DampingLaw.load(name)
 
 

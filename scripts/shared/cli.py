@@ -51,10 +51,10 @@ def folder(path: Path) -> Path:
 
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Rows as aligned text for a terminal."""
-    cells = [[str(cell) for cell in row] for row in (header, *rows)]
-    widths = [max(len(row[i]) for row in cells) for i in range(len(header))]
-    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in cells]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
+    from mjrock.result.table import aligned
+
+    head, *body = aligned([[str(cell) for cell in row] for row in (header, *rows)])
+    return "\n".join([head, "-" * len(head), *body])
 
 
 def report(stem: Path, text: str, header: Sequence[str] = (), rows: Iterable[Sequence[object]] = ()) -> None:

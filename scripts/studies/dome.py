@@ -22,7 +22,6 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.statics import falling
 from mjrock.quantities import Array
-from mjrock.scene.masonry import standing_masonry
 from scripts.shared import cli
 from scripts.shared.models_in_space import IN_SPACE
 from scripts.shared.two_times import at_two_times
@@ -53,9 +52,7 @@ def growing(masonry: mr.Masonry) -> mr.Response:
     """The dome while gravity grows, from blocks that no force has pressed on one another."""
     t = np.linspace(0.0, DURATION, 2001)
     falls = -mr.GRAVITY * (0.5 + 0.5 * np.cos(np.pi * np.minimum(t / RAMP, 1.0)))
-    case = mr.MasonryCase(masonry, DURATION, vertical=mr.GroundMotion(falls, float(t[1])))
-    scene = standing_masonry(masonry, ())  # blocks as drawn and no friction, in the place of what its search would find
-    vars(scene)["rest_in_space"] = scene.potential.unmoved.reshape(-1, 7), np.zeros((len(scene.contacts.friction), 2))
+    case = mr.MasonryCase(masonry, DURATION, vertical=mr.GroundMotion(falls, float(t[1])), settled=False)
     return mr.solve_explicit(case, output_step=0.01)
 
 

@@ -48,7 +48,7 @@ def tilted(masonry: mr.Masonry, angle: float) -> mr.Masonry:
     c, s = math.cos(angle), math.sin(angle)
     turned = [
         mr.Polygon(block.corners @ np.array([[c, -s], [s, c]]), block.density, block.length, block.fixed, name)
-        for block, name in zip(masonry.blocks, masonry.names, strict=True)
+        for block, name in zip(masonry.polygons, masonry.names, strict=True)
     ]
     return mr.Masonry(tuple(turned), k_n=masonry.k_n, friction=masonry.friction)
 

@@ -70,9 +70,9 @@ def test_it_writes_every_row(model, tmp_path, capsys):
 
 def test_what_cannot_be_is_said(model, tmp_path, capsys):
     assert main(["inspect", str(tmp_path / "none.xml")]) == 2
-    assert "is no file" in capsys.readouterr().err
+    assert "is not a file" in capsys.readouterr().err
     assert main(["inspect", str(model), "--keyframe", "home"]) == 2
-    assert "keyframe = 'home' of type str is no keyframe of this model; it has: none" in capsys.readouterr().err
+    assert "keyframe = 'home' of type str is not a keyframe of this model; it has: none" in capsys.readouterr().err
     for choice in (["--pair", "foo", "floor"], ["--geom", "foo"], ["--body", "foo"]):
         assert main(["inspect", str(model), *choice]) == 2
         assert "the model has no geom or body foo; geoms are: floor, leg0[1]" in capsys.readouterr().err

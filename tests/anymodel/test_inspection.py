@@ -256,7 +256,7 @@ def test_the_script_prints_the_table(tmp_path, capsys):
     path.write_text("<mujoco/>")
     script.main([str(path), "--out", str(tmp_path / "out")])
     assert "no contact" in capsys.readouterr().out
-    with pytest.raises(FileNotFoundError, match="is no file"):
+    with pytest.raises(FileNotFoundError, match="is not a file"):
         script.main([str(tmp_path / "none.xml")])
 
 

@@ -34,7 +34,8 @@ def test_a_specification_is_compiled_once(monkeypatch):
     times = []
     for module in ("many", "contact"):
         monkeypatch.setattr(
-            f"mjrock.anymodel.{module}.compiled", lambda model: times.append(1) or geoms.compiled(model)
+            f"mjrock.anymodel.{module}.compiled_model",
+            lambda model: times.append(1) or geoms.compiled_model(model),
         )
     contacts = mr.contacts_for(spec, asked)
     contacts.apply(spec)

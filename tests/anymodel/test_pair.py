@@ -194,7 +194,7 @@ def _write(owner, name, value):
         ({"c": 1.0, "k": 0.0}, "stiffness k = 0 N/m"),
         (
             {"c": 1.0, "geom1": "bal"},
-            "geom1 = 'bal' is no geom or body .* geoms are: floor, ball; its named bodies are: world, ball",
+            "geom1 = 'bal' is not a geom or body .* geoms are: floor, ball; its named bodies are: world, ball",
         ),
         ({"c": 1.0, "geom1": -1}, "geom1 = -1 is outside"),
         ({"c": 1.0, "geom1": 2}, "geom1 = 2 is outside the valid range 0 to 1"),

@@ -235,7 +235,7 @@ def test_attached_it_is_found_by_its_prefix_and_lacks_the_options():
         assert "the model steps by" in found[0]
         assert "the friction cone is pyramidal" in found[1]
         assert "impratio = 1 is below" in found[2]
-    with pytest.raises(ValueError, match="'ball' is no geom or body"):
+    with pytest.raises(ValueError, match="'ball' is not a geom or body"):
         contact.caveats(model)
     again = mr.contact_for(parent, "robot-ball", "robot-floor", timestep=1e-5, **ASKED)
     again.apply(parent)

@@ -9,7 +9,7 @@ import pytest
 from pairs import BALL, BOX, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 
 import mjrock as mr
-from mjrock.anymodel.notes import weight_spoilers
+from mjrock.anymodel.contact import weight_spoilers
 from scripts.checks import asked_and_found as study
 
 LEG = study.leg(others=study.BENT).text()
@@ -68,7 +68,7 @@ def test_a_keyframe_that_differs_is_named():
 @pytest.mark.parametrize(
     ("asked", "complaint"),
     [
-        ({"keyframe": "sit"}, "keyframe = 'sit' of type str is no keyframe of this model; it has: bent"),
+        ({"keyframe": "sit"}, "keyframe = 'sit' of type str is not a keyframe of this model; it has: bent"),
         ({"keyframe": 1}, "keyframe = 1 is outside the valid range 0 to 0"),
         ({"keyframe": "bent", "qpos": BENT}, "keyframe = 'bent' of type str and qpos are both given"),
         ({"qpos": [1.0]}, r"qpos has the shape \(1,\); \(9,\) is needed"),

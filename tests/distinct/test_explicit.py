@@ -1,6 +1,7 @@
 """Explicit steps: closed forms, conservation, an independent integration, the contact law of a wall, and MuJoCo."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -160,7 +161,7 @@ def test_a_support_that_settles_takes_what_stands_on_it_along():
 @pytest.mark.parametrize(
     ("supports", "complaint"),
     [
-        ({"cube": ([0, 1], [0, 0], [0, 0])}, "'cube' of type str is no fixed block; the valid ones are ground"),
+        ({"cube": ([0, 1], [0, 0], [0, 0])}, "'cube' of type str is not a fixed block; the valid ones are ground"),
         ({"ground": ([0, 1], [0, 0])}, r"is not \(t, dx, dz\)"),
         ({"ground": ([0, 0], [0, 0], [0, 0])}, "t does not increase"),
         ({"ground": ([0, 1], [0, 0, 1], [0, 0])}, "have 2, 3 and 2 values"),
@@ -197,6 +198,17 @@ def test_a_step_that_is_not_stable_is_refused_with_the_longest_that_is():
     assert np.abs(kept.pose).max() < 0.1
 
 
+def test_a_step_that_is_taken_can_be_given():
+    """Also below a nanosecond, which strong dashpots need, and which errors and warnings then name."""
+    masonry = mr.Masonry(CUBE.blocks, k_n=1e13, frequency=1.0, xi=1.0)
+    taken = solve(masonry, 1e-6)
+    assert taken.stats["timestep"] < 5e-10
+    given = solve(masonry, 1e-6, timestep=taken.stats["timestep"])
+    assert given.stats["steps"] == taken.stats["steps"]
+    with pytest.raises(ValueError, match=r"timestep = 1e-13 s is outside the valid range 1e-12 to 1e-06 s"):
+        solve(masonry, 1e-6, timestep=1e-13)
+
+
 @pytest.mark.parametrize("blocks", [1, 4])
 def test_the_longest_step_is_the_limit_of_stability(blocks, monkeypatch):
     """Beyond the limit the motion blows up, and the run says so."""
@@ -218,8 +230,9 @@ def test_a_run_goes_on_where_another_ended():
 
 
 def test_the_time_of_the_steps_is_a_part_of_the_whole():
+    begun = time.perf_counter()
     stats = solve(CUBE, 0.1, PULSE).stats
-    assert 0 < stats["stepping_time"] < stats["wall_time"]
+    assert 0 < stats["stepping_time"] < stats["wall_time"] < time.perf_counter() - begun
 
 
 def test_it_is_a_solver_of_campaigns():
@@ -233,6 +246,8 @@ def test_bad_options():
         mr.solve_explicit(mr.MasonryCase(CUBE, 0.1), output_step=-1)
     with pytest.raises(TypeError, match="ledger = 3 of type int is neither True nor False"):
         mr.solve_explicit(mr.MasonryCase(CUBE, 0.1), ledger=3)
+    with pytest.raises(ValueError, match="start, largest of velocity = 1001 is outside the valid range 0 to 1000"):
+        mr.solve_explicit(mr.MasonryCase(CUBE, 0.1), start=(np.zeros((1, 3)), np.array([[0.0, 0.0, 1001.0]])))
     with pytest.raises(ValueError, match="k_s = 1 N/m3 is outside the valid range"):
         mr.Masonry(CUBE.blocks, k_s=1.0)
 
@@ -243,3 +258,18 @@ def test_the_shear_dashpot_of_a_landing_block_stretches_no_spring():
     rubbed = np.diff(run.ledger.friction)
     assert rubbed.max() > 1.0
     assert rubbed.min() > -1e-9
+
+
+def test_a_small_arch_holds_still_by_the_friction_of_its_joints():
+    """Friction takes less than a newton, from the start, else its shear springs would have to give way first."""
+    small = mr.Masonry.arch(0.05, 0.01, voussoirs=7, k_n=1e10, k_s=1e10, density=100.0, friction=0.7)
+    run = solve(small, 0.02)
+    assert np.abs(run.pose - run.pose[0]).max() < 1e-3 * np.abs(run.pose[0]).max()
+
+
+def test_a_ledger_beyond_memory_is_refused(monkeypatch):
+    """Friction, ground and two groups of dashpots at each of 101 samples."""
+    monkeypatch.setattr("mjrock.quantities.MOST_SAMPLES", 400)
+    assert len(solve(CUBE, 0.1).t) == 101
+    with pytest.raises(ValueError, match="the ledger of this answer would be 404; at most"):
+        solve(CUBE, 0.1, ledger=True)

@@ -11,7 +11,7 @@ from space_blocks import GROUND, about_vertical, angles, block, followed, free_b
 
 import mjrock as mr
 from mjrock.distinct.setup import standing
-from mjrock.geometry.rotations import tilt_of
+from mjrock.geometry.poses import tilt_of
 
 PULSE = mr.GroundMotion.sine(3.0, 0.7)
 G = mr.GRAVITY
@@ -250,6 +250,23 @@ def test_masonry_starts_at_rest(k_s):
     assert np.abs(run.velocity).max() < 1e-9
     assert run.outcome is mr.Outcome.AT_REST
     assert run.energy[0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("plan", [0.0, 37.0])
+@pytest.mark.parametrize("k_s", [None, 1e10])
+def test_a_slab_thrown_up_a_steep_slope_stops_where_coulomb_has_it(plan, k_s):
+    """v^2 / (2 g (mu cos + sin)) above where it rests, whichever way the slope faces."""
+    slope, mu, speed = math.radians(65), 2.5, 1.0
+    up, out = np.array([math.cos(slope), math.sin(slope)]), np.array([-math.sin(slope), math.cos(slope)])
+    hill = mr.Polygon([(0, 0), (1, 0), (1, math.tan(slope))], fixed=True, name="hill")
+    slab = mr.Polygon([s * up + z * out for s, z in ((1.0, 0), (1.4, 0), (1.4, 0.05), (1.0, 0.05))])
+    blocks = about_vertical([prism(hill), prism(slab)], math.radians(plan))
+    masonry = mr.Masonry(blocks, k_n=1e9, k_s=k_s, friction=mu, frequency=300.0, xi=0.5)
+    way = np.array([math.cos(math.radians(plan)) * up[0], math.sin(math.radians(plan)) * up[0], up[1]])
+    run = solve(masonry, 0.08, velocity=[(*speed * way, 0, 0, 0)])
+    moved = run.pose[-1, 0, :3] - run.pose[0, 0, :3]
+    assert moved @ way == pytest.approx(speed**2 / (2 * G * (mu * math.cos(slope) + math.sin(slope))), rel=0.02)
+    assert np.linalg.norm(moved - (moved @ way) * way) < 1e-3 * np.linalg.norm(moved)
 
 
 def test_masonry_that_cannot_stand_is_named():

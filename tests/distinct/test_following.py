@@ -1,6 +1,7 @@
 """How explicit steps are cut into calls, and what is said before long ones."""
 
 import os
+import re
 import signal
 import threading
 import time
@@ -55,6 +56,17 @@ def test_long_runs_speak_before_they_start(monkeypatch):
         warnings.simplefilter("error")
         with pytest.raises(StopIteration):
             mr.solve_explicit(mr.MasonryCase(columns(4), 10.0))
+
+
+def test_ten_seconds_are_worth_saying_where_the_run_is_asked_for(monkeypatch):
+    case = mr.MasonryCase(columns(1), 1e-5)
+    for seconds, named in ((9.0, []), (11.0, ["explicit steps would take some 11 s"])):
+        monkeypatch.setattr(following, "stepping_seconds", lambda *args, s=seconds, **more: s)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            mr.solve_explicit(case, timestep=1e-9)
+        said = [(re.split("[,:]", str(one.message))[0], one.filename) for one in caught]
+        assert said == [(text, __file__) for text in ("timestep = 1e-09 s", *named)]
 
 
 def test_the_estimate_is_near_what_it_takes(monkeypatch):

@@ -321,3 +321,29 @@ def test_a_cracked_facade_that_falls_away_from_a_side_wall_has_fallen():
         assert (run.outcome, set(run.fallen)) == (mr.Outcome.OVERTURNED, {"low", "high"})
         times.append(run.fallen["low"])
     assert times[0] == pytest.approx(times[1], rel=0.01)
+
+
+@pytest.mark.parametrize("length", [0.01, 50.0])
+def test_masonry_moves_alike_whatever_its_length_out_of_the_plane(length):
+    """Also where joints are so soft that blocks sink into one another by more than this length."""
+
+    def soft(length):
+        sizes = ((-2, -1, 4, 1, True), (0, 0, 1, 1, False), (0, 1, 1, 1, False))
+        blocks = [
+            mr.Polygon([(x, z), (x + w, z), (x + w, z + h), (x, z + h)], length=length, fixed=fixed)
+            for x, z, w, h, fixed in sizes
+        ]
+        return mr.Masonry(blocks, k_n=1e6, friction=0.7, xi=0.05)
+
+    runs = [follow(soft(of), 0.5, PULSE, timestep=1e-3) for of in (1.0, length)]
+    np.testing.assert_allclose(runs[1].pose, runs[0].pose, atol=1e-9)
+
+
+def test_small_blocks_sink_as_deep_as_their_joints_let_them():
+    """Deeper than they are large: how deep a run follows goes by the largest block."""
+    pads = [box(x - 0.02, x + 0.02, 0, 0.002, name=name) for x, name in ((-0.48, "left"), (0.48, "right"))]
+    masonry = mr.Masonry([GROUND, *pads, box(-0.5, 0.5, 0.002, 1.002)], k_n=5e6, friction=0.7)
+    run = follow(masonry, 0.01)
+    assert run.t[-1] == 0.01
+    assert run.pose[:, 2, 1] == pytest.approx(-2 * 0.5 * 2000 * mr.GRAVITY / (5e6 * 0.04), rel=0.01)
+    assert run.outcome is mr.Outcome.AT_REST

@@ -311,3 +311,13 @@ def test_a_step_too_long_for_masonry_that_falls_apart_is_refused_by_name():
     refused = pytest.raises(mr.SimulationError, match="joints that slide are unstable at a fixed step beyond")
     with pytest.warns(UserWarning, match="does not resolve"), refused:
         mr.simulate(mr.MasonryCase(walls, 0.3, motion=motion), timestep=4e-3)
+
+
+def test_a_block_that_is_too_light_to_turn_in_mujoco_is_refused_by_name():
+    corners = [(x, y, z) for x, z in ((0, 0), (1.1e-3, 0), (0, 6e-4)) for y in (0, 1.1e-3)]
+    chip = mr.Polyhedron(corners, density=100.0, name="chip")
+    ground = mr.Polyhedron.box((1, 1, 1), (0, 0, -0.5), fixed=True)
+    case = mr.MasonryCase(mr.Masonry([ground, chip], k_n=1e7, friction=0.7), 1e-4)
+    assert mr.solve_explicit(case).outcome is mr.Outcome.AT_REST
+    with pytest.raises(ValueError, match=r"chip has a moment of inertia of \S+e-15 kg m2; MuJoCo takes .* 1e-14 kg m2"):
+        mr.simulate(case)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.engine.rows import Law, RowInertia, Rows, Step, set_rows
+from mjrock.engine.rows import ContactLaw, ContactRows, RowInertia, Step, set_rows
 from mjrock.engine.solref import IMPEDANCE_RANGE, pair_values, row
 from mjrock.method import METHOD
 
@@ -90,8 +90,8 @@ def test_ringing_is_an_extra_dashpot():
 def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
     """A friction row has impratio times the inertia of its normal row, here 1 kg and 2 kg. It is 1 without friction."""
     c = np.array([1.0, 2.0]) * 2 / H
-    rows, none = Rows.of(2), np.zeros(2)
-    law = Law(np.full(2, 1e-9), c, np.where(np.array(held) > 0, 0.5, 0.0))
+    rows, none = ContactRows.of(2), np.zeros(2)
+    law = ContactLaw(np.full(2, 1e-9), c, np.where(np.array(held) > 0, 0.5, 0.0))
     inertia = RowInertia(
         weight=np.full(2, 0.01), overdamped=np.full(2, METHOD.overdamped), friction=np.array(held), growth=0.0
     )

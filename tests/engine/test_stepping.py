@@ -31,7 +31,7 @@ def test_the_error_follows_the_knob_over_four_decades(contacts, side_stop):
         case = mr.Case(FIGURE_3, share * FIGURE_3.alpha, 2.5, side_stop=side_stop)
         exact = mr.simulate(case, contacts, accuracy=1e-7).restitution[:2]
         errors += [np.abs(mr.simulate(case, contacts, accuracy=a).restitution[:2] / exact - 1).max() / 3 for a in knobs]
-    # against a side stop it ends where friction, which is no matter of the step, differs by what it does to the base
+    # against a side stop it ends where friction, which is not a matter of the step, differs by what it does to the base
     floor = 1.5e-4 if side_stop else 0.0
     assert (errors < 2 * knobs + floor).all(), errors
     if not side_stop:

@@ -9,7 +9,7 @@ from mjrock.engine.loop import fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.pace import Pace, short_step
-from mjrock.engine.progress import Clock, Progress
+from mjrock.engine.progress import Progress, StepClock
 from mjrock.engine.record import Record
 from mjrock.engine.setting import Setting
 from mjrock.engine.sliding import Sliding
@@ -50,10 +50,10 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         state = Progress.of(engine.memory, setting, Joints.of_scene(scene), sliding)
         record = Record.of(1, (3, 3), len(scene.contacts.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
-        before = Clock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
+        before = StepClock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
         values, n = fitted_loop(engine.memory, setting, pace, state, before, record)
     assert n == 1
-    return Clock(*values), record
+    return StepClock(*values), record
 
 
 @pytest.mark.parametrize("share", [0.1, 0.9])
@@ -62,10 +62,10 @@ def test_a_step_ends_half_a_short_step_after_the_touch(ice, share):
     short = short_step(ice, ACCURACY)
     for h in (short, 4 * short):
         after, record = one_step(ice, share * h * SPEED, h)
-        assert (after.touches, after.h, after.calm, after.fresh) == (1, short, 0, True)
-        assert record.h[0] == after.last == after.t == pytest.approx(share * h + 0.5 * short, rel=1e-9)
+        assert (after.touches, after.allowed, after.calm_steps, after.no_rate) == (1, short, 0, True)
+        assert record.h[0] == after.previous == after.t == pytest.approx(share * h + 0.5 * short, rel=1e-9)
         after, record = one_step(ice, 1.1 * h * SPEED, h)
-        assert (after.touches, record.h[0], after.fresh) == (0, h, False)
+        assert (after.touches, record.h[0], after.no_rate) == (0, h, False)
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
@@ -95,7 +95,7 @@ def test_a_step_is_abrupt_that_takes_a_tenth_of_the_speed(ice, share):
     _, record = one_step(ice, -1e-4, h)
     change = ice.bodies.masses @ (record.after[0] - record.before[0]) ** 2
     after, _ = one_step(ice, -1e-4, h, change / (share * METHOD.abrupt) ** 2)
-    assert bool(after.abrupt) is (share > 1)
+    assert bool(after.unpredictable) is (share > 1)
 
 
 @pytest.mark.parametrize("curve", [-30.0, 0.0, 4.0])

@@ -197,7 +197,11 @@ class TestFrames:
         expected += (-0.4 * math.sin(turn) - 4.0 * math.sin(turn / 2) ** 2,)
         if freedom is SPACE:
             q, r, expected = pose_in_space(q), (0.4, 0.9, 2.0), (expected[0], 0.0, expected[1])
-        np.testing.assert_allclose(swung(frames_of(q, freedom), 0, r), expected, rtol=2e-15, atol=0)
+        frames = frames_of(q, freedom)
+        np.testing.assert_allclose(swung(frames, 0, r), expected, rtol=2e-15, atol=0)
+        turned = tuple(np.add(r, swung(frames, 0, r)))
+        np.testing.assert_allclose(np.add(turned, unswung(frames, 0, turned)), r, rtol=2e-15)
+        np.testing.assert_allclose(unswung(frames, 0, turned), -np.array(expected), rtol=2e-15, atol=0)
 
     def test_velocities_are_those_of_the_points(self):
         """v + spin x arm, by central differences along the motion."""

@@ -2,6 +2,7 @@
 be."""
 
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -176,6 +177,20 @@ def test_a_cache_that_cannot_be_read_or_written_is_none(monkeypatch):
     room = np.array([1.0, 2.0])
     double(room)
     assert list(room) == [2.0, 4.0]
+
+
+def test_a_cache_that_names_a_class_that_is_gone_is_made_anew():
+    """As after a change of version in place."""
+    if not hasattr(compiled, "_Cache"):
+        pytest.skip("without numba nothing is stored")
+    index = Path(compiled.compiled(PROBE)._cache._cache_file._index_path)
+    index.parent.mkdir(exist_ok=True)
+    index.write_bytes(pickle.dumps(compiled.numba.__version__) + b"cmjrock.compiled\ngone\n.")
+    for _ in range(2):  # the second reads what the first has stored
+        double, room = compiled.compiled(PROBE), np.array([1.0, 2.0])
+        double(room)
+        assert list(room) == [2.0, 4.0]
+    assert sum(double.stats.cache_hits.values()) == 1
 
 
 def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):

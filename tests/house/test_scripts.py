@@ -1,5 +1,6 @@
 """Every script runs in its quick mode, writes what it says, and meets bad input with an error and no traceback."""
 
+import ast
 import csv
 import importlib
 import os
@@ -76,6 +77,60 @@ WRITES = {
 
 def test_no_script_is_forgotten():
     assert set(SCRIPTS) == set(WRITES)
+
+
+PATCHING = {"mock", "patch", "setattr", "delattr", "vars", "monkeypatch", "cache_clear", "__dict__", "__setattr__"}
+"""Names by which the inside of an object or a module is replaced."""
+
+
+def patches(text):
+    """Lines of a script that replace something inside the package."""
+    tree = ast.parse(text)
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    ours = {"mjrock"} | {
+        alias.asname or alias.name
+        for node in imports
+        for alias in node.names
+        if (getattr(node, "module", None) or alias.name).split(".")[0] == "mjrock"
+    }
+    found = {node.lineno for node in imports for alias in node.names if alias.name in PATCHING}
+    for node in ast.walk(tree):
+        name = node.id if isinstance(node, ast.Name) else getattr(node, "attr", None)
+        if name in PATCHING:
+            found.add(node.lineno)
+        if isinstance(node, ast.Attribute | ast.Subscript) and not isinstance(node.ctx, ast.Load):
+            while isinstance(node, ast.Attribute | ast.Subscript):
+                node = node.value
+            if isinstance(node, ast.Name) and node.id in ours:
+                found.add(node.lineno)
+    return sorted(found)
+
+
+@pytest.mark.parametrize("path", sorted(Path(__file__).parents[2].glob("scripts/**/*.py")), ids=lambda path: path.stem)
+def test_no_script_patches_the_package(path):
+    assert patches(path.read_text()) == []
+
+
+@pytest.mark.parametrize(
+    "patch",
+    [
+        "mr.GRAVITY = 1.6",
+        "explicit.time = None",
+        "mr.plotting.style.COLOURS['wall'] = 'red'",
+        "del explicit.time",
+        "setattr(explicit, 'time', None)",
+        "vars(scene)['rest_in_space'] = None",
+        "scene.__dict__['rest_in_space'] = None",
+        "object.__setattr__(scene, 'title', '')",
+        "with mock.patch.object(explicit, 'time', None): pass",
+        "from unittest import mock",
+        "standing.cache_clear()",
+    ],
+)
+def test_a_patch_is_found(patch):
+    start = "import mjrock as mr\nfrom mjrock.distinct import explicit\n"
+    assert patches(start + patch) == [3]
+    assert patches(start + "model.opt.gravity[2] = 0.0\nspec.time = 1.0") == []
 
 
 def main_of(name):
@@ -161,7 +216,7 @@ def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
         (["--lumped", "0.4"], "lumped restitution = 0.4"),
         (["--timestep", "-1"], "timestep = -1 s"),
         (["--law", "mine.toml"], "mine.toml"),
-        (["--law", "nope"], "law = 'nope' is none of published, calibrated, calibrated-bed"),
+        (["--law", "nope"], "law = 'nope' is not one of published, calibrated, calibrated-bed"),
         (["--out", "/dev/null/here"], "Not a directory"),
     ],
 )

@@ -76,6 +76,7 @@ def test_effects_act_at_points():
     [
         (lambda: case(mr.Tie(1.0, 1e6, block=1)), r"effects\[0\] on a, height = 1 m is for masonry in the plane"),
         (lambda: case(mr.Load(1.0, offset=0.1, at=TOP, block=2)), "offset = 0.1 m is for masonry in the plane"),
+        (lambda: case(mr.Load(1.0, at=(0.2015, 0.1, 3.0), block=2)), r"m lies 0.0015 m outside the block"),
         (lambda: case(mr.Load(1.0, at=(0.3, 0.1, 3.0), block=2)), r"at = \(0.3, 0.1, 3.0\) m lies 0.1 m outside"),
         (lambda: case(mr.Tie(stiffness=1e6, at=TOP, block=2, anchor_block=1)), "anchor_block = 1 needs anchor="),
         (lambda: case(mr.Damper(c=1.0, at=TOP, block=2, anchor_block=2, anchor=TOP)), "2 is the block itself"),

@@ -97,6 +97,15 @@ def test_a_block_on_a_slope_needs_its_tangent():
     assert slippery(wedge(0.1)) == ((), ())
 
 
+@pytest.mark.parametrize(("degrees", "share"), [(0.0, 1.0), (45.0, 1.0), (22.5, math.cos(math.pi / 8))])
+def test_eight_edges_stand_for_the_cone_of_friction(degrees, share):
+    slab = mr.Masonry.box((B, B, 0.1), friction=0.3)
+    way, weight = math.radians(degrees), slab.blocks[1].mass * mr.GRAVITY
+    for of_it, falls in ((0.999, ()), (1.001, ("block",))):
+        push = of_it * share * 0.3 * weight
+        assert falling(slab, [[push * math.cos(way), push * math.sin(way), 0, 0, 0, 0]]) == falls
+
+
 @pytest.mark.slow
 def test_the_least_thickness_of_a_dome():
     """Heyman, The Stone Skeleton (1995): a hemisphere stands from t/R = 0.042 on."""
@@ -114,9 +123,12 @@ def test_the_least_thickness_of_a_coarse_dome():
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        ({"direction": 0.5}, "direction = 0.5 of type float is no direction; the valid ones are 1 or -1, or a vector"),
+        (
+            {"direction": 0.5},
+            "direction = 0.5 of type float is not a direction; the valid ones are 1 or -1, or a vector",
+        ),
         ({"direction": (0, 0)}, "has a length of 0"),
-        ({"direction": (1, 0, 0)}, "is no direction"),
+        ({"direction": (1, 0, 0)}, "is not a direction"),
         ({"angle": 7.0}, "angle = 7 rad is outside the valid range"),
         ({"direction": "x"}, "direction = 'x'"),
     ],

@@ -124,7 +124,7 @@ def test_a_law_is_the_same_after_save_and_load(law, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "complaint"),
     [
-        ('form = "CornerLaw"', 'form = "Circle"', "form = 'Circle' is none of PowerLaw, CornerLaw"),
+        ('form = "CornerLaw"', 'form = "Circle"', "form = 'Circle' is not one of PowerLaw, CornerLaw"),
         ("bounce = ", "bonce = ", "unexpected keyword argument 'bonce'"),
         ("[base]", "[bas]", "'base' is missing"),
         ("[base]", "[base", "not a damping law"),

@@ -1,4 +1,4 @@
-"""Masonry from files of other programs and back; what is no masonry is refused with the file and the body."""
+"""Masonry from files of other programs and back; what is not a masonry is refused with the file and the body."""
 
 import json
 import struct
@@ -68,6 +68,7 @@ def test_an_obj_file_and_back(tmp_path):
     masonry = mr.Masonry.from_obj(path, fixed=["ground"], density=1800.0, k_n=1e9, xi=0)
     assert same(masonry, FACADE)
     assert masonry.blocks[1].density == 1800.0
+    assert mr.Masonry.from_obj(path, fixed=["ground"], xi=0).blocks[1].density == 2000.0
     assert [joint.name for joint in masonry.joints] == [joint.name for joint in FACADE.joints]
 
 
@@ -134,13 +135,13 @@ NOTCH_FACES = [(0, 1, 2, 3, 4), (5, 6, 7, 8, 9)] + [(i, (i + 1) % 5, (i + 1) % 5
         (obj(("a", [*cube()[:7], (0.3, 0.3, 0.3)], CUBE_FACES)), "body a: vertices: . at .* m inside the hull"),
         (obj(("a", cube(), CUBE_FACES), ("b", cube((0, 0, 1.01)), CUBE_FACES)), "b touch no other block .* 0.01 m"),
         (obj(("a", cube(), CUBE_FACES), ("b", cube((0, 0, 0.9)), CUBE_FACES)), "blocks a and b overlap by 0.1 m"),
-        (obj(("a", cube(), CUBE_FACES)).replace("f 2", "f 99"), "line 11: 'f 99//1 .* is no vertex or face"),
-        (obj(("a", cube(), CUBE_FACES)) + "f 1 2", "line 16: 'f 1 2' is no vertex or face"),
+        (obj(("a", cube(), CUBE_FACES)).replace("f 2", "f 99"), "line 11: 'f 99//1 .* is not a vertex or face"),
+        (obj(("a", cube(), CUBE_FACES)) + "f 1 2", "line 16: 'f 1 2' is not a vertex or face"),
         (obj(("a", cube(), CUBE_FACES)) + "v 1 nan", "line 16"),
         (obj(("a", cube(), CUBE_FACES)).replace("v 0.0 0.0 0.0", "v nan 0 0"), "body a: vertices holds a coordinate"),
-        ("solid a\nendsolid\n", "has no faces: it is no OBJ file, or is cut short"),
+        ("solid a\nendsolid\n", "has no faces: it is not an OBJ file, or is cut short"),
         ("", "has 0 bytes"),
-        (b"\xff\xfe\x00", "is no text"),
+        (b"\xff\xfe\x00", "is not text"),
     ],
 )
 def test_obj_files_that_are_no_masonry(tmp_path, text, complaint):
@@ -152,9 +153,9 @@ def test_obj_files_that_are_no_masonry(tmp_path, text, complaint):
 def test_stl_files_that_are_none(tmp_path):
     content = binary_stl(FACADE)
     for name, broken, complaint in (
-        ("cut", content[:-30], "is no STL file, or is cut short: it has .* bytes; its head promises"),
-        ("text", text_stl(FACADE)[:3000], "is cut short: the solid .* does not end|is open|three vertices|no vertex"),
-        ("other", b"PK" + bytes(300), "is no STL file"),
+        ("cut", content[:-30], "is not an STL file, or is cut short: it has .* bytes; its head promises"),
+        ("text", text_stl(FACADE)[:3000], "the solid .* does not end|is open|three vertices|not a vertex"),
+        ("other", b"PK" + bytes(300), "is not an STL file"),
         ("open", text_stl(FACADE).replace(b"endfacet", b"", 1).replace(b"vertex", b"vert", 1), "three vertices|open"),
     ):
         with pytest.raises(ValueError, match=rf"{name}.stl.*({complaint})"):
@@ -164,11 +165,11 @@ def test_stl_files_that_are_none(tmp_path):
 def test_json_files_that_are_none(tmp_path):
     text = FACADE.to_compas(tmp_path / "a.json").read_text()
     for name, broken, complaint in (
-        ("cut", text[:2000], "is no JSON, or is cut short"),
-        ("deep", "[" * 100_000, "is no JSON, or is cut short"),
-        ("other", "[1, 2]", "is no COMPAS model: it has no data.elements"),
+        ("cut", text[:2000], "is not JSON, or is cut short"),
+        ("deep", "[" * 100_000, "is not JSON, or is cut short"),
+        ("other", "[1, 2]", "is not a COMPAS model: it has no data.elements"),
         ("none", '{"data": {"elements": {}}}', "without elements"),
-        ("mesh", text.replace('"vertex"', '"corners"'), "the element .* is no block with a mesh: KeyError 'vertex'"),
+        ("mesh", text.replace('"vertex"', '"corners"'), "the element .* is not a block with a mesh: KeyError 'vertex'"),
     ):
         with pytest.raises(ValueError, match=rf"{name}.json.*{complaint}"):
             mr.Masonry.from_compas(written(tmp_path / f"{name}.json", broken), xi=0)
@@ -178,7 +179,7 @@ def test_a_coordinate_beyond_floats_is_named(tmp_path):
     model = json.loads(FACADE.to_compas(tmp_path / "a.json").read_text())
     element = next(iter(model["data"]["elements"].values()))
     element["data"]["geometry"]["data"]["vertex"]["0"]["x"] = 10**400
-    with pytest.raises(ValueError, match=r"b.json: the element .* is no block with a mesh: OverflowError"):
+    with pytest.raises(ValueError, match=r"b.json: the element .* is not a block with a mesh: OverflowError"):
         mr.Masonry.from_compas(written(tmp_path / "b.json", json.dumps(model)), xi=0)
 
 
@@ -211,15 +212,15 @@ def test_names_that_no_obj_file_holds(tmp_path, name):
 
 def test_arguments_are_checked(tmp_path):
     path = FACADE.to_obj(tmp_path / "wall.obj")
-    with pytest.raises(ValueError, match="fixed = 'floor' is no body; there are ground, facade_0_0"):
+    with pytest.raises(ValueError, match="fixed = 'floor' is not a body; there are ground, facade_0_0"):
         mr.Masonry.from_obj(path, fixed=["floor"])
     with pytest.raises(ValueError, match="fixed has 'ground' 2 times; each body is named once"):
         mr.Masonry.from_obj(path, fixed=["ground", "ground"])
-    with pytest.raises(TypeError, match="fixed = 'ground' of type str is no list of names"):
+    with pytest.raises(TypeError, match="fixed = 'ground' of type str is not a list of names"):
         mr.Masonry.from_obj(path, fixed="ground")
     with pytest.raises(ValueError, match="scale = 0 m is outside the valid range"):
         mr.Masonry.from_obj(path, scale=0)
-    with pytest.raises(ValueError, match=r"none.obj is no file"):
+    with pytest.raises(ValueError, match=r"none.obj is not a file"):
         mr.Masonry.from_obj(tmp_path / "none.obj")
     with pytest.raises(ValueError, match="blocks in the plane have no such file"):
         mr.Masonry.stack([mr.Block(0.3, 1.0)], 1e8).to_obj(tmp_path / "a.obj")

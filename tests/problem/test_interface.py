@@ -80,7 +80,7 @@ def test_percent_instead_of_a_fraction_is_noticed(wall):
 
 
 def test_a_side_that_does_not_rebound_has_no_damping(wall):
-    with pytest.raises(ValueError, match=r"side restitution = 0\.47 is no rebound"):
+    with pytest.raises(ValueError, match=r"side restitution = 0\.47 is not a rebound"):
         mr.Contacts.from_law(wall, mr.Restitution(0.97, 0.47), k_base=K_N, k_side=K_N)
 
 

@@ -67,6 +67,7 @@ def test_running_bond():
     assert len(masonry.joints) - len(beds) == 2 + 3
     assert sum(masonry.blocks[i].mass for i in masonry.free) == pytest.approx(2000 * 3 * 1 * 0.2)
     cut = mr.Masonry.running_bond(2.7, 0.5, (1.0, 0.5))
+    assert {(block.length, block.density) for block in cut.blocks[1:]} == {(1.0, 2000.0)}
     assert [cut.blocks[i].area for i in cut.free] == pytest.approx([0.5, 0.5, 0.35])
 
 
@@ -207,12 +208,13 @@ def test_what_the_law_warns_of_has_the_name_of_the_joint():
         (lambda: mr.Masonry([LEFT]), "blocks = 1 free and 0 fixed; at least one of each"),
         (lambda: mr.Masonry([GROUND, LEFT, box(2, 3, 0, 1, name="left")]), "2 of them have the name left"),
         (lambda: mr.Masonry([GROUND, LEFT], k_n=1e3), "k_n = 1000 N/m3 is outside the valid range"),
+        (lambda: mr.Masonry([GROUND, LEFT], k_n=1.1e14), "k_n = 1.1e.14 N/m3 is outside the valid range"),
         (lambda: mr.Masonry([GROUND, LEFT], friction=lambda joint: -1), r"friction of ground\|left = -1 is outside"),
         (lambda: mr.Masonry([GROUND, LEFT], xi=len), "xi = .* is not called as xi"),
         (lambda: mr.Masonry([GROUND, LEFT], frequency=9.0, law="CALIBRATED"), "frequency = 9 rad/s is given with a la"),
         (lambda: mr.Masonry([GROUND, LEFT, RIGHT, TOP], law=mr.CALIBRATED), "law = is for stacks"),
         (lambda: mr.Masonry.arch(5, 0.75, law=mr.CALIBRATED), "law = is for stacks"),
-        (lambda: mr.Masonry([GROUND, LEFT], law="mine"), "law = 'mine' is none of"),
+        (lambda: mr.Masonry([GROUND, LEFT], law="mine"), "law = 'mine' is not one of"),
         (lambda: mr.Masonry.stack([mr.Block(0.3, 2.1, inset=0.1)], 5e8), r"inset = 0.1 m; .* give Masonry a Polygon"),
         (
             lambda: mr.Masonry.stack([mr.Block(0.3, 2.1, openings=(mr.Opening(0.5, 1.0),))], 5e8),

@@ -1,4 +1,4 @@
-"""Arguments of ground motions that are no numbers, and sizes that do not fit into memory."""
+"""Arguments of ground motions that are not numbers, and sizes that do not fit into memory."""
 
 import inspect
 

@@ -100,7 +100,7 @@ def test_the_stack_without_its_side_stop():
 @pytest.mark.parametrize(
     ("masonry", "complaint"),
     [
-        (lambda: mr.Masonry.arch(5, 0.75), "masonry is no stack, in which every block stands on one other block"),
+        (lambda: mr.Masonry.arch(5, 0.75), "masonry is not a stack, in which every block stands on one other block"),
         (lambda: mr.Masonry([GROUND, box(-3, -2, 0, 3), box(2, 3, 0, 3)]), "masonry is 2 stacks on fixed blocks"),
         (
             lambda: mr.Masonry(

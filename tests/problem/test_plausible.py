@@ -188,7 +188,7 @@ def plausible(rng):
 def test_two_thousand_plausible_cases_raise_no_false_alarm():
     """Peaks of 0.1 to 0.8 g, walls of 0.3 to 1.2 m and a slenderness of 5 to 15; at most 1 % warn.
 
-    A tie as low as 0.4 of the height is warned of rightly where the part above it is the weaker: that is no alarm.
+    A tie as low as 0.4 of the height is warned of rightly where the part above it is the weaker: that is not an alarm.
     """
     rng = np.random.default_rng(0)
     alarms, made, low = [], 0, []

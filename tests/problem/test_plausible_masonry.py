@@ -8,6 +8,7 @@ import pytest
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
+from mjrock.scene.explicit_step import warn_if_tiny
 
 STACK = columns(3)
 BLOCK = mr.Masonry.box((0.6, 0.4, 3.0), k_n=1e9)
@@ -76,6 +77,14 @@ def test_misuse_is_doubted_once(misuse):
     assert len(said) == 1
     with pytest.warns(mr.Implausible, match=doubt):
         make()
+
+
+def test_a_thousandth_of_the_step_that_is_needed_is_doubted():
+    with pytest.warns(mr.Implausible, match=r"timestep = 9\.9e-07 s, and 0\.001 s is short enough"):
+        warn_if_tiny(9.9e-7, 1e-3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_if_tiny(1.01e-6, 1e-3)
 
 
 def plausible(rng):

@@ -137,7 +137,7 @@ def test_a_low_stop_gives_no_rebound():
             "openings at a height of 0.5 m are 1.1 m wide together",
         ),
         (lambda: mr.Block(0.3, 2.1, openings=[1]), r"openings\[0\] = 1 of type int is not a Opening"),
-        (lambda: mr.Block(0.3, 2.1, openings=3), "openings = 3 of type int is no sequence"),
+        (lambda: mr.Block(0.3, 2.1, openings=3), "openings = 3 of type int is not a sequence"),
         (lambda: mr.Block(0.3, 2.1, profile=[(0, 0.6), (4, 0.6)]), "profile = .* ends at the height 4.2 m"),
         (lambda: mr.Block(0.3, 2.1, profile=[(0, 0.5), (4.2, 0.6)]), "starts at height 0 with the thickness 0.6 m"),
         (lambda: mr.Block(0.3, 2.1, profile=[(0, 0.6), (4.2, -0.6)]), r"profile\[1\], thickness = -0.6 m is outside"),
@@ -145,7 +145,7 @@ def test_a_low_stop_gives_no_rebound():
             lambda: mr.Block(0.3, 2.1, profile=[(0, 0.6), (3, 0.6), (2, 0.6), (4.2, 0.6)]),
             r"profile\[2\], height = 2 m is",
         ),
-        (lambda: mr.Block(0.3, 2.1, profile=[0.6, 0.6]), r"profile\[0\] = 0.6 of type float is no pair"),
+        (lambda: mr.Block(0.3, 2.1, profile=[0.6, 0.6]), r"profile\[0\] = 0.6 of type float is not a pair"),
         (lambda: mr.Block(0.3, 2.1, masses=[mr.AddedMass(1.0, 5.0)]), r"masses\[0\], height = 5 m is outside"),
         (lambda: mr.Block(0.3, 2.1, masses=[mr.AddedMass(1.0, 2.0, 4.0)]), r"masses\[0\], offset = 4 m is outside"),
         (

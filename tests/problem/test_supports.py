@@ -28,8 +28,8 @@ def test_another_order_of_the_blocks_moves_the_same_block():
 @pytest.mark.parametrize(
     ("masonry", "complaint"),
     [
-        (mr.Masonry.running_bond(1.0, 0.5, (0.5, 0.25), 0.3), "'right_abutment' of type str is no fixed block"),
-        (COLUMN, "'right_abutment' of type str is no fixed block; the valid ones are ground"),
+        (mr.Masonry.running_bond(1.0, 0.5, (0.5, 0.25), 0.3), "'right_abutment' of type str is not a fixed block"),
+        (COLUMN, "'right_abutment' of type str is not a fixed block; the valid ones are ground"),
     ],
 )
 def test_masonry_without_the_block_is_refused(masonry, complaint):

@@ -68,7 +68,7 @@ def turned(block, angle):
 
 def prism(block):
     corners = [(x, y, z) for x, z in block.corners for y in (-0.5, 0.5)]
-    return mr.Polyhedron(corners, fixed=block.fixed, name=block.name)
+    return mr.Polyhedron(corners, block.density, fixed=block.fixed, name=block.name)
 
 
 def masonry(blocks, in_space, **options):
@@ -157,3 +157,16 @@ def test_a_light_block_that_slides_on_heavy_ones(solver):
     run = solver(case)
     assert 0 < run.energy[-1] < 0.2 * mr.masonry_scene(case).rest_energies[2]
     assert run.outcome is mr.Outcome.TIME_ENDED
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("density", [1e3, 3e4])
+def test_masonry_that_moves_too_slowly_to_open_a_joint(in_space, solver, density):
+    """The kinetic energy of a block at rest is below that in its springs, (m g)^2 / (2 k)."""
+    blocks = [BLOCK[0], box(-0.2, 0.2, 0, 0.4, density=density)]
+    made = masonry(blocks, in_space, k_n=1e9, friction=0.0)
+    opens = mr.GRAVITY * math.sqrt(0.4 * density / 1e9)
+    for share, outcome in ((0.9, mr.Outcome.AT_REST), (1.1, mr.Outcome.TIME_ENDED)):
+        velocity = in_axes((share * opens, 0.0, 0.0), in_space)
+        assert solver(mr.MasonryCase(made, 1e-3, velocity=velocity)).outcome is outcome

@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.geometry.kinematics import gaps
-from mjrock.problem.damping.uplift import Uplift
+from mjrock.problem.damping.contacts import Uplift
 from mjrock.result.ending import ending
 from mjrock.result.history import rocking_history
 from mjrock.result.rocking import peak_energies, restitution_of
@@ -48,7 +48,7 @@ def test_history_of_a_shaken_theory_is_the_theory(wall, e, side_stop):
 
 
 def test_a_run_that_ends_on_the_way_out_has_its_last_impact(two_sided, e):
-    """There is no peak after the impact, but the wall's energy is that of its rotation and its velocity."""
+    """There is not a peak after the impact, but the wall's energy is that of its rotation and its velocity."""
     exact = mr.solve_analytical(two_sided, e, output_step=1e-3)
     impact = exact.impacts[1]
     for later in (0.1, 0.2):
@@ -162,7 +162,7 @@ def test_a_wall_rests_while_its_energy_lifts_no_edge(wall, share):
     ],
 )
 def test_the_end_is_judged_by_the_last_sample(two_sided, wall, energy, theta, outcome):
-    """Energy in shares of that of uplift, rotation in shares of alpha; what was before the last sample is no matter."""
+    """Energy in shares of that of uplift, rotation in shares of alpha; what was before does not count."""
     t, uplift = np.array([0.0, 1.0, 2.0]), 3.0
     last = np.array([5.0, 0.0, energy]) * uplift, np.array([0.0, 0.5, theta]) * wall.alpha
     found, message = ending(two_sided, t, last[1], last[0], uplift, np.zeros(3))

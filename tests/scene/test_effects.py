@@ -291,7 +291,7 @@ REFUSED = [
     ),
     (lambda: released((mr.SideStop(2.0),)), r"effects\[0\] = .* give it as side_stop"),
     (lambda: released((3.0,)), r"effects\[0\] = 3.0 of type float is not a Tie or Load or Thrust or Damper or"),
-    (lambda: released("tie"), "effects = 'tie' of type str is no sequence"),
+    (lambda: released("tie"), "effects = 'tie' of type str is not a sequence"),
     (lambda: released((mr.Tie(1.0, 1e6, block=2),)), r"effects\[0\], block = 2, is outside the valid range"),
     (
         lambda: released((mr.Thrust(4.0, 4000.0), mr.Load(1e3, 4.0, 0.2))),

@@ -255,3 +255,12 @@ def test_what_is_drawn_and_reported():
 def test_what_is_refused(asked, complaint):
     with pytest.raises(ValueError, match=complaint):
         asked()
+
+
+def test_a_model_is_shared_by_what_a_damper_bears_nothing_at():
+    """The stiffness of contacts is set with each step, and a damper bears nothing at rest, which goes by it."""
+    stiffnesses = [mr.Contacts.from_damping(WALL, k_base=k, xi_base=0.05) for k in (5e7, 5e8)]
+    for effects, shared in (((), True), (mr.FrictionDamper(3.0, K, F), False)):
+        case = mr.Case(WALL, 0.0, 1.0, side_stop=False, effects=effects)
+        soft, stiff = (mr.wall_scene(case, contacts).key for contacts in stiffnesses)
+        assert (soft == stiff) == shared

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.masonry.effects import laden
 
 WALL = mr.Block.from_size(0.6, 4.2)
 HALF = mr.Block.from_size(0.6, 2.1)
@@ -80,7 +81,7 @@ MASONRY = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)
         (mr.Tie(0.0, 1e6, block=0), r"effects\[0\] on .*: this block is fixed; the valid ones are \[1, 2\]"),
         (mr.Tie(3.0, 1e6, block=1), r"effects\[0\] on block_0, height = 3 m is outside the valid range"),
         (mr.Load(1e3, 3.0, 0.4, block=2), r"effects\[0\] on block_1, offset = 0.4 m is outside .* -0.3 to 0.3 m"),
-        (3, r"effects = 3 of type int is no sequence"),
+        (3, r"effects = 3 of type int is not a sequence"),
         ([math.nan], r"effects\[0\] = nan of type float is not a Tie"),
     ],
 )
@@ -98,3 +99,13 @@ def test_a_start_does_not_say_what_ties_have_yielded():
 def test_ties_that_do_not_yield_go_with_a_start():
     case = mr.MasonryCase(MASONRY, 0.01, effects=mr.Tie(3.0, 1e6, block=2))
     assert np.array_equal(mr.simulate(case, start=(np.zeros((2, 3)), np.zeros((2, 3)))).pose[0], np.zeros((2, 3)))
+
+
+def test_a_small_mass_counts_as_a_large_one():
+    """Half a kilogram on a brick of a kilogram, beside its centroid."""
+    brick = mr.Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)], density=100.0)
+    masonry = mr.Masonry([mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True), brick], k_n=1e7)
+    mass, centroids, inertia = laden(masonry, (mr.AddedMass(0.5, 0.09, 0.03, block=1),))
+    assert mass[1] == pytest.approx(1.5)
+    np.testing.assert_allclose(centroids[1], [0.05 + 0.03 / 3, 0.05 + 0.04 / 3])
+    assert inertia[1] == pytest.approx(0.1**2 / 6 + 1.0 * 0.5 / 1.5 * 0.05**2)

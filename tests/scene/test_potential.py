@@ -45,7 +45,7 @@ def test_derivatives_of_the_energy(held):
     np.testing.assert_allclose(found, second, rtol=1e-6, atol=1e-8 * np.abs(second).max())
     np.testing.assert_allclose(potential.hessian(pose).toarray(), found, rtol=1e-12, atol=1e-12 * np.abs(second).max())
     bent = np.abs(potential.curvature(pose).toarray()).max()
-    assert bent > 1e4  # what the check of the second derivatives is about is no trifle
+    assert bent > 1e4  # what the check of the second derivatives is about is not a trifle
 
 
 def test_the_energy_is_that_of_the_accounts(held):

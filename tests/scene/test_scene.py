@@ -13,6 +13,7 @@ from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.points import inverse_weights
 from mjrock.engine.stepping import fitted_steps
 from mjrock.scene.ground import Shaking, ground_velocity, mean_acceleration
+from mjrock.scene.parts import Links
 from mjrock.scene.wall import wall_scene
 
 
@@ -152,3 +153,22 @@ def test_a_stack_at_rest_stays_at_rest():
         steps = fitted_steps(engine, scene, still, 1e-3)
     assert np.abs(steps.pose - scene.at_rest.ravel()).max() < 1e-12
     assert len(steps.t) < 2000
+
+
+def test_the_title_says_what_stands(one_sided, contacts):
+    wall = one_sided.block
+    size = f"{2 * wall.b:g} m thick, {2 * wall.h:g} m high, {wall.length:g} m long, {wall.density:g} kg/m3"
+    assert wall_scene(one_sided, contacts).title == f"A masonry wall, {size}, rocking against a side stop"
+
+
+def test_links_by_what_they_have():
+    """A spring, a spring and a dashpot, a dashpot, a spring that also pushes, and neither."""
+    names = ("spring", "both", "dashpot", "pushes", "neither")
+    at, ends = np.zeros((5, 2)), np.array([(-1.0, 0.0)] * 5)
+    law = {"k": [1e3, 1e3, 0, 1e3, 0], "c": [0, 50.0, 50.0, 0, 0], "push": [0, 0, 0, 1e3, 0]}
+    limits = {"reach": [1.0, 1.0, math.inf, 1.0, math.inf], "strength": [1e3] * 5}
+    links = Links(names, [0] * 5, at, [-1] * 5, ends, **law, **limits)
+    assert links.sprung.names == ("spring", "both", "pushes")
+    assert links.bearing.names == ("spring", "both")
+    assert links.damped.names == ("both", "dashpot", "neither")
+    np.testing.assert_array_equal(links.damped.c, [50.0, 50.0, 0.0])

@@ -82,8 +82,8 @@ class TestMasses:
         ("inertia", "message"),
         [
             (np.diag((1.0, 2.0, 3.1)), "larger than the sum of the other two"),
-            (np.diag((1.0, 2.0, -1.0)), "no symmetric tensor with three positive moments"),
-            (np.array([(3.0, 0.1, 0), (0, 3, 0), (0, 0, 3)]), "no symmetric tensor with three positive moments"),
+            (np.diag((1.0, 2.0, -1.0)), "not a symmetric tensor with three positive moments"),
+            (np.array([(3.0, 0.1, 0), (0, 3, 0), (0, 0, 3)]), "not a symmetric tensor with three positive moments"),
         ],
     )
     def test_tensors_that_no_body_has(self, inertia, message):

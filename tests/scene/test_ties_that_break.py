@@ -90,6 +90,15 @@ def test_energy_of_a_wall_that_breaks_its_tie(wall, contacts, e, ultimate):
         assert motion.plastic[-1] == ultimate
 
 
+def test_a_tie_that_yields_between_two_samples_has_borne_its_strength(wall, e):
+    tie = brittle(wall, ultimate=None)
+    case, _ = kicked(wall, tie, 0.3, duration=1.0)
+    motion = mr.solve_analytical(case, e, output_step=1.0).ties["tie_0"]
+    assert len(motion.force) == 2
+    assert motion.force.max() < 0.9 * tie.strength
+    assert motion.largest_force == tie.strength
+
+
 def test_from_the_break_on_the_wall_is_one_without_a_tie(wall, contacts, e):
     tie = brittle(wall)
     case, _ = kicked(wall, tie, 0.6)

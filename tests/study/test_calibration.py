@@ -81,7 +81,7 @@ def test_the_two_measures_agree_on_corner_lines():
     assert row["reached"] == 1
     assert row["rms"] < 0.01
     assert row["found"] == pytest.approx(e.base, rel=0.01)
-    with pytest.raises(ValueError, match="measure = 'speed' is none of restitution, rms"):
+    with pytest.raises(ValueError, match="measure = 'speed' is not one of restitution, rms"):
         Match(REFERENCE, e, measure="speed")
 
 

@@ -273,7 +273,7 @@ def test_a_campaign_of_several_solvers(tmp_path, wall, e, contacts):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        ({"solver": "guess"}, "solver = 'guess' is none of analytical, compliant, MuJoCo"),
+        ({"solver": "guess"}, "solver = 'guess' is not one of analytical, compliant, MuJoCo"),
         ({"solver": "analytical", "contacts": None}, "the solver analytical needs e"),
         ({"contacts": None}, "the solver MuJoCo needs contacts"),
         ({"options": {"timestop": 1}}, "MuJoCo has no option timestop; it has timestep, accuracy"),

@@ -74,7 +74,7 @@ def nothing():
 @pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_tasks_that_cannot_be_run_are_rows(tmp_path, workers):
-    """Labels that no table holds, contents that cannot be hashed, and things that are no tasks."""
+    """Labels that no table holds, contents that cannot be hashed, and things that are not tasks."""
     tasks = [
         Square(1, labels={"n": 10**30}),
         Square(2, labels={"n": [1, 2]}),
@@ -273,7 +273,7 @@ def test_an_analysis_keeps_its_options(wall, contacts):
         ({"case": None}, "case = None is not a Case or MasonryCase"),
         ({"contacts": "CALIBRATED"}, "contacts = 'CALIBRATED' of type str is not a Contacts or None"),
         ({"e": 0.9}, "e = 0.9 of type float is not a Restitution or None"),
-        ({"options": ["accuracy"]}, "options = .* is no mapping"),
+        ({"options": ["accuracy"]}, "options = .* is not a mapping"),
     ],
 )
 def test_analyses_of_other_types(wall, contacts, arguments, complaint):

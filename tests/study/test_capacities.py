@@ -7,8 +7,8 @@ import pytest
 from scipy.stats import t as student
 
 import mjrock as mr
+from mjrock.study.fragility import _penalised
 from mjrock.study.ida import IncrementalAnalysis
-from mjrock.study.probit import _penalised
 from scripts.studies import fragility_coverage
 
 RNG = np.random.default_rng(3)
@@ -24,9 +24,9 @@ def test_a_wall_that_leans_on_its_ties_is_lost():
     assert mr.lost([row | {"inwards_over_alpha": 0.9} for row in untied]).tolist() == [True] + 4 * [False]
     with pytest.raises(ValueError, match=r"rows\[0\] has outcome = None and peak_over_alpha = None: no result"):
         mr.lost([{"status": "failed", "outcome": None}])
-    with pytest.raises(TypeError, match="rows = 3 of type int are no rows of a campaign"):
+    with pytest.raises(TypeError, match="rows = 3 of type int are not rows of a campaign"):
         mr.lost(3)
-    with pytest.raises(TypeError, match=r"rows = array.* are no rows of a campaign"):
+    with pytest.raises(TypeError, match=r"rows = array.* are not rows of a campaign"):
         mr.lost(np.array(0.3))
     with pytest.raises(TypeError, match=r"lost\(rows\) makes it of the rows of a campaign"):
         mr.fit_fragility([1.0, 2.0], ["overturned", "time ended"])

@@ -115,9 +115,9 @@ def test_scales_that_cannot_be(scales, complaint, tmp_path, pulse):
 @pytest.mark.parametrize(
     ("build", "complaint"),
     [
-        (None, "build = None is no function of a scale"),
+        (None, "build = None is not a function of a scale"),
         ({}, "build holds no records"),
-        ({"a": 3}, r"build\['a'\] = 3 of type int is no function of a scale"),
+        ({"a": 3}, r"build\['a'\] = 3 of type int is not a function of a scale"),
         ({1: print}, "the name of a record in build = 1 of type int is not a str"),
         (lambda scale: None, r"build\(0.1\) = None is not an Analysis"),
         ({"a": lambda scale: "x"}, r"build\['a'\]\(0.1\) = 'x' of type str is not an Analysis"),
@@ -138,7 +138,7 @@ def test_builds_that_cannot_be(build, complaint, tmp_path):
         ({"low": -1.0}, "low = -1 is outside the valid range"),
         ({"high": math.nan}, "high = nan is outside the valid range"),
         ({"tolerance": 0.0}, "tolerance = 0 is outside the valid range"),
-        ({"build": 3}, "build = 3 of type int is no function of a scale"),
+        ({"build": 3}, "build = 3 of type int is not a function of a scale"),
         ({"build": lambda scale: scale}, r"build\(1\) = 1.0 of type float is not an Analysis"),
     ],
 )

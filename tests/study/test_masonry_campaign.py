@@ -44,7 +44,10 @@ def test_what_tells_tasks_apart():
     [
         (lambda: mr.MasonryAnalysis(columns(1)), "case = .* is not a Case or MasonryCase"),
         (lambda: analysis(1.0, precision=2), "MuJoCo has no option precision; it has timestep, accuracy"),
-        (lambda: mr.MasonryAnalysis(mr.MasonryCase(columns(1), 1.0), labels=3), "labels = 3 of type int is no mapping"),
+        (
+            lambda: mr.MasonryAnalysis(mr.MasonryCase(columns(1), 1.0), labels=3),
+            "labels = 3 of type int is not a mapping",
+        ),
     ],
 )
 def test_what_cannot_be(make, complaint):

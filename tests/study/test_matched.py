@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.study import contacts_by_matching, tilted
+from mjrock.study import contacts_by_matching, pushover
 from scripts.shared.paper import FIGURE_3, K_N
 
 E = mr.Restitution.from_geometry(FIGURE_3)
@@ -109,7 +109,7 @@ def test_what_takes_long_has_a_bar(monkeypatch):
     """A match counts its simulations, a push-over on contacts its rotations; both wait before they show."""
     monkeypatch.setattr(Bar, "bars", [])
     monkeypatch.setattr(contacts_by_matching, "tqdm", Bar)
-    monkeypatch.setattr(tilted, "tqdm", Bar)
+    monkeypatch.setattr(pushover, "tqdm", Bar)
     contacts = mr.matched_contacts(FIGURE_3, E, K_N, K_N)
     mr.pushover(mr.Case(FIGURE_3, 0.0, 1.0), contacts, points=20)
     base, side, push = Bar.bars

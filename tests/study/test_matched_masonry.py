@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,9 +11,8 @@ from masonry_blocks import GROUND, box, columns
 import mjrock as mr
 from mjrock.problem.masonry.of_joint import ByKind, ByName
 from mjrock.problem.masonry.pile import Pile
-from mjrock.result.as_one import peaks, restitutions
 from mjrock.study.fingerprint import fingerprint
-from mjrock.study.masonry_by_matching import STRONG, excess, rebound, strong
+from mjrock.study.masonry_by_matching import STRONG, excess, peaks, rebound, restitutions, strong
 from mjrock.theory.impact import as_one
 
 HOLDS = 10.0
@@ -234,10 +234,10 @@ def test_where_no_damping_is_enough_the_closest_is_given():
 @pytest.mark.parametrize(
     ("arguments", "error", "complaint"),
     [
-        ((mr.Masonry.arch(5, 0.75),), ValueError, "masonry is no stack"),
+        ((mr.Masonry.arch(5, 0.75),), ValueError, "masonry is not a stack"),
         ((WALL,), TypeError, "masonry = .* is not a Masonry"),
         ((columns(2), 0.9), TypeError, "e = 0.9 of type float is not a Restitution or None"),
-        ((stack(2, side_stop=True), mr.Restitution(0.9, 0.1)), ValueError, "side restitution = 0.1 is no rebound"),
+        ((stack(2, side_stop=True), mr.Restitution(0.9, 0.1)), ValueError, "side restitution = 0.1 is not a rebound"),
         ((stack(2, side_stop=mr.SideStop(1.0)),), ValueError, "side restitution"),
     ],
 )
@@ -268,3 +268,15 @@ def test_properties_by_kind_and_by_name():
     assert named(bed) == 3.0
     with pytest.raises(ValueError, match=r"the joint side\|block_0 has no value among those of ground\|block_0"):
         named(side)
+
+
+@pytest.mark.parametrize("towards", [1.0, -1.0])
+def test_rebounds_count_from_the_release_to_either_side(towards):
+    """The last sample is on its way to a maximum, which is none; the one before it may be one."""
+    theta = towards * np.array([0.8, 1.0, 0.5, -0.5, -0.6, -0.3, 0.001, 0.2, 0.4, 0.3])
+    released = SimpleNamespace(theta=np.column_stack([theta, theta]), energy=np.arange(10.0, 0.0, -1.0))
+    pile = SimpleNamespace(masses=np.array([1.0, 3.0]))
+    assert peaks(released, pile) == [1, 4, 8]
+    np.testing.assert_allclose(restitutions(released, pile), np.sqrt([6 / 9, 2 / 6]))
+    rising = SimpleNamespace(theta=released.theta[:9], energy=released.energy[:9])
+    assert peaks(rising, pile) == [1, 4]

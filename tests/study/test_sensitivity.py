@@ -89,7 +89,7 @@ def test_what_changes_nothing(monkeypatch):
     found = mr.sensitivity(summed(monkeypatch), {"a": 1.0}, {"a": [1.0]})
     assert found.governs is None
     assert found.sentence == "1.00 m, no setting changes it"
-    with pytest.raises(ValueError, match="setting = 'z' of type str is none of a"):
+    with pytest.raises(ValueError, match="setting = 'z' of type str is not one of a"):
         found.swing("z")
 
 
@@ -107,16 +107,16 @@ def test_of_a_wall_and_resumed(build, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        ({"build": 3}, "build = 3 of type int is no function of settings"),
-        ({"base": 3}, "base = 3 of type int is no mapping of the names of settings"),
-        ({"vary": {1: [2]}}, "vary = .* is no mapping of the names of settings"),
+        ({"build": 3}, "build = 3 of type int is not a function of settings"),
+        ({"base": 3}, "base = 3 of type int is not a mapping of the names of settings"),
+        ({"vary": {1: [2]}}, "vary = .* is not a mapping of the names of settings"),
         ({"vary": {}}, "vary is empty; at least one setting is needed"),
-        ({"vary": {"scale": []}}, r"vary\['scale'\] = \[\] of type list is no row of at least one value"),
-        ({"vary": {"scale": "ab"}}, r"vary\['scale'\] = 'ab' of type str is no row"),
-        ({"measure": "peak"}, "measure = 'peak' of type str is none of the columns solver, law, outcome"),
+        ({"vary": {"scale": []}}, r"vary\['scale'\] = \[\] of type list is not a row of at least one value"),
+        ({"vary": {"scale": "ab"}}, r"vary\['scale'\] = 'ab' of type str is not a row"),
+        ({"measure": "peak"}, "measure = 'peak' of type str is not one of the columns solver, law, outcome"),
         ({"measure": 3}, "measure = 3 of type int is not a str"),
         ({"together": 3}, "together = 3 of type int is neither True nor False"),
-        ({"build": lambda **settings: 3}, "build gives 3 of type int, which is no task of a campaign"),
+        ({"build": lambda **settings: 3}, "build gives 3 of type int, which is not a task of a campaign"),
     ],
 )
 def test_what_cannot_be_varied(arguments, complaint, build):

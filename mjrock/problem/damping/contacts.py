@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,13 +21,14 @@ from ...quantities import (
     shown,
 )
 from ..wall.block import Block
+from ..wall.case import Case
 from .interface import Interface, reference_frequency, require_points
 from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
 from .restitution import UNLIKE, Restitution
 
 HOLDS = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
-Law = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
+AnyLaw = DampingLaw | Callable[[Block, Restitution, float], tuple[float, float]]
 
 
 def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
@@ -43,7 +44,7 @@ def _predicted(law: Callable[..., Any], wall: Block, e: Restitution, k_base: flo
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
-def required_law(law: Law | str | None, points: int) -> Law:
+def required_law(law: AnyLaw | str | None, points: int) -> AnyLaw:
     """A law, by its name too; None stands for the calibrated one of so many contact lines a face."""
     if law is None:
         return CALIBRATED if points == 2 else CALIBRATED_BED
@@ -161,7 +162,7 @@ class Contacts:
         e: Restitution,
         k_base: float,
         k_side: float | None = None,
-        law: Law | str | None = None,
+        law: AnyLaw | str | None = None,
         points: int = 2,
         amplitude: float = 0.5,
         friction: float | None = None,
@@ -275,3 +276,23 @@ class Contacts:
         assert self.side is not None
         horizontal = float(self.side.stiffness.sum()) / wall.mass
         return math.sqrt(max(vertical, horizontal, (base.K_rot + self.side.K_rot) / wall.inertia))
+
+
+class Uplift(NamedTuple):
+    """Where the rocking of a wall starts.
+
+    Args:
+        rotation: rotation at which the first edge of the wall decompresses under its weight and loads [rad].
+        energy: energy that tilts the wall so far from upright, its loads in the middle [J].
+    """
+
+    rotation: float
+    energy: float
+
+    @classmethod
+    def of(cls, case: Case, contacts: Contacts) -> Uplift:
+        """The uplift of a case. Loads and thrusts that make the wall lean leave the energy as it is."""
+        base, moment = contacts.base, case.restoring
+        rotation = case.pressing / (float(base.stiffness.sum()) * case.block.half_base)
+        stiffness = base.K_rot - 0.5 * (moment.outer.Q + moment.inner.Q)
+        return cls(rotation, 0.5 * stiffness * rotation**2)

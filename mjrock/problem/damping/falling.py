@@ -23,7 +23,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ...quantities import require_within
-from .rebound import rebound_damping
+from .rebound import rebound_damping, rebound_restitution
 
 MOST_PULL = 1e3
 """Largest g / (omega v) that is taken [-]. The weight is then a thousand times the force of the blow."""
@@ -148,3 +148,21 @@ def _crossing(function: Callable[[float], float], low: float, high: float) -> fl
             break
         low, high = (middle, high) if function(middle) < 0 else (low, middle)
     return 0.5 * (low + high)
+
+
+def rebound_at(speed: float, xi: float, frequency: float, gravity: float, share: float = 1.0) -> float:
+    """Coefficient of restitution at a speed, see `falling_rebound` [-].
+
+    Args:
+        speed: speed of approach [m/s], 1e-9 to 1e9.
+        xi, frequency: damping ratio [-] and circular frequency [rad/s].
+        gravity: acceleration that brings the geoms together [m/s2]; a negative one is taken as none.
+        share: part of what moves that has weight [-].
+    """
+    speed = require_within("speed", speed, 1e-9, 1e9, "m/s")
+    if frequency == 0 or xi == math.inf or xi > 1e6:
+        return rebound_restitution(xi)
+    pull = max(0.0, gravity) / (frequency * speed)
+    if pull == 0:
+        return rebound_restitution(xi)
+    return 0.0 if pull > MOST_PULL else falling_rebound(xi, pull, share).restitution

@@ -56,7 +56,7 @@ class MasonryTypes(Mapping[str, MasonryType]):
 
     def __getitem__(self, name: str) -> MasonryType:
         if name not in self._types:
-            raise KeyError(f"{name!r} is none of {', '.join(self._types)}")
+            raise KeyError(f"{name!r} is not one of {', '.join(self._types)}")
         return self._types[name]
 
     def __iter__(self) -> Iterator[str]:

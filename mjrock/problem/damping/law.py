@@ -71,7 +71,7 @@ class DampingLaw:
         for name in ("R_range", "slenderness_range", "k_n_range", "side_range"):
             low, high = require_array(name, getattr(self, name), (2,)).tolist()
             if not 0 <= low <= high:
-                raise ValueError(f"{name} = {low:g} to {high:g} is no range of positive numbers")
+                raise ValueError(f"{name} = {low:g} to {high:g} is not a range of positive numbers")
             keep(self, **{name: (low, high)})
         for part, form in (("base", self.base), ("side", self.side)):
             require_kind(part, form, *FORMS.values())
@@ -217,7 +217,7 @@ class DampingLaw:
                 given = dict(text[part])
                 name = given.pop("form")
                 if name not in FORMS:
-                    raise ValueError(f"form = {name!r} is none of {', '.join(FORMS)}")
+                    raise ValueError(f"form = {name!r} is not one of {', '.join(FORMS)}")
                 values[part] = FORMS[name](**given)
             return cls(**values)
         except KeyError as error:
@@ -267,5 +267,5 @@ def law_named(name: str) -> DampingLaw:
     """The law of that name in any case of letters, with a hyphen or blank for the underscore too, or a ValueError."""
     spelt = name.strip().upper().replace("-", "_").replace(" ", "_")
     if spelt not in NAMED:
-        raise ValueError(f"law = {name!r} is none of {', '.join(NAMED)}")
+        raise ValueError(f"law = {name!r} is not one of {', '.join(NAMED)}")
     return NAMED[spelt]

@@ -67,7 +67,7 @@ class Restitution:
     def require_rebound(self) -> None:
         """Raise ValueError unless the wall rebounds from the side stop."""
         if self.side >= 0:
-            raise ValueError(f"side restitution = {self.side:g} is no rebound; the valid range is -1 <= e_side < 0")
+            raise ValueError(f"side restitution = {self.side:g} is not a rebound; the valid range is -1 <= e_side < 0")
 
     @classmethod
     def from_geometry(cls, wall: Block | float, stop_top: float | None = None) -> Restitution:

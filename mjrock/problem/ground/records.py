@@ -2,7 +2,7 @@
 
 Each parser takes the lines of a file and returns its accelerations [m/s2], shape (n,), and its time step [s]. A number
 has ASCII digits and may have a Fortran exponent, 1.5D-02. A ValueError with the line says where the header is another,
-where the samples are not as many as it states, and where a word on a line of numbers is no finite number.
+where the samples are not as many as it states, and where a word on a line of numbers is not a finite number.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from ...files import require_file
 from ...quantities import GRAVITY, Array, require_path, require_reals, require_within, spelt
 
-Record = tuple[Array, float]
+ReadRecord = tuple[Array, float]
 
 FINEST, COARSEST = 1e-5, 1.0
 """Bounds of the time step of a motion [s]."""
@@ -46,10 +46,10 @@ BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
 """A control character, which could hide a row at the end of a header or comment."""
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
 DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
-"""A line of columns whose first letter or digit is a digit of any script, so that a damaged number is no header."""
+"""A line of columns whose first letter or digit is a digit of any script, so that a damaged number is not a header."""
 
 
-def checked(accel: ArrayLike, dt: float) -> Record:
+def checked(accel: ArrayLike, dt: float) -> ReadRecord:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
     A TypeError or ValueError says unless they are one row of at least 2 finite numbers, and the step is 1e-5 to 1 s.
@@ -64,7 +64,7 @@ def checked(accel: ArrayLike, dt: float) -> Record:
     return values, require_within("time step dt", dt, FINEST, COARSEST, "s")
 
 
-def read(path: str | PathLike[str], parse: Callable[[list[str]], Record]) -> Record:
+def read(path: str | PathLike[str], parse: Callable[[list[str]], ReadRecord]) -> ReadRecord:
     """The record that a parser finds in a file; a ValueError with its name says if it is not one of the format."""
     path = require_path("path", path)
     try:
@@ -88,7 +88,7 @@ def text_lines(path: Path) -> list[str]:
     return re.split(r"\r\n|\r|\n", text)
 
 
-def parse_at2(lines: Sequence[str]) -> Record:
+def parse_at2(lines: Sequence[str]) -> ReadRecord:
     """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
         instead = f"line 3 is {_short(lines[2])}" if len(lines) > 2 else f"{len(lines)} lines"
@@ -99,7 +99,7 @@ def parse_at2(lines: Sequence[str]) -> Record:
     return GRAVITY * _samples(lines, 4, int(head[1])), _step(head[2], 4)
 
 
-def parse_sac(lines: Sequence[str]) -> Record:
+def parse_sac(lines: Sequence[str]) -> ReadRecord:
     """The record of a text with a title line, a line that begins with count and time step [s], then values in cm/s2."""
     head = SAC_HEAD.fullmatch(lines[1]) if len(lines) > 1 else None
     if head is None:
@@ -111,7 +111,7 @@ def parse_sac(lines: Sequence[str]) -> Record:
     return UNITS["cm/s2"] * _samples(lines, 2, int(head[1])), _step(head[2], 2)
 
 
-def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> Record:
+def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> ReadRecord:
     """The record of two columns, time and acceleration, set apart by commas, semicolons, or blanks and tabs.
 
     Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped. Between

@@ -1,11 +1,10 @@
-"""What `Masonry` can be made as in the plane: a stack, an arch, and a wall in running bond."""
+"""Blocks of masonry that is built often, in the plane: a stack, an arch, and a wall in running bond."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -13,15 +12,12 @@ from ...quantities import (
     require_flag,
     require_kind,
     require_real,
-    require_stiffness,
     require_whole,
     require_within,
     shown,
 )
 from ..wall.block import Block
 from ..wall.effects import SideStop
-from .lines import lowest_frequency
-from .of_joint import ByKind, OfJoint, required
 from .polygon import Polygon
 
 DEEP = 0.25
@@ -108,153 +104,54 @@ def required_faces(radius: float, thickness: float, least: float) -> tuple[float
     return radius - 0.5 * thickness, radius + 0.5 * thickness
 
 
-class FromBlocks:
-    """What is made of blocks."""
+def arch_of(
+    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float
+) -> list[Polygon]:
+    """Equal voussoirs between two fixed abutments, from left to right, see `Masonry.arch`."""
+    inner, outer = required_faces(radius, thickness, 0.01)
+    span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
+    count = require_whole("voussoirs", voussoirs, 1, 1000)
+    angles = 0.5 * math.pi + span_angle * (0.5 - np.arange(count + 1) / count)
+    directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    polygons = [
+        Polygon(
+            [outer * directions[i], outer * directions[i + 1], inner * directions[i + 1], inner * directions[i]],
+            density=density,
+            length=length,
+            name=f"voussoir_{i}",
+        )
+        for i in range(count)
+    ]
+    for name, at, side in (("left_abutment", directions[0], -1.0), ("right_abutment", directions[-1], 1.0)):
+        down = float(thickness) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
+        corners = [inner * at, outer * at, outer * at + down, inner * at + down]
+        polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
+    return [polygons[-2], *polygons[:-2], polygons[-1]]
 
-    if TYPE_CHECKING:
-        friction: OfJoint
 
-        def __init__(self, blocks: Sequence[Any], **options: Any) -> None:
-            """As `Masonry`."""
-
-
-class Forms(FromBlocks):
-    """Masonry that is built often, in the plane. Options are further arguments of `Masonry`."""
-
-    @classmethod
-    def stack(
-        cls,
-        blocks: Sequence[Block],
-        k_n: OfJoint,
-        *,
-        ground: bool = True,
-        side_stop: bool | SideStop = False,
-        k_side: float | None = None,
-        side_friction: float = 0.0,
-        **options: Any,
-    ) -> Self:
-        """Rectangular blocks one on the other, centred, from the lowest upwards.
-
-        A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
-
-        Args:
-            blocks: the blocks, whose insets are zero.
-            k_n: stiffness of the joints [N/m3].
-            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
-            side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
-                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
-                with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
-            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
-            side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
-            options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
-                joints refers to the lowest natural frequency without it.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        made = stacked(blocks, ground)
-        side = side_of(made, side_stop)
-        side_friction = require_within("side_friction", side_friction, 0.0, 10.0)
-        k_side = None if k_side is None else require_stiffness("k_side", k_side)
-        if side is None:
-            if k_side is not None or side_friction:
-                raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
-            return cls(made, k_n=k_n, **options)
-        if options.get("law") is None and options.get("frequency") is None:
-            bare: Any = cls(made, k_n=k_n, **options)
-            options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-        k_n = required("k_n", k_n)
-        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
-        return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
-
-    @classmethod
-    def arch(
-        cls,
-        radius: float,
-        thickness: float,
-        span_angle: float = math.pi,
-        voussoirs: int = 17,
-        *,
-        density: float = 2000.0,
-        length: float = 1.0,
-        **options: Any,
-    ) -> Self:
-        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
-
-        Args:
-            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
-            thickness: [m], 0.001 to 1 times the radius.
-            span_angle: angle between the two springings [rad], 0.1 to pi.
-            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
-            density: mass density [kg/m3], 100 to 30000.
-            length: length out of the plane [m], 1e-3 to 1000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        inner, outer = required_faces(radius, thickness, 0.01)
-        span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
-        count = require_whole("voussoirs", voussoirs, 1, 1000)
-        angles = 0.5 * math.pi + span_angle * (0.5 - np.arange(count + 1) / count)
-        directions = np.column_stack([np.cos(angles), np.sin(angles)])
-        polygons = [
-            Polygon(
-                [outer * directions[i], outer * directions[i + 1], inner * directions[i + 1], inner * directions[i]],
-                density=density,
-                length=length,
-                name=f"voussoir_{i}",
-            )
-            for i in range(count)
-        ]
-        for name, at, side in (("left_abutment", directions[0], -1.0), ("right_abutment", directions[-1], 1.0)):
-            down = float(thickness) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
-            corners = [inner * at, outer * at, outer * at + down, inner * at + down]
-            polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
-        return cls((polygons[-2], *polygons[:-2], polygons[-1]), **options)
-
-    @classmethod
-    def running_bond(
-        cls,
-        length: float,
-        height: float,
-        unit: tuple[float, float],
-        thickness: float = 1.0,
-        density: float = 2000.0,
-        **options: Any,
-    ) -> Self:
-        """A wall of units in running bond on the ground, which moves in the plane of its face.
-
-        Args:
-            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
-                is a piece of a unit.
-            unit: length and height of a unit [m], 0.01 to 100.
-            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
-            density: mass density [kg/m3], 100 to 30000.
-            options: further arguments of `Masonry`.
-
-        Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
-        """
-        long, high = required_unit(unit)
-        length = require_within("wall length", length, long, 1e3, "m")
-        height = require_within("wall height", height, high, 1e3, "m")
-        thickness = require_within("wall thickness", thickness, 1e-3, 1e3, "m")
-        courses = round(height / high)
-        if not math.isclose(courses * high, height, rel_tol=1e-6):
-            raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
-        if courses * (length / long + 1) > MOST_BLOCKS:
-            count = courses * length / long
-            raise ValueError(
-                f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
-            )
-        polygons = [ground_under(0.0, length, thickness)]
-        for course in range(courses):
-            shift = 0.5 * long if course % 2 else long
-            inner = shift + long * np.arange(math.ceil(length / long))
-            ends = [0.0, *(x for x in inner.tolist() if x < length - SMALLEST_PIECE * long), length]
-            for i, (left, right) in enumerate(pairwise(ends)):
-                name = f"unit_{course}_{i}"
-                level = course * high, (course + 1) * high
-                polygons.append(rectangle(left, right, *level, density, thickness, False, name))
-        return cls(polygons, **options)
+def bonded_wall(
+    length: float, height: float, unit: tuple[float, float], thickness: float, density: float
+) -> list[Polygon]:
+    """The ground and units in running bond on it, see `Masonry.running_bond`."""
+    long, high = required_unit(unit)
+    length = require_within("wall length", length, long, 1e3, "m")
+    height = require_within("wall height", height, high, 1e3, "m")
+    thickness = require_within("wall thickness", thickness, 1e-3, 1e3, "m")
+    courses = round(height / high)
+    if not math.isclose(courses * high, height, rel_tol=1e-6):
+        raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
+    if courses * (length / long + 1) > MOST_BLOCKS:
+        count = courses * length / long
+        raise ValueError(
+            f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
+        )
+    polygons = [ground_under(0.0, length, thickness)]
+    for course in range(courses):
+        shift = 0.5 * long if course % 2 else long
+        inner = shift + long * np.arange(math.ceil(length / long))
+        ends = [0.0, *(x for x in inner.tolist() if x < length - SMALLEST_PIECE * long), length]
+        for i, (left, right) in enumerate(pairwise(ends)):
+            name = f"unit_{course}_{i}"
+            level = course * high, (course + 1) * high
+            polygons.append(rectangle(left, right, *level, density, thickness, False, name))
+    return polygons

@@ -9,7 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, Implausible, keep, require_array, require_kind, require_whole, require_within
+from ...quantities import (
+    Array,
+    Implausible,
+    keep,
+    require_array,
+    require_flag,
+    require_kind,
+    require_whole,
+    require_within,
+)
 from ..ground.motion import GroundMotion
 from ..wall.effect import Effect
 from ..wall.effects import KINDS, Carrying, Load
@@ -21,13 +30,13 @@ from .support import supports_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports")
+COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled")
 """What two equal cases share, beside the velocity."""
 
 
 @dataclass(frozen=True, eq=False)
 class MasonryCase(Carrying):
-    """Masonry at rest under its weight, and what moves it.
+    """Masonry, at rest under its weight or as it is drawn, and what moves it.
 
     Args:
         masonry: the blocks and their joints.
@@ -45,10 +54,12 @@ class MasonryCase(Carrying):
         supports: displacement histories of fixed blocks, by name, (t, dx, dz) in s and m, in space (t, dx, dy, dz), for
             `solve_explicit`.
         transverse: in space, the acceleration of the ground along y, or None; `motion` is that along x.
+        settled: whether the masonry starts at rest under its weight. False starts it as drawn, with springs that are
+            not stretched and without friction, whether or not it stands.
 
     Raises:
         ValueError: for a value outside its range, velocities of another shape, an effect that is not on its block, or
-            a support that is no fixed block of the masonry.
+            a support that is not a fixed block of the masonry.
 
     Warns:
         Implausible: for values that can be and are most often in another unit, see `mjrock.problem.wall.plausible`.
@@ -62,12 +73,14 @@ class MasonryCase(Carrying):
     effects: tuple[Effect, ...] = ()
     supports: Any = ()
     transverse: GroundMotion | None = field(default=None, kw_only=True, metadata=LATER)
+    settled: bool = field(default=True, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
         keep(self, duration=require_within("duration", self.duration, 1e-6, 1e6, "s"))
         for name in ("motion", "vertical", "transverse"):
             require_kind(name, getattr(self, name), GroundMotion, type(None))
+        require_flag("settled", self.settled)
         if self.transverse is not None and not self.masonry.in_space:
             raise ValueError(
                 "transverse is for masonry in space; blocks in the plane are shaken by motion and vertical"

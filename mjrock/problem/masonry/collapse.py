@@ -88,7 +88,7 @@ def _push(masonry: Masonry, direction: float | ArrayLike, angle: float | None) -
         given = np.array([float(given), 0.0])
     elif given.shape != (2,) or not masonry.in_space:
         valid = "1 or -1" + (", or a vector in plan of the shape (2,)" if masonry.in_space else "")
-        raise ValueError(f"direction = {shown(direction)} is no direction; the valid ones are {valid}")
+        raise ValueError(f"direction = {shown(direction)} is not a direction; the valid ones are {valid}")
     length = float(np.hypot(*given))
     if not 1e-9 < length < math.inf:
         raise ValueError(f"direction = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")

@@ -17,7 +17,7 @@ def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
     """Where an effect acts on its block, from the origin of the world [m]."""
     if masonry.in_space:
         return tuple(held_at(effect).tolist())
-    block = masonry.blocks[effect.block]
+    block = masonry.polygons[effect.block]
     x = block.left_at(effect.height) if effect.on_face else float(block.centroid[0]) + effect.offset
     return x, effect.height
 
@@ -66,7 +66,7 @@ def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
         )
     if effect.offset:
         raise ValueError(f"{name}, offset = {effect.offset:g} m is for masonry in the plane; at has it")
-    block: Polyhedron = masonry.blocks[effect.block]
+    block = masonry.polyhedra[effect.block]
     if effect.on_block:
         _require_on(f"{name}, at", effect.at, block)
     if isinstance(effect, Anchored):
@@ -77,7 +77,7 @@ def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
                 raise ValueError(f"{name}, anchor_block = {number} is the block itself; give another, or None")
             if effect.anchor is None:
                 raise ValueError(f"{name}, anchor_block = {number} needs anchor=(x, y, z)")
-            _require_on(f"{name}, anchor", effect.anchor, masonry.blocks[number])
+            _require_on(f"{name}, anchor", effect.anchor, masonry.polyhedra[number])
         if np.linalg.norm(held_at(effect) - effect.anchor_of(held_at(effect))) < 1e-2:
             raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
 

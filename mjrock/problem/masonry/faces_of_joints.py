@@ -16,10 +16,10 @@ FACING = 0.99
 
 def faces_of_joints(masonry: Masonry) -> tuple[tuple[Face, Face], ...]:
     """Of each joint of masonry in space, the face of the block below and that of the block above."""
-    faces = [faces_of(block) for block in masonry.blocks]
+    faces = [faces_of(block) for block in masonry.polyhedra]
     return tuple(
         (_towards(faces[joint.below], joint.normal, joint), _towards(faces[joint.above], -joint.normal, joint))
-        for joint in masonry.joints
+        for joint in masonry.space_joints
     )
 
 

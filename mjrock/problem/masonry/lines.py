@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import block_diag, csr_array, vstack
@@ -60,17 +60,20 @@ class Lines(NamedTuple):
         return pairs[:, 0], pairs[:, 1]
 
 
-def lines_of(blocks: Sequence[Any], joints: Sequence[Any], k_n: Array, points: int) -> Lines:
+def lines_of(
+    blocks: Sequence[Polygon | Polyhedron], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int
+) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner is that of the block below, and the point is
     on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,). A joint
     has so many lines as `points` says, in space see `geometry.convex.spread`.
     """
-    places = _on_face if isinstance(joints[0], SpaceJoint) else _on_edge
     rows, at, normal, k = [], [], [], []
     for number, joint in enumerate(joints):
-        for place, stiffness, overhangs in places(joint, points, k_n[number]):
+        k_joint = k_n[number]
+        own = _on_edge(joint, points, k_joint) if isinstance(joint, Joint) else _on_face(joint, points, k_joint)
+        for place, stiffness, overhangs in own:
             turned = overhangs and not blocks[joint.below].fixed
             rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
             at.append(place)
@@ -110,7 +113,7 @@ def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
     return float(low[edge]), float(high[edge])
 
 
-def rates(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, directions: Array) -> csr_array:
+def rates(blocks: Sequence[Polygon | Polyhedron], lines: Lines, directions: Array) -> csr_array:
     """Rates at which the lines move apart in given directions, see `mjrock.linear.rates_of`.
 
     Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
@@ -121,13 +124,13 @@ def rates(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, direct
     return rates_of(number[np.column_stack([lines.body, lines.face])], arms, directions, int(number.max()) + 1)
 
 
-def free_numbers(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> Integers:
+def free_numbers(blocks: Sequence[Polygon | Polyhedron]) -> Integers:
     """Number of each block among those that are not fixed, -1 for one that is, shape (blocks,)."""
     free = np.array([not block.fixed for block in blocks])
     return np.where(free, np.cumsum(free) - 1, -1)
 
 
-def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints: int) -> csr_array:
+def slips(blocks: Sequence[Polygon | Polyhedron], lines: Lines, joints: int) -> csr_array:
     """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies).
 
     In space a joint has three: along the two directions of `Lines.across`, and the rate at which it twists about its
@@ -143,7 +146,7 @@ def slips(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, joints
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
 
-def lowest_frequency(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Lines, friction: Array) -> float:
+def lowest_frequency(blocks: Sequence[Polygon | Polyhedron], lines: Lines, friction: Array) -> float:
     """The lowest natural frequency of masonry whose joints are all closed and do not slide [rad/s].
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
@@ -161,7 +164,7 @@ def lowest_frequency(blocks: Sequence[Polygon] | Sequence[Polyhedron], lines: Li
     return math.sqrt(square)
 
 
-def masses_of(blocks: Sequence[Polygon] | Sequence[Polyhedron]) -> tuple[Array, csr_array | None]:
+def masses_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[Array, csr_array | None]:
     """Mass or moment of inertia of each unknown of the blocks that are not fixed [kg, kg m2], shape (unknowns,).
 
     In space they are those of rotations about the principal axes. The second value then holds the unknowns of `rates`

@@ -2,28 +2,51 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from os import PathLike
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ...quantities import Array, Implausible, frozen, keep, require_whole, require_within, shown
-from ..damping.contacts import Law, required_law
-from .builders import MOST_BLOCKS, Forms
-from .exchange import Exchange
-from .forms_in_space import FormsInSpace
-from .joints import joints_in_plane, names_of
-from .joints_in_space import joints_in_space
+from ...files import write_text
+from ...quantities import (
+    Array,
+    Implausible,
+    frozen,
+    keep,
+    named,
+    require_flag,
+    require_path,
+    require_stiffness,
+    require_text,
+    require_whole,
+    require_within,
+    shown,
+)
+from ..damping.contacts import AnyLaw, required_law
+from ..wall.block import Block
+from ..wall.effects import SideStop
+from ..wall.section import Opening
+from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
+from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below
+from .joints import Joint, joints_in_plane, names_of
+from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
-from .of_joint import OF_JOINTS, OfJoint, required, values_of
+from .mesh_files import compas_text, obj_text, read_compas, read_obj, read_stl
+from .meshes import Mesh, blocks_of
+from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
 
+AnyPath = str | PathLike[str]
 FAR = 30.0
 """How far below the lowest frequency a given one is doubted [-], where it damps that one beyond `OVERDAMPED`."""
 OVERDAMPED = 30.0
@@ -33,7 +56,7 @@ UNDAMPED = 1e-4
 
 
 @dataclass(frozen=True)
-class Masonry(Forms, FormsInSpace, Exchange):
+class Masonry:
     """Rigid convex blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
@@ -81,14 +104,14 @@ class Masonry(Forms, FormsInSpace, Exchange):
         Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd.
     """
 
-    blocks: tuple[Any, ...]
+    blocks: Sequence[Polygon | Polyhedron]
     k_n: OfJoint = 1e10
     friction: OfJoint = 0.7
     xi: OfJoint = 0.05
     frequency: float | None = None
     points: int = 2
     tolerance: float = 1e-5
-    law: Law | str | None = None
+    law: AnyLaw | str | None = None
     k_s: OfJoint | None = None
 
     def __post_init__(self) -> None:
@@ -136,6 +159,26 @@ class Masonry(Forms, FormsInSpace, Exchange):
         """Whether the blocks are bodies in space."""
         return isinstance(self.blocks[0], Polyhedron)
 
+    @cached_property
+    def polygons(self) -> tuple[Polygon, ...]:
+        """The blocks of masonry in the plane; none of masonry in space."""
+        return tuple(block for block in self.blocks if isinstance(block, Polygon))
+
+    @cached_property
+    def polyhedra(self) -> tuple[Polyhedron, ...]:
+        """The blocks of masonry in space; none of masonry in the plane."""
+        return tuple(block for block in self.blocks if isinstance(block, Polyhedron))
+
+    @cached_property
+    def plane_joints(self) -> tuple[Joint, ...]:
+        """The joints of masonry in the plane; none of masonry in space."""
+        return tuple(joint for joint in self.joints if isinstance(joint, Joint))
+
+    @cached_property
+    def space_joints(self) -> tuple[SpaceJoint, ...]:
+        """The joints of masonry in space; none of masonry in the plane."""
+        return tuple(joint for joint in self.joints if isinstance(joint, SpaceJoint))
+
     def require_plane(self, what: str) -> None:
         """Raise a ValueError that says what takes blocks in the plane alone, if these are in space."""
         if self.in_space:
@@ -157,9 +200,11 @@ class Masonry(Forms, FormsInSpace, Exchange):
         return frozen([block.centroid for block in self.blocks])
 
     @cached_property
-    def joints(self) -> tuple[Any, ...]:
+    def joints(self) -> tuple[Joint | SpaceJoint, ...]:
         """The joints, in the order of the blocks: `Joint`, or `SpaceJoint` of blocks in space."""
-        return (joints_in_space if self.in_space else joints_in_plane)(self.blocks, self.tolerance)
+        if self.in_space:
+            return joints_in_space(self.polyhedra, self.tolerance)
+        return joints_in_plane(self.polygons, self.tolerance)
 
     @cached_property
     def joint_stiffness(self) -> Array:
@@ -218,3 +263,340 @@ class Masonry(Forms, FormsInSpace, Exchange):
             f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
             "rad/s, and None takes the lowest"
         )
+
+    @classmethod
+    def stack(
+        cls,
+        blocks: Sequence[Block],
+        k_n: OfJoint,
+        *,
+        ground: bool = True,
+        side_stop: bool | SideStop = False,
+        k_side: float | None = None,
+        side_friction: float = 0.0,
+        **options: Any,
+    ) -> Self:
+        """Rectangular blocks one on the other, centred, from the lowest upwards.
+
+        A `Block` is at least as high as it is thick. Flatter ones are given to `Masonry` as polygons.
+
+        Args:
+            blocks: the blocks, whose insets are zero.
+            k_n: stiffness of the joints [N/m3].
+            ground: whether fixed ground is put under them. Otherwise the lowest block is fixed.
+            side_stop: True for a side stop over the whole inner face, which is the left one, or the `SideStop` that
+                reaches only so high. It is a fixed block of the name `side`, the last of the blocks, and the blocks
+                with the inmost face have a joint with it. Each of them meets it at the ends of its own face.
+            k_side: stiffness of the joints with the side stop [N/m3]; None takes k_n.
+            side_friction: their coefficient of friction [-], 0 to 10. A smooth one is what the laws were fitted for.
+            options: further arguments of `Masonry`, such as `law`, `xi` and `friction`. With a side stop the xi of all
+                joints refers to the lowest natural frequency without it.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        made, side_friction = stacked(blocks, ground), require_within("side_friction", side_friction, 0.0, 10.0)
+        side = side_of(made, side_stop)
+        k_side = None if k_side is None else require_stiffness("k_side", k_side)
+        if side is None:
+            if k_side is not None or side_friction:
+                raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
+            return cls(made, k_n=k_n, **options)
+        if options.get("law") is None and options.get("frequency") is None:
+            bare = cls(made, k_n=k_n, **options)
+            options["frequency"] = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
+        k_n = required("k_n", k_n)
+        options["friction"] = ByKind(required("friction", options.get("friction", cls.friction)), side_friction)
+        return cls((*made, side), k_n=ByKind(k_n, k_n if k_side is None else k_side), **options)
+
+    @classmethod
+    def arch(
+        cls,
+        radius: float,
+        thickness: float,
+        span_angle: float = math.pi,
+        voussoirs: int = 17,
+        *,
+        density: float = 2000.0,
+        length: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
+
+        Args:
+            radius: of the middle of the arch at the joints [m], 0.01 to 1000.
+            thickness: [m], 0.001 to 1 times the radius.
+            span_angle: angle between the two springings [rad], 0.1 to pi.
+            voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
+            density: mass density [kg/m3], 100 to 30000.
+            length: length out of the plane [m], 1e-3 to 1000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length), **options)
+
+    @classmethod
+    def running_bond(
+        cls,
+        length: float,
+        height: float,
+        unit: tuple[float, float],
+        thickness: float = 1.0,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A wall of units in running bond on the ground, which moves in the plane of its face.
+
+        Args:
+            length, height: of the wall [m]. The height is a whole number of units. What is left of a course at its end
+                is a piece of a unit.
+            unit: length and height of a unit [m], 0.01 to 100.
+            thickness: of the wall, out of the plane [m], 1e-3 to 1000.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(bonded_wall(length, height, unit, thickness, density), **options)
+
+    @classmethod
+    def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:
+        """One box, `block`, on the ground, in the middle of it.
+
+        Args:
+            size: its extents along x, y and z [m], 1e-3 to 10000 each.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(box_on_ground(size, density), **options)
+
+    @classmethod
+    def column(
+        cls, width: float, height: float, drums: int, *, sides: int = 4, density: float = 2000.0, **options: Any
+    ) -> Self:
+        """A column of equal prismatic drums on the ground.
+
+        Args:
+            width: diameter of the circle within the section [m], 0.01 to 100: the side of a square.
+            height: of the column [m], 0.01 to 1000.
+            drums: how many, 1 to 1000. They are named `drum_0` and so on, from the lowest upwards.
+            sides: of the section, a regular polygon, 3 to 100. A square one has its sides along x and y.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(column_of(width, height, drums, sides, density), **options)
+
+    @classmethod
+    def dome(
+        cls,
+        radius: float,
+        thickness: float,
+        lunes: int,
+        hoops: int,
+        *,
+        oculus: float = 0.05,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A hemispherical dome of voussoirs with plane faces, which springs from the ground.
+
+        Args:
+            radius: of the middle of the thickness at the corners of the voussoirs [m], 0.1 to 1000.
+            thickness: [m], 0.001 to 1 times the radius.
+            lunes: how many voussoirs a hoop has, 4 to 360.
+            hoops: how many hoops of equal angles, 1 to 360. `voussoir_0_3` is the fourth of the lowest hoop.
+            oculus: angle at the centre between the axis and the edge of the opening at the crown [rad], 0.01 to 1.5.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(dome_of(radius, thickness, lunes, hoops, oculus, density), **options)
+
+    @classmethod
+    def facade(
+        cls,
+        length: float,
+        height: float,
+        depth: float,
+        unit: tuple[float, float],
+        *,
+        openings: Sequence[tuple[float, Opening]] = (),
+        gable: int = 0,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A facade and two return walls behind it, on the ground.
+
+        All walls are in running bond and half a unit thick, so that units of the facade and of the return walls take
+        turns at the corners. The face of the facade is x = 0, and the middle of its length is y = 0. Blocks are named
+        `facade_`, `left_` and `right_` with the course and a number in it.
+
+        Args:
+            length: of the facade, a whole number of units, at least 2 [m].
+            height: of the walls, a whole number of units [m].
+            depth: of the return walls with the thickness of the facade, a whole number of units [m].
+            unit: length and height of a unit [m], 0.01 to 100.
+            openings: pairs of the y of the middle of an opening [m] and the `Opening`. Its edges lie on half units and
+                on courses. A lintel over it bears on half a unit on either side.
+            gable: courses above the walls, each of which is a unit shorter than the one below, 0 to as many as there
+                are. The first is as long as the facade, or a unit shorter over an odd number of courses.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, an opening that does not fit, or as `Masonry` does.
+        """
+        return cls(facade_of(length, height, depth, unit, openings, gable, density), **options)
+
+    @classmethod
+    def from_obj(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: float = 2000.0,
+        scale: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """Blocks of a Wavefront OBJ file: its objects, or the groups of them.
+
+        Every body has to be closed and convex, and to touch another within the `tolerance`.
+
+        Args:
+            path: of the file. Several bodies of one object are numbered.
+            fixed: names of the bodies that are fixed.
+            ground: whether fixed ground is put under the lowest point.
+            density: mass density of blocks whose file says none [kg/m3], 100 to 30000.
+            scale: length of a unit of the file [m], 1e-6 to 1e3: 0.001 for millimetres. The z axis points upwards.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: if the file is not valid, or a body is not a convex block or touches no other; the message names
+                both. Or as `Masonry` does.
+        """
+        return cls._read(read_obj, path, fixed, ground, density, scale, options)
+
+    @classmethod
+    def from_stl(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: float = 2000.0,
+        scale: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """Blocks of an STL file, binary or text: its solids, or the closed bodies that it lists one after the other.
+
+        Args:
+            path: of the file. Bodies without a name are `body_0` and so on.
+            fixed, ground, density, scale, options: as of `from_obj`.
+
+        Raises:
+            ValueError: as `from_obj` does.
+        """
+        return cls._read(read_stl, path, fixed, ground, density, scale, options)
+
+    @classmethod
+    def from_compas(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: float = 2000.0,
+        scale: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """Blocks of the JSON file of a COMPAS model, such as a `BlockModel` of compas_dem. Its supports are fixed.
+
+        Args:
+            path: of the file.
+            fixed: names of further bodies that are fixed.
+            ground, density, scale, options: as of `from_obj`. A density of the material of a block comes first.
+
+        Raises:
+            ValueError: as `from_obj` does.
+        """
+        return cls._read(read_compas, path, fixed, ground, density, scale, options)
+
+    def to_obj(self, path: AnyPath) -> Path:
+        """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
+
+        Raises:
+            ValueError: for blocks in the plane.
+        """
+        self._require_space()
+        return write_text(require_path("path", path), obj_text(self.polyhedra, self.names))
+
+    def to_compas(self, path: AnyPath) -> Path:
+        """Write the blocks to the JSON file of a COMPAS model, with supports and densities, in metres.
+
+        Raises:
+            ValueError: for blocks in the plane.
+        """
+        self._require_space()
+        return write_text(require_path("path", path), compas_text(self.polyhedra, self.names))
+
+    @classmethod
+    def _read(
+        cls,
+        read: Callable[[Path], list[Mesh]],
+        path: AnyPath,
+        fixed: Sequence[str],
+        ground: bool,
+        density: float,
+        scale: float,
+        options: dict[str, Any],
+    ) -> Self:
+        """Masonry of the meshes that a reader finds in a file."""
+        if not isinstance(fixed, list | tuple):
+            raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
+        for name in fixed:
+            require_text("fixed", name)
+        density = require_within("density", density, 100.0, 3e4, "kg/m3")
+        scale = require_within("scale", scale, 1e-6, 1e3, "m")
+        ground, path = require_flag("ground", ground), require_path("path", path)
+        meshes = [mesh._replace(vertices=scale * mesh.vertices) for mesh in read(path)]
+        try:
+            blocks = blocks_of(meshes, density, fixed)
+            if ground:
+                corners = np.concatenate([block.corners for block in blocks])
+                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0), float(corners[:, 2].min())))
+            masonry = cls(blocks, **options)
+            masonry._require_touching()
+        except ValueError as error:
+            raise ValueError(f"path = {path}: {error}") from None
+        return masonry
+
+    def _require_space(self) -> None:
+        if not self.in_space:
+            raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
+
+    def _require_touching(self) -> None:
+        """Raise a ValueError with the names of the blocks that are not fixed and have no joint, and the nearest gap."""
+        touching = {i for joint in self.joints for i in (joint.below, joint.above)}
+        loose = [i for i in self.free if i not in touching]
+        if loose:
+            low, high = (np.array([end(block.corners, axis=0) for block in self.blocks]) for end in (np.min, np.max))
+            i = loose[0]
+            gaps = np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1)
+            gaps[i] = np.inf
+            raise ValueError(
+                f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
+                f"{self.tolerance:g} m; between the bounds of {self.names[i]} and {self.names[int(gaps.argmin())]} "
+                f"there are {gaps.min():.3g} m"
+            )

@@ -26,7 +26,7 @@ MOST_BYTES = 500_000_000
 def bytes_of(path: Path) -> bytes:
     """What a file holds, which is not empty and at most 500 MB."""
     if not path.is_file():
-        raise ValueError(f"path = {path} is no file")
+        raise ValueError(f"path = {path} is not a file")
     size = path.stat().st_size
     if not 0 < size <= MOST_BYTES:
         raise ValueError(f"path = {path} has {size} bytes; the valid range is 1 to {MOST_BYTES}")
@@ -38,7 +38,7 @@ def text_of(path: Path) -> str:
     try:
         return bytes_of(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f"path = {path} is no text: it holds bytes that are no UTF-8") from None
+        raise ValueError(f"path = {path} is not text: it holds bytes that are not UTF-8") from None
 
 
 def read_obj(path: Path) -> list[Mesh]:
@@ -63,10 +63,10 @@ def read_obj(path: Path) -> list[Mesh]:
                 group = rest.strip()
         except ValueError:
             raise ValueError(
-                f"path = {path}, line {count}: {line[:60]!r} is no vertex or face of an OBJ file"
+                f"path = {path}, line {count}: {line[:60]!r} is not a vertex or face of an OBJ file"
             ) from None
     if not faces:
-        raise ValueError(f"path = {path} has no faces: it is no OBJ file, or is cut short")
+        raise ValueError(f"path = {path} has no faces: it is not an OBJ file, or is cut short")
     things = Counter(thing for thing, _ in faces)
     places, meshes = np.array(vertices), []
     for i, ((thing, group), ring) in enumerate(faces.items()):
@@ -84,7 +84,7 @@ def read_stl(path: Path) -> list[Mesh]:
         return [_facets("body", records["v"].reshape(-1, 3).astype(float))]
     if content.lstrip()[:5].lower() != b"solid" or b"facet" not in content:
         needed = f"; its head promises {facets} facets, {84 + 50 * facets} bytes" if 0 <= facets < 10**7 else ""
-        raise ValueError(f"path = {path} is no STL file, or is cut short: it has {len(content)} bytes{needed}")
+        raise ValueError(f"path = {path} is not an STL file, or is cut short: it has {len(content)} bytes{needed}")
     meshes: list[Mesh] = []
     name, is_open = "body", False
     corners: list[tuple[float, float, float]] = []
@@ -97,7 +97,7 @@ def read_stl(path: Path) -> list[Mesh]:
             try:
                 corners.append(_triple(words[1:]))
             except ValueError:
-                raise ValueError(f"path = {path}, line {count}: {line[:60]!r} is no vertex of an STL file") from None
+                raise ValueError(f"path = {path}, line {count}: {line[:60]!r} is not a vertex of an STL file") from None
         elif kind == "endfacet" and len(corners) % 3:
             raise ValueError(f"path = {path}, line {count}: a facet of an STL file has three vertices")
         elif kind == "endsolid":
@@ -132,9 +132,9 @@ def read_compas(path: Path) -> list[Mesh]:
         elements = content["elements"]
         pairs = list(elements.items() if isinstance(elements, dict) else enumerate(elements))
     except (json.JSONDecodeError, RecursionError) as error:
-        raise ValueError(f"path = {path} is no JSON, or is cut short: {error}") from None
+        raise ValueError(f"path = {path} is not JSON, or is cut short: {error}") from None
     except (KeyError, TypeError):
-        raise ValueError(f"path = {path} is no COMPAS model: it has no data.elements") from None
+        raise ValueError(f"path = {path} is not a COMPAS model: it has no data.elements") from None
     materials = content.get("materials") or {}
     meshes = []
     for key, element in pairs:
@@ -142,7 +142,7 @@ def read_compas(path: Path) -> list[Mesh]:
             meshes.append(_element(element["data"], materials))
         except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
             raise ValueError(
-                f"path = {path}: the element {key} is no block with a mesh: {type(error).__name__} {error}"
+                f"path = {path}: the element {key} is not a block with a mesh: {type(error).__name__} {error}"
             ) from None
     if not meshes:
         raise ValueError(f"path = {path} is a COMPAS model without elements")

@@ -18,7 +18,7 @@ from .polyhedron import Polyhedron
 SAME_VOLUME = 1e-3
 """Largest difference of the volume of a body from that of its hull, over the latter [-]."""
 
-Faces = list[tuple[int, ...]]
+MeshFaces = list[tuple[int, ...]]
 
 
 class Mesh(NamedTuple):
@@ -34,12 +34,12 @@ class Mesh(NamedTuple):
 
     name: str
     vertices: Array
-    faces: Faces
+    faces: MeshFaces
     fixed: bool = False
     density: float | None = None
 
 
-def used(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+def used(vertices: Array, faces: MeshFaces) -> tuple[Array, MeshFaces]:
     """The vertices that faces use, in their order, and the faces with the new numbers of them."""
     numbers = sorted({vertex for face in faces for vertex in face})
     where = {vertex: i for i, vertex in enumerate(numbers)}
@@ -80,7 +80,7 @@ def bodies_of(mesh: Mesh) -> list[Mesh]:
     return bodies
 
 
-def _apart(faces: Faces, parts: list[int]) -> list[Faces]:
+def _apart(faces: MeshFaces, parts: list[int]) -> list[MeshFaces]:
     """Faces by the bodies that they make: those of one part that hang together by their vertices."""
     own: dict[tuple[int, int], int] = {}  # a vertex counts once in each part
     pairs = []
@@ -91,14 +91,14 @@ def _apart(faces: Faces, parts: list[int]) -> list[Faces]:
         return []
     graph = coo_array((np.ones(len(pairs)), np.transpose(pairs)), shape=(len(own), len(own)))
     labels = connected_components(graph, directed=False)[1].tolist()
-    shells: dict[int, Faces] = {}
+    shells: dict[int, MeshFaces] = {}
     for face, part in zip(faces, parts, strict=True):
         shells.setdefault(labels[own[part, face[0]]], []).append(face)
     return list(shells.values())
 
 
 def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
-    """The convex block that a closed body is; a ValueError with its name says if it is none."""
+    """The convex block that a closed body is; a ValueError with its name says if it is not one."""
     try:
         block = Polyhedron(body.vertices, density if body.density is None else body.density, fixed, body.name)
     except (ValueError, TypeError) as error:
@@ -127,7 +127,7 @@ def blocks_of(meshes: Sequence[Mesh], density: float, fixed: Sequence[str]) -> l
         if times > 1:
             raise ValueError(f"fixed has {name!r} {times} times; each body is named once")
         if name not in numbered:
-            raise ValueError(f"fixed = {name!r} is no body; there are {', '.join(numbered[:10])}")
+            raise ValueError(f"fixed = {name!r} is not a body; there are {', '.join(numbered[:10])}")
     return [
         block_of(body._replace(name=name), density, body.fixed or name in fixed)
         for body, name in zip(bodies, numbered, strict=True)

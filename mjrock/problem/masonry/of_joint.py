@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...quantities import Array, require_within, shown
+from .joints import Joint
+from .joints_in_space import SpaceJoint
 
 OfJoint = float | Callable[[Any], float]
 """A number, or a function of the joint that gives one."""
@@ -28,7 +30,7 @@ def required(name: str, given: OfJoint) -> OfJoint:
     return require_within(name, given, *OF_JOINTS[name])
 
 
-def values_of(name: str, given: OfJoint | None, joints: Sequence[Any]) -> Array:
+def values_of(name: str, given: OfJoint | None, joints: Sequence[Joint | SpaceJoint]) -> Array:
     """A property of each joint, infinite where None is given, shape (joints,)."""
     if not callable(given):
         return np.full(len(joints), np.inf if given is None else given)
@@ -49,7 +51,7 @@ class ByKind:
     beds: OfJoint
     others: OfJoint
 
-    def __call__(self, joint: Any) -> float:
+    def __call__(self, joint: Joint | SpaceJoint) -> float:
         """The value of a joint."""
         given = self.beds if joint.is_bed else self.others
         return given(joint) if callable(given) else given
@@ -64,7 +66,7 @@ class ByName:
 
     values: tuple[tuple[str, float], ...]
 
-    def __call__(self, joint: Any) -> float:
+    def __call__(self, joint: Joint | SpaceJoint) -> float:
         """The value of a joint; a ValueError says if it has none."""
         for name, value in self.values:
             if name == joint.name:

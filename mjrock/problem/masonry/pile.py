@@ -29,13 +29,13 @@ class Pile:
 
     @classmethod
     def of(cls, masonry: Masonry) -> Self:
-        """The stack that a masonry is; a ValueError says if it is none, is held on both sides, or too squat to rock."""
+        """The stack that a masonry is; a ValueError says if it is not one, is held both ways or too squat to rock."""
         blocks, joints = masonry.blocks, masonry.joints
         sides = tuple(i for i, joint in enumerate(joints) if is_side(blocks, joint))
         beds = [i for i in range(len(joints)) if i not in sides]
         parts = parts_above(blocks, [joints[i] for i in beds])
         if parts is None:
-            raise ValueError("masonry is no stack, in which every block stands on one other block or on the ground")
+            raise ValueError("masonry is not a stack, in which every block stands on one other block or on the ground")
         bases = [(i, part) for i, part in zip(beds, parts, strict=True) if blocks[joints[i].below].fixed]
         if len(bases) > 1:
             raise ValueError(f"masonry is {len(bases)} stacks on fixed blocks; give one")

@@ -27,7 +27,7 @@ def doubts(case: Any) -> list[str]:
 
 
 def stood(case: Any) -> float:
-    """Acceleration over g that the masonry of a case stands from rest, for a record that may be in g; else infinite."""
+    """Acceleration over g that the masonry of a case stands from rest, for a record that may be in g, or infinity."""
     weak = case.motion is not None and case.motion.peak <= IN_G and len(case.masonry.free) <= FEW
     at_rest = case.velocity is None and case.vertical is None and not case.effects
     return _multiplier(case.masonry) if weak and at_rest else math.inf

@@ -163,7 +163,7 @@ def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     winding = float(np.arctan2(turns, (before * unit).sum(axis=1)).sum()) / (2 * math.pi)
     if abs(abs(winding) - 1) > 0.1:
         raise ValueError("vertices: the edges cross; give the vertices in order around the block")
-    corners = corners[np.abs(turns) > BEND]  # what lies on a straight edge is no corner
+    corners = corners[np.abs(turns) > BEND]  # what lies on a straight edge is not a corner
     ordered = corners if area > 0 else corners[::-1]
     return tuple((float(x), float(z)) for x, z in ordered)
 
@@ -176,7 +176,7 @@ def _triangles(corners: Array) -> tuple[Array, Array, Array]:
 
 
 def _require_no_crossing(p: Array) -> None:
-    """Raise ValueError if two edges that are no neighbours cross."""
+    """Raise ValueError if two edges that are not neighbours cross."""
     q, n = np.roll(p, -1, axis=0), len(p)
 
     def side(a: Array, b: Array, c: Array) -> float:

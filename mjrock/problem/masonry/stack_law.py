@@ -5,12 +5,11 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from ...quantities import Array
-from ..damping.contacts import Contacts, Law
+from ..damping.contacts import AnyLaw, Contacts
 from ..damping.restitution import Restitution
 from ..wall.block import Block
 from .joints import Joint
@@ -27,7 +26,7 @@ def is_side(blocks: Blocks, joint: Joint | SpaceJoint) -> bool:
 
 
 def parts_above(blocks: Blocks, beds: Sequence[Joint | SpaceJoint]) -> list[list[int]] | None:
-    """Numbers of the blocks above each bed joint of a stack, from the lowest upwards; None if the blocks are no stack.
+    """Numbers of the blocks above each bed joint of a stack, from the lowest upwards; None if this is not a stack.
 
     In a stack each block that is not fixed stands on one other block, on a bed joint, and carries at most one.
     """
@@ -57,14 +56,16 @@ def wall_of(blocks: Blocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> B
     return Block(b=b, h=height, length=joint.length, density=float(mass.sum()) / (4 * b * height * joint.length))
 
 
-def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int, law: Law | str) -> Array:
+def retardations(
+    blocks: Blocks, joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int, law: AnyLaw | str
+) -> Array:
     """c/k of each joint of a stack [s], as `Contacts.from_law` gives it for the rigid wall above.
 
     What is asked for is the restitution of that wall by conservation of angular momentum. A joint with a fixed block
     beside the stack is damped as the side stop of the whole stack.
 
     Raises:
-        ValueError: if the blocks are no stack, if a part is too squat for a rocking wall, and what the law raises.
+        ValueError: if the blocks are not a stack, if a part is too squat for a rocking wall, and what the law raises.
 
     Warns:
         UserWarning: what the law warns of, with the name of the joint.
@@ -89,7 +90,11 @@ def retardations(blocks: Blocks, joints: Sequence[Any], k_n: Array, points: int,
             base, k_side = under[joint.above], float(k_n[i])
             while not blocks[joints[base].below].fixed:
                 base = under[joints[base].below]
-            stop = [max(j.start[1], j.end[1]) for j in joints if j.below == joint.below and is_side(blocks, j)]
+            stop = [
+                max(j.start[1], j.end[1])
+                for j in joints
+                if isinstance(j, Joint) and j.below == joint.below and is_side(blocks, j)
+            ]
             top = max(stop) - float(joints[base].middle[1])
         wall = walls[base]
         with warnings.catch_warnings(record=True) as caught:

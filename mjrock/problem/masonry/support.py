@@ -58,7 +58,7 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     wanted, supports = ", ".join(labels), []
     for name, histories in given.items():
         if name not in fixed:
-            raise ValueError(f"supports: {shown(name)} is no fixed block; the valid ones are {', '.join(fixed)}")
+            raise ValueError(f"supports: {shown(name)} is not a fixed block; the valid ones are {', '.join(fixed)}")
         if not isinstance(histories, list | tuple) or len(histories) != len(labels):
             where = "in space" if masonry.in_space else "in the plane"
             raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted}), which masonry {where} takes")

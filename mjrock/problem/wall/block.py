@@ -93,7 +93,7 @@ class Block:
         for name, kind in (("openings", Opening), ("masses", AddedMass)):
             parts = getattr(self, name)
             if not isinstance(parts, Sequence) or isinstance(parts, str):
-                raise TypeError(f"{name} = {shown(parts)} is no sequence of {kind.__name__}")
+                raise TypeError(f"{name} = {shown(parts)} is not a sequence of {kind.__name__}")
             for i, part in enumerate(parts):
                 require_kind(f"{name}[{i}]", part, kind)
             keep(self, **{name: tuple(parts)})

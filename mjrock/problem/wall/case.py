@@ -27,7 +27,7 @@ from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
-from .ties_on_wall import Pull, stored, taken, yielded
+from .ties_on_wall import TiePull, stored, taken, yielded
 
 
 @dataclass(frozen=True)
@@ -171,14 +171,14 @@ class Case(Carrying):
         ]
 
     @cached_property
-    def pulls(self) -> tuple[Pull, ...]:
+    def pulls(self) -> tuple[TiePull, ...]:
         """The ties, in the geometry of the wall."""
         return tuple(pull for pull, tie in zip(self.resisting, self.springs.values(), strict=True) if tie.law.holds)
 
     @cached_property
-    def resisting(self) -> tuple[Pull, ...]:
+    def resisting(self) -> tuple[TiePull, ...]:
         """All that resists a push outwards with a spring: ties, which bring the wall back, and what slips both ways."""
-        return tuple(Pull.of(tie, self.block.b, self.block.half_base) for tie in self.springs.values())
+        return tuple(TiePull.of(tie, self.block.b, self.block.half_base) for tie in self.springs.values())
 
     @property
     def pressing(self) -> float:

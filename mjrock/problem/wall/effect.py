@@ -67,7 +67,7 @@ class Effect:
     Attributes:
         label: its name, to which its number among those of its kind is added.
         arguments: names of its arguments as they stand in a sketch.
-        on_face: whether it holds the inner face, else it acts at `offset` from the middle of the base or the block.
+        on_face: whether it holds the inner face. Otherwise it acts at `offset` from the middle of base or block.
         on_block: whether its point has to lie on its block.
         offset: from there, outwards [m].
     """

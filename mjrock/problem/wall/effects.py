@@ -225,5 +225,7 @@ class Carrying:
         given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
             names = [kind.__name__ for kind in KINDS]
-            raise TypeError(f"effects = {shown(self.effects)} is no sequence of {', '.join(names[:-1])} or {names[-1]}")
+            raise TypeError(
+                f"effects = {shown(self.effects)} is not a sequence of {', '.join(names[:-1])} or {names[-1]}"
+            )
         keep(self, effects=tuple(given))

@@ -18,7 +18,7 @@ BLOCKS = 100_000
 FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
 LATER = {"later": True}
-"""Metadata of a field that came later. It is given by keyword, and None unless it is set."""
+"""Metadata of a field that came later. It is given by keyword. Fingerprints leave it out while it has its default."""
 
 
 def written(effect: Any) -> str:
@@ -44,7 +44,7 @@ def keep_place(effect: Any, kind: str) -> None:
     """Check and keep where an effect is: its block, its height or point in space, and the anchor of a tie or damper.
 
     Raises:
-        TypeError, ValueError: with the name and the kind of effect, for what is no number, no point or out of range.
+        TypeError, ValueError: with the name and the kind of effect, for what is not a number or point, or out of range.
     """
     for name in ("at", "anchor"):
         if hasattr(effect, name):

@@ -65,11 +65,11 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     """A profile as pairs of floats; a ValueError says if it does not go from the base of this thickness up to this
     height [m], or if a value is out of range."""
     if not isinstance(profile, Sequence) or isinstance(profile, str):
-        raise TypeError(f"profile = {shown(profile)} is no sequence of pairs of height and thickness [m]")
+        raise TypeError(f"profile = {shown(profile)} is not a sequence of pairs of height and thickness [m]")
     pairs: list[tuple[float, float]] = []
     for i, pair in enumerate(profile):
         if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
-            raise TypeError(f"profile[{i}] = {shown(pair)} is no pair of height and thickness [m]")
+            raise TypeError(f"profile[{i}] = {shown(pair)} is not a pair of height and thickness [m]")
         z = require_within(f"profile[{i}], height", pair[0], pairs[-1][0] if pairs else 0.0, height * (1 + 1e-12), "m")
         pairs.append((min(z, height), require_within(f"profile[{i}], thickness", pair[1], 1e-3, 20.0, "m")))
     whole = len(pairs) > 1 and pairs[0][0] == 0 and abs(pairs[-1][0] - height) <= 1e-9 * height

@@ -12,7 +12,7 @@ from ...quantities import Array
 from .effect import Anchored
 
 
-class Pull(NamedTuple):
+class TiePull(NamedTuple):
     """A tie on a rigid wall, as numbers for compiled functions.
 
     Args:
@@ -36,7 +36,7 @@ class Pull(NamedTuple):
     ultimate: float
 
     @classmethod
-    def of(cls, tie: Anchored, b: float, half_base: float) -> Pull:
+    def of(cls, tie: Anchored, b: float, half_base: float) -> TiePull:
         """A tie that holds the inner face of a wall of half thickness `b` and half base `half_base` [m]."""
         law = tie.law
         shape = -b, tie.height, tie.length, tie.rise, half_base, law.reach
@@ -51,7 +51,7 @@ class Pull(NamedTuple):
 
 
 @jitable
-def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
+def pulled(tie: TiePull, theta: Any, side: float) -> tuple[Any, Any]:
     """Elongation of a tie beyond its slack [m], and its lever [m]: the rate of its length with the rotation theta.
 
     It stands beside `mjrock.geometry` because rocking theory, which uses it, shares no kinematics with the engine.
@@ -67,12 +67,12 @@ def pulled(tie: Pull, theta: Any, side: float) -> tuple[Any, Any]:
     return length - tie.reach, (x * (d * sine + z * cosine) + up * (d * cosine - z * sine)) / length
 
 
-def moment_at_strength(pulls: Sequence[Pull]) -> float:
+def moment_at_strength(pulls: Sequence[TiePull]) -> float:
     """Restoring moment of ties that pull with their strength, about the outer toe of a wall at rest [N m]."""
     return sum(pull.strength * float(pulled(pull, 0.0, 1.0)[1]) for pull in pulls)
 
 
-def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
+def yielded(pulls: Sequence[TiePull], theta: Array) -> Array:
     """Plastic elongation of each tie along a motion that includes its turning points [m], shape (n, ties).
 
     It is infinite from where the tie has broken: it is slack from then on.
@@ -84,7 +84,7 @@ def yielded(pulls: Sequence[Pull], theta: Array) -> Array:
     return plastic
 
 
-def stored(pulls: Sequence[Pull], theta: Array, plastic: Array) -> Array:
+def stored(pulls: Sequence[TiePull], theta: Array, plastic: Array) -> Array:
     """Elastic energy of the ties [J], shape (n,), at rotations and plastic elongations of shapes (n,), (n, ties)."""
     energy = np.zeros(len(theta))
     for pull, gone in zip(pulls, plastic.T, strict=True):
@@ -92,7 +92,7 @@ def stored(pulls: Sequence[Pull], theta: Array, plastic: Array) -> Array:
     return energy
 
 
-def taken(pulls: Sequence[Pull], plastic: Array) -> Array:
+def taken(pulls: Sequence[TiePull], plastic: Array) -> Array:
     """Energy that all ties have taken by yielding and breaking so far [J], shape (n,), for plastic elongations (n,
     ties)."""
     total = np.zeros(len(plastic))
@@ -104,11 +104,11 @@ def taken(pulls: Sequence[Pull], plastic: Array) -> Array:
     return total
 
 
-def lost(pull: Pull) -> float:
+def lost(pull: TiePull) -> float:
     """Elastic energy that a tie loses as it breaks [J]."""
     return 0.5 * pull.strength**2 / pull.stiffness
 
 
-def _elongation(pull: Pull, theta: Array) -> Array:
+def _elongation(pull: TiePull, theta: Array) -> Array:
     elongation: Array = np.where(theta >= 0, pulled(pull, theta, 1.0)[0], pulled(pull, theta, -1.0)[0])
     return elongation
