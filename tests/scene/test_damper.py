@@ -11,6 +11,7 @@ import mjrock as mr
 from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import engine_of, released_mjcf
 from mjrock.engine.stepping import fitted_steps
+from mjrock.scene.dampers import damping_rate
 
 BLOCK = mr.Block.from_size(2.0, 2.0)
 WALL = mr.Block.from_size(0.6, 4.2)
@@ -114,3 +115,16 @@ def test_a_damper_on_masonry():
 def test_what_is_refused(asked, complaint):
     with pytest.raises(ValueError, match=complaint):
         asked()
+
+
+@pytest.mark.parametrize("rate", [0.25, 30.0])
+def test_the_rate_at_which_a_damper_slows_a_mass(rate):
+    """c / m, and zero without dampers."""
+    scene, _ = sliding(rate * BLOCK.mass)
+
+    def slowed(dampers):
+        return damping_rate(dampers, scene.potential.unmoved, scene.freedom, scene.bodies.principal)
+
+    assert slowed(scene.dampers) == pytest.approx(rate)
+    contacts = mr.Contacts.from_damping(BLOCK, k_base=5e8, xi_base=0.05)
+    assert slowed(mr.wall_scene(mr.Case(BLOCK, 0.0, 1.0, side_stop=False), contacts).dampers) == 0.0
