@@ -316,7 +316,7 @@ def test_the_response_in_space(tmp_path):
         f"quaternion {part} of block [-]" for part in "wxyz"
     ]
     pose, velocity = run.end
-    again = solve(block(), 0.01, start=run.end)
+    again = solve(block(), 0.01, start=(pose, velocity))
     np.testing.assert_array_equal(again.pose[0], pose)
     np.testing.assert_allclose(again.velocity[0], velocity, atol=1e-14)
     with pytest.raises(ValueError, match="length of a quaternion"):
