@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -79,7 +79,8 @@ class Bodies:
         poses: displacement x, z of each centroid from rest [m] and rotation [rad], shape (n, bodies, 3). A positive
             rotation turns the top of a body to the right, towards positive x.
         magnify: factor on the displacement of every point [-], 0.01 to 10000; 1 is true to scale.
-        fixed: outlines of bodies that do not move, in place [m].
+        fixed: outlines of fixed bodies, in place [m].
+        shifts: displacement of each fixed body that is moved, by its number among them [m], shape (n, 2) each.
 
     Raises:
         TypeError, ValueError: for arrays that do not fit together, or a factor outside its range.
@@ -91,6 +92,7 @@ class Bodies:
     poses: Array
     magnify: float = 1.0
     fixed: tuple[Array, ...] = ()
+    shifts: Mapping[int, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         times = require_row("t", self.t, "time [s]")
@@ -117,18 +119,21 @@ class Bodies:
             case.masonry.require_plane("Bodies")
         blocks, free = case.masonry.blocks, list(case.masonry.free)
         rests = laden(case.masonry, case.effects)[1][free]
+        fixed = [i for i, block in enumerate(blocks) if block.fixed]
         return cls(
             response.t,
             tuple(blocks[i].corners - rest for i, rest in zip(free, rests, strict=True)),
             rests,
             response.pose,
             magnify,
-            tuple(block.corners for block in blocks if block.fixed),
+            tuple(blocks[i].corners for i in fixed),
+            {fixed.index(case.masonry.names.index(s.block)): s.at(response.t) for s in case.supports},
         )
 
     def at(self, times: Array) -> Bodies:
         """The same bodies at other times, their poses interpolated linearly."""
-        return replace(self, t=times, poses=interpolated(times, self.t, self.poses))
+        shifts = {i: interpolated(times, self.t, shift) for i, shift in self.shifts.items()}
+        return replace(self, t=times, poses=interpolated(times, self.t, self.poses), shifts=shifts)
 
     def placed(self, frame: int, body: int, points: Array) -> Array:
         """Where points of a body are drawn at a frame [m], shape (n, 2).
@@ -137,6 +142,10 @@ class Bodies:
         `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
         return self._drawn(self.poses[frame, body], self.rests[body], points)
+
+    def support(self, frame: int, body: int) -> Array:
+        """Where the corners of a fixed body are drawn at a frame [m], shape (corners, 2)."""
+        return self.fixed[body] + (self.magnify * self.shifts[body][frame] if body in self.shifts else 0.0)
 
     def corners(self, frame: int) -> Array:
         """Where the corners of all bodies are drawn at a frame [m], shape (bodies, corners, 2).

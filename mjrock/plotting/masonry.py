@@ -11,6 +11,7 @@ from matplotlib.patches import Polygon as Patch
 from numpy.typing import ArrayLike
 
 from ..problem.masonry.masonry import Masonry
+from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_kind, require_within
 from ..result.response import Response
 from .bodies import ends_of, require_masonry, window
@@ -54,23 +55,28 @@ def blocks(
             space.
     """
     require_kind("ax", ax, Axes)
+    time: Array = np.zeros(1)
+    supports: tuple[Support, ...] = ()
     if isinstance(masonry, Response):
-        pose = masonry.pose[-1] if pose is None else pose
-        masonry = require_masonry("blocks", masonry)
+        response, masonry = masonry, require_masonry("blocks", masonry)
+        if pose is None:
+            pose, time, supports = response.pose[-1], response.t[-1:], response.case.supports
     require_kind("masonry", masonry, Masonry)
     magnified = require_within("magnified", magnified, 0.0, 1e6)
     rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0] if masonry.in_space else [0.0, 0.0, 0.0]
     bodies = len(masonry.free), len(rest)
     at = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
     if masonry.in_space:
-        solids(ax, Solids(masonry, np.zeros(1), at[None], magnified, camera), animated=False)(0)
+        solids(ax, Solids(masonry, time, at[None], magnified, camera, supports=supports), animated=False)(0)
         fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
         return ax
+    shifts = {support.block: magnified * support.at(time)[0] for support in supports}
     where = dict(zip(masonry.free, magnified * at, strict=True))
     width = min(1.4, 14 / np.sqrt(len(masonry.blocks)))  # lines of many joints would hide the blocks
     drawn: list[list[Array]] = [[], []]
     for i, block in enumerate(masonry.blocks):
-        corners = block.corners if block.fixed else moved(block.corners, block.centroid, where[i])
+        shift = shifts.get(masonry.names[i], 0.0)
+        corners = block.corners + shift if block.fixed else moved(block.corners, block.centroid, where[i])
         drawn[block.fixed].append(corners)
         colour = STONE if block.fixed else BRICK
         ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))

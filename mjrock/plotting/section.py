@@ -40,14 +40,18 @@ def together(updates: Sequence[Update]) -> Update:
 
 def blocks(ax: Axes, bodies: Bodies) -> Update:
     """Draw the outlines of bodies true to scale."""
-    for outline in bodies.fixed:
-        ax.add_patch(Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8))
+    stays = [Polygon(outline, facecolor=GROUND, edgecolor="0.4", linewidth=0.8) for outline in bodies.fixed]
+    for number, patch in enumerate(stays):
+        patch.set_animated(number in bodies.shifts)
+        ax.add_patch(patch)
     width = 1.2 if len(bodies.outlines) <= 100 else 0.4
     moving = PolyCollection([], facecolor=STONE, edgecolor="0.15", linewidth=width, zorder=2, animated=True)
     ax.add_collection(moving, autolim=False)
     ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
 
     def update(frame: int) -> None:
+        for number in bodies.shifts:
+            stays[number].set_xy(bodies.support(frame, number))
         moving.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
 
     return update

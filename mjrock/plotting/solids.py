@@ -14,6 +14,7 @@ from ..geometry.frames import SPACE, frames_of
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polyhedron import Polyhedron
+from ..problem.masonry.support import Support
 from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
@@ -44,6 +45,7 @@ class Solids:
         magnify: factor on the displacement of every point [-], 0 to 1e6; 1 is true to scale.
         camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
         effects: of the case. The pose of a block with added masses is that of their common centroid.
+        supports: fixed blocks that are moved.
 
     Raises:
         ValueError: for poses of another shape, or a value outside its range.
@@ -55,6 +57,7 @@ class Solids:
     magnify: float = 1.0
     camera: Sequence[float] | None = None
     effects: tuple[Effect, ...] = ()
+    supports: tuple[Support, ...] = ()
 
     def __post_init__(self) -> None:
         elevation, azimuth = require_array("camera", (18.0, 35.0) if self.camera is None else self.camera, (2,))
@@ -70,7 +73,7 @@ class Solids:
     def of(cls, response: Response, magnify: float = 1.0, camera: Sequence[float] | None = None) -> Solids:
         """The blocks of a response in space."""
         case = response.case
-        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects)
+        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects, case.supports)
 
     def at(self, times: Array) -> Solids:
         """The same blocks at other times, their poses interpolated linearly."""
@@ -92,14 +95,16 @@ class Solids:
 
     @property
     def ground(self) -> list[Polyhedron]:
-        """The fixed blocks below all that move."""
+        """The fixed blocks below all that move, which are not moved themselves."""
         return [block for block, is_ground in zip(self.masonry.polyhedra, self._are_ground, strict=True) if is_ground]
 
     @cached_property
     def _are_ground(self) -> list[bool]:
         blocks = self.masonry.blocks
         lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
-        return [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
+        below = [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
+        moved = {support.block for support in self.supports}
+        return [low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)]
 
     @property
     def colours(self) -> list[str]:
@@ -189,6 +194,10 @@ class Solids:
         frames, free = np.zeros((len(self.shown), 12)), list(self.masonry.free)
         moves = [i for i, block in enumerate(self.shown) if block in free]
         frames[moves] = frames_of(np.ascontiguousarray(self.poses[frame]).ravel(), SPACE)
+        for support in self.supports:
+            frames[self.shown.index(self.masonry.names.index(support.block)), :3] = support.at(
+                self.t[frame : frame + 1]
+            )
         return frames
 
     def _drawn(self, frame: int, body: Integers, points: Array) -> Array:

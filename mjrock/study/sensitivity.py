@@ -94,6 +94,10 @@ class Sensitivity:
     def sentence(self) -> str:
         """The result in one sentence, such as "0.35 to 0.48 g, governed by k_n"."""
         low, high = (self.written(value) for value in self.range)
+        digits = 4
+        while low == high and self.governs is not None:  # they differ
+            low, high = (f"{value:.{digits}g}" for value in self.range)
+            digits += 1
         if self.governs is None:
             alone = "no setting changes it alone" if low != high else "no setting changes it"
             return f"{low} {self.unit}".strip() + f", {alone}" if low == high else f"{low} to {high}, {alone}"

@@ -5,11 +5,15 @@ import io
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from PIL import Image
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting.section import STONE
+from mjrock.plotting import animation
+from mjrock.plotting.bodies import Bodies
+from mjrock.plotting.section import GROUND, STONE
+from mjrock.plotting.solids import Solids
 
 
 def rendered(figure, dpi=100):
@@ -44,3 +48,54 @@ def test_a_sketch_shows_the_wall_filled_in_section_and_elevation(thickness, open
     assert area_of(figure, section, STONE) == pytest.approx(thickness * 4.0, rel=0.15)
     openings_area = sum(opening.width * opening.height for opening in openings)
     assert area_of(figure, elevation, STONE) == pytest.approx(5.0 * 4.0 - openings_area, rel=0.08)
+
+
+def on_a_jack(in_space):
+    """A block on a slab that is raised by 0.3 m within 0.5 s, followed to the end."""
+    if in_space:
+        slab = mr.Polyhedron.box((1.0, 1.0, 0.2), (0, 0, 0.1), fixed=True, name="slab")
+        block = mr.Polyhedron.box((0.6, 0.6, 0.4), (0, 0, 0.4))
+    else:
+        slab = mr.Polygon([(-0.5, 0), (0.5, 0), (0.5, 0.2), (-0.5, 0.2)], fixed=True, name="slab")
+        block = mr.Polygon([(-0.3, 0.2), (0.3, 0.2), (0.3, 0.6), (-0.3, 0.6)])
+    masonry = mr.Masonry([slab, block], k_n=1e8, xi=0.05)
+    t = np.linspace(0.0, 0.5, 501)
+    raised = 0.15 * (1 - np.cos(np.pi * t / 0.5))
+    history = (t, 0 * t, *((0 * t,) * in_space), raised)
+    return mr.solve_explicit(mr.MasonryCase(masonry, 0.5, supports={"slab": history}))
+
+
+def heights_of(figure, ax, colour):
+    """The lowest and the highest pixel of a colour within an Axes of the plane, as heights [m]."""
+    pixels = rendered(figure)
+    box = ax.get_window_extent().extents / figure.dpi * 100
+    near = (np.abs(pixels - 255 * np.array(to_rgb(colour))) < 3).all(axis=-1)
+    rows = len(pixels) - np.flatnonzero(near[:, round(box[0]) : round(box[2])].sum(axis=1) > 20)
+    low, high = ax.get_ylim()
+    return low + (np.array([rows.min(), rows.max()]) - box[1]) / np.ptp(box[[1, 3]]) * (high - low)
+
+
+def test_a_support_that_moves_is_drawn_where_it_is():
+    run = on_a_jack(in_space=False)
+    figure, update = animation.scene(Bodies.of(run).at(run.t[[0, -1]]), [], run.case)
+    for frame, raised in ((0, 0.0), (1, 0.3)):
+        update(frame)
+        assert heights_of(figure, figure.axes[0], GROUND) == pytest.approx([raised, 0.2 + raised], abs=0.02)
+        assert heights_of(figure, figure.axes[0], STONE) == pytest.approx([0.2 + raised, 0.6 + raised], abs=0.02)
+
+
+def test_a_support_that_moves_in_space_is_drawn_where_it_is():
+    run = on_a_jack(in_space=True)
+    solids = Solids.of(run).at(run.t[[0, -1]])
+    slab = solids.facets.body == solids.shown.index(0)
+    for frame, raised in ((0, 0.0), (1, 0.3)):
+        heights = solids.corners(frame)[slab][..., 2]
+        assert (heights.min(), heights.max()) == pytest.approx((raised, 0.2 + raised), abs=1e-9)
+
+
+def test_masonry_at_the_end_of_a_run_is_drawn_on_its_supports():
+    figure = Figure(figsize=(4, 4))
+    ax = plotting.blocks(figure.subplots(), on_a_jack(in_space=False), joints=False)
+    slab, block = (patch.get_xy() for patch in ax.patches)
+    assert slab[:, 1].min() == pytest.approx(0.3)
+    assert block[:, 1].min() == pytest.approx(slab[:, 1].max(), abs=1e-3)

@@ -85,6 +85,11 @@ def test_overturning_counts_more_than_any_finite_change(monkeypatch):
     assert plotting.single(lambda ax: plotting.tornado(ax, found)).axes[0].get_yticklabels()[0].get_text() == "b"
 
 
+def test_values_that_three_digits_do_not_tell_apart(monkeypatch):
+    found = mr.sensitivity(summed(monkeypatch), {"a": 0.03681}, {"a": [0.03684]})
+    assert found.sentence == "0.03681 to 0.03684 m, governed by a"
+
+
 def test_what_changes_nothing(monkeypatch):
     found = mr.sensitivity(summed(monkeypatch), {"a": 1.0}, {"a": [1.0]})
     assert found.governs is None

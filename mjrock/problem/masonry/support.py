@@ -38,6 +38,10 @@ class Support:
         """Displacements [m], shape (samples, 2), in space (samples, 3)."""
         return np.column_stack(self.histories[1:])
 
+    def at(self, t: Array) -> Array:
+        """Displacement at some times [m], shape (times, 2), in space (times, 3)."""
+        return np.column_stack([np.interp(t, self.t, history) for history in self.histories[1:]])
+
     @property
     def histories(self) -> tuple[tuple[float, ...], ...]:
         """t, dx and dz, in space t, dx, dy and dz."""
