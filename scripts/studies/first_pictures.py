@@ -21,7 +21,8 @@ def with_every_effect() -> mr.Case:
         mr.Thrust(height=4.4, force=3e3),
         mr.Load(force=2e4, height=6.0, offset=0.15),
         mr.AddedMass(mass=500.0, height=6.0, offset=-0.2),
-        mr.Damper(height=3.0, c=1e4, length=2.0),
+        mr.FrictionDamper(height=3.0, stiffness=2e6, slip_force=5e3, length=2.0),
+        mr.Damper(height=0.7, c=1e4, length=2.0),
     )
     return mr.Case(wall, 0.0, 1.0, side_stop=mr.SideStop(4.0), effects=effects)
 
