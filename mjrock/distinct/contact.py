@@ -5,8 +5,8 @@ face a spring with a slider acts, or the line sticks rigidly, see `friction`.
 
 A line beyond the outline of its face has moved past an end of it. The nearest place of the outline then presses on the
 face of the block that carries the line, and past the outline of that face too nothing is left of the contact. Nor is
-anything left of it once the two faces are turned away from each other. A corner that meets a face beyond the joints
-presses where it has come through the face, until it leaves the outline.
+anything left of it once the two faces are turned away from each other. A line of a
+place that was found where blocks are has no end.
 """
 
 from __future__ import annotations
@@ -41,8 +41,6 @@ OPEN = 1.0
 """Gap of a line that has left its face [m]."""
 TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
-NEAR, THROUGH, BESIDE = 1, 2, 3
-"""A corner outside a face, one that has come through it, and one that is behind it and passed beside its outline."""
 
 
 class Meeting(NamedTuple):
@@ -80,9 +78,7 @@ def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
     elif line.support >= 0:
         across = minus(across, vector(system.supports.moved, line.support, axes))
     gap = dot(normal, across)
-    if line.corner > 0:
-        return cornered(system, line, across, Meeting(gap, normal, arm, face_arm, False))
-    if gap < 0:
+    if gap < 0 and line.margin < math.inf:
         if turned and dot(normal, in_world(body, components(line.normal, axes))) < 0:
             return Meeting(TURNED_OVER, normal, arm, face_arm, True)
         if dot(across, across) - gap * gap > line.margin:
@@ -110,21 +106,6 @@ def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meet
     normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
     normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
     return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
-
-
-@jitable
-def cornered(system: System, line: Row, across: Vector, meet: Meeting) -> Meeting:
-    """Where a corner is that may meet a face, `across` from the origin of the face [m]. Beside the face it is open."""
-    if meet.gap >= 0:
-        line.corner = NEAR
-        return meet
-    if line.corner != BESIDE:
-        within = across if line.face < 0 else in_body(system.bodies[line.face], across)
-        place = plus(components(line.origin, across), within)
-        line.corner = BESIDE if is_beside(system.edges, line.first, line.last, place) else THROUGH
-    if line.corner == BESIDE:
-        return Meeting(OPEN, meet.normal, meet.arm, meet.face_arm, True)
-    return meet
 
 
 @inlined
@@ -209,7 +190,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
         if meet.past or line.past == 1:
-            books.ends[min(line.corner, 1)] += lost_at_the_end(line, meet, h * rate)
+            books.ends[0] += lost_at_the_end(line, meet, h * rate)
         last, drag = spin_components(line.dragged, axes), no_spin(axes)
         if push == 0:
             put(line.grip, drag)

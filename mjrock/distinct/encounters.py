@@ -1,34 +1,65 @@
-"""Encounters: blocks that have left their joints meet others, corner on face.
+"""Encounters: blocks that have left their joints meet others wherever they are.
 
-From time to time the blocks that have moved by more than the width of a joint are looked at. Where a corner of one
-comes near a face of another that it has no closed joint with, a contact line appears there for each face that the
-corner is outside of, or for the nearest where it is inside. It has the stiffness, damping and friction of the
-softest line of the block that carries the corner. Two blocks that overlap when their line appears push each other apart
-only where they come nearer. A corner that has come through a face presses on it until it leaves its outline, see
-`contact.cornered`, and meets no other face of that block from within. Corners of fixed blocks meet no face, and edges
-that cross do not meet.
+A joint of the drawing serves while it is intact. Once all of it has opened by a share of its width, or a part of it has
+slid by so much, it is handed over for good, with its friction, to contacts that are found where the blocks are. Blocks
+that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
+gives each pair its places, with the law of `pair_law`. Until the next find each place moves with its body, and its
+normal with the other. What the springs of a find hold less than those before it is booked.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ..problem.masonry.joint_law import stored_along
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Flags, Integers
-from .contact import NEAR, THROUGH
-from .faces import edges_of, outlines_of
-from .looking import Look, near_corners, pair_number
+from ..quantities import GRAVITY, Array, Flags, Integers
+from .finder import Finder, Found
+from .handover import Places, Poses, places_of, take_over
+from .looking import wear
+from .pair_law import PairLaw, pair_number
 from .rows import Rows, joined, rows
-from .system import System
-from .turning import angles, rotations
+from .system import Books, System
+from .turning import quaternions, rotations
 
-AHEAD = 2.0
-"""Distance up to which a corner is near a face, over the way that a block makes until the next look [-]."""
-LEAST = 1e-3
-"""Smallest distance up to which a corner is near a face, over the size of the smallest block [-]."""
-MOST = 16
-"""Encounters for which there is room, over the number of blocks [-]."""
+LOOK = 5e-3
+"""Longest time between two looks [s]."""
+PASSED = 0.02
+"""Way that a pair may make between two looks, over the size of the smaller block [-]."""
+STAYED = 1e-5
+"""Way over its size that a block may make while a find of it stays valid [-]."""
+NEAR = 1e-3
+"""Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]."""
+LEFT = 0.05
+"""Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
+TOWARDS = 0.4
+"""Way of a block over its distance from the nearest one without a common joint, from which on it is looked at [-]."""
+
+
+@dataclass
+class Met:
+    """What a look knows of those before it.
+
+    Args:
+        watched: blocks that are looked at, shape (blocks,).
+        handed: whether the joints of each pair that has some are handed over, shape (p,).
+        pair: number of the pair of each line of an encounter, shape (lines,).
+        slack: the overlap of each pair at its first find, which presses nothing [m].
+        poses: where each block was when it was last taken to have moved.
+        moves: how often it has, shape (blocks,).
+        found: moves of both blocks when each line was found, shape (lines,).
+    """
+
+    watched: Flags
+    handed: Flags
+    pair: Integers
+    slack: dict[int, float]
+    poses: Poses
+    moves: Integers
+    found: Integers
 
 
 class Encounters:
@@ -36,157 +67,174 @@ class Encounters:
 
     Args:
         masonry: the masonry.
-        system: its bodies, and the lines of its joints.
+        system: its bodies where they stand, and the lines of its joints.
         joint: number of the joint of each line. The account of the encounters comes after those of the joints.
+        supports: names of the fixed blocks that move, in the order of the supports.
     """
 
-    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
+    def __init__(self, masonry: Masonry, system: System, joint: Integers, supports: tuple[str, ...] = ()) -> None:
         blocks = masonry.blocks
-        self.joints, self.group, self.capacity = system.lines, len(masonry.joints), MOST * len(blocks) + 64
-        self.body = free_numbers(blocks)
-        self.widths = narrowest(masonry)
-        self.sizes = np.array([blocks[i].size for i in masonry.free])
-        self.softest = softest(self.joints, len(masonry.free))
-        self.pairs = pairs_of(masonry, joint)
-        self.rest = np.where(self.body[:, None] >= 0, system.bodies["rest"][self.body], 0.0)
-        self.corners = np.concatenate([b.corners - at for b, at in zip(blocks, self.rest, strict=True)])
-        self.first = np.cumsum([0, *(len(block.corners) for block in blocks)])
-        outlines = [outlines_of(block) for block in blocks]
-        self.first_face = np.cumsum([0, *map(len, outlines)])
-        faces = [(face, at) for sides, at in zip(outlines, self.rest, strict=True) for face in sides]
-        self.normals = np.array([face.normal for face, _ in faces])
-        self.offsets = np.array([((face.corners - at) @ face.normal).mean() for face, at in faces])
-        edges = [edges_of(face, at) for face, at in faces]
-        self.ends = len(system.edges) + np.cumsum([0, *map(len, edges)])  # of the edges of each face
-        self.edges = joined(system.edges, *edges)
-        self.room = np.zeros((self.capacity, 5))
-        self.keys = np.empty((0, 4), dtype=np.int64)  # of the lines there are, see `_lines`
+        self.count, self.group = len(blocks), len(masonry.joints)
+        self.body, self.free = free_numbers(blocks), np.array(masonry.free)
+        self.support = np.array([supports.index(name) if name in supports else -1 for name in masonry.names])
+        self.drawn = np.array(masonry.centroids, dtype=float)
+        self.sizes = np.array([block.size for block in blocks])
+        self.finder = Finder(blocks, self.drawn)
+        self.law = PairLaw.of(masonry, system.lines, joint)
+        of = np.searchsorted(self.law.jointed, [pair_number(each.below, each.above, self.count) for each in masonry.joints])
+        self.of_line, self.left = of[joint], np.full(len(self.law.jointed), np.inf)
+        np.minimum.at(self.left, of, [LEFT * each.width for each in masonry.joints])
+        self.kind, self.start = system.lines.dtype, self._poses(system)
+        self.limits = self._limits()
+        none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
+        nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.left), dtype=bool)
+        self.met = Met(nobody, intact, none, {}, self.start, unmoved, none)
 
-    def made_room(self, system: System) -> System:
-        """The system with the edges of all faces, and room for the ways of encounters that stick rigidly."""
-        further = (len(system.axes) - 1) * self.capacity if len(system.ways) else 0
-        ways = rows(system.ways.dtype, len(system.ways) + further)
-        return system._replace(edges=self.edges, ways=ways)
+    def _limits(self) -> Array:
+        """How far each block may move before it is looked at [m], shape (blocks,)."""
+        found = self.finder.found(self.start, self.sizes, np.ones(self.count, dtype=bool))
+        found = found.taken(~np.isin(self._numbers(found), self.law.jointed))
+        apart = self.sizes.copy()
+        for block in found.pair.T:
+            np.minimum.at(apart, block, found.gap)
+        return np.asarray(np.maximum(TOWARDS * apart, NEAR * self.sizes))
 
-    def loose(self, system: System) -> Flags:
-        """Which bodies have a corner that may have moved by more than the narrowest of their joints is wide."""
-        bodies = system.bodies
-        moved = np.linalg.norm(bodies["place"], axis=1) + angles(bodies) * self.sizes
-        return np.asarray(moved > self.widths)
+    def _numbers(self, found: Found) -> Integers:
+        return pair_number(*found.pair.T, self.count)
 
-    def looked_for(self, system: System, loose: Flags, until: float) -> System:
-        """The system with the lines of the encounters that may happen within a time [s]."""
-        bodies, free = system.bodies, self.body >= 0
-        held = self._held(system, loose)
-        places = self.rest + np.where(free[:, None], bodies["place"][self.body], 0.0)
-        turn = np.where(free[:, None, None], rotations(bodies)[self.body], 0.0)
-        of_corner, of_face = (np.repeat(np.arange(len(free)), np.diff(n)) for n in (self.first, self.first_face))
-        corners = places[of_corner] + self.corners + np.einsum("nij,nj->ni", turn[of_corner], self.corners)
-        normals = self.normals + np.einsum("nij,nj->ni", turn[of_face], self.normals)
-        offsets = self.offsets + (normals * places[of_face]).sum(axis=1)
-        low, high = (ends.reduceat(corners, self.first[:-1]) for ends in (np.minimum, np.maximum))
-        axis = int(np.ptp(low, axis=0).argmax())
-        order = np.argsort(low[:, axis], kind="stable")
-        loose_blocks = np.append(loose, False)[self.body]
-        look = Look(
-            corners, self.first, normals, offsets, self.first_face, low, high, order, axis, loose_blocks, ~free, held,
-            LEAST * float(self.sizes.min()),
-        )  # fmt: skip
-        last = self._lasting(system.lines[len(self.joints) :], look)
-        count = near_corners(look, self._near(bodies, until), self.room)
-        met = self.room[:count, :4].astype(np.int64)
-        corner, other = met[:, 1], met[:, 2]
-        within = corners[corner] - places[other]  # corners of one block in the axes of the other
-        within = within + np.einsum("nji,nj->ni", turn[other], within)
-        new = self._unknown(met, self.room[:count, 4])[: self.capacity - len(last)]
-        lines = self._lines(met[new], within[new], self.room[new, 4])
-        return system._replace(lines=joined(system.lines[: len(self.joints)], last, lines))
+    def _poses(self, system: System) -> Poses:
+        """Where all blocks are."""
+        moved, turn = np.zeros_like(self.drawn), np.tile([1.0, 0.0, 0.0, 0.0], (self.count, 1))
+        d, moves = moved.shape[1], self.support >= 0
+        change = np.zeros((self.count, d, d))
+        moved[self.free] = system.bodies["place"]
+        turn[self.free], change[self.free] = quaternions(system.bodies), rotations(system.bodies)
+        moved[moves] = system.supports.moved[self.support[moves]]
+        return Poses(self.drawn, moved, turn, change)
 
-    def _near(self, bodies: Rows, until: float) -> float:
-        """Distance up to which a corner is near what it may meet within a time [m]."""
-        speeds = np.linalg.norm(bodies["velocity"], axis=1) + np.linalg.norm(bodies["spin"], axis=1) * self.sizes
-        return max(AHEAD * float(speeds.max()) * until, LEAST * float(self.sizes.min()))
+    def _velocities(self, system: System) -> tuple[Array, Array]:
+        """Velocity of each block, and the largest of a corner about its centroid [m/s], (blocks, d) and (blocks,)."""
+        velocity, about, moves = np.zeros_like(self.drawn), np.zeros(self.count), self.support >= 0
+        velocity[self.free] = system.bodies["velocity"]
+        velocity[moves] = system.supports.moving[self.support[moves]]
+        about[self.free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[self.free] + GRAVITY * LOOK
+        return velocity, about
 
-    def _held(self, system: System, loose: Flags) -> Integers:
-        """Pairs of blocks whose joint still touches, as numbers in order. A joint of loose blocks that has opened is
-        gone for good."""
-        lines = system.lines[: len(self.joints)]
-        free = np.append(loose, False)
-        either = free[lines["body"]] | free[lines["face"]]
-        touches, pairs = lines["depth"] > 0, self.pairs
-        closed = np.unique(pairs[touches | ~either])
-        gone = either & ~np.isin(pairs, closed)
-        for name in ("k", "c", "friction"):
-            lines[name][gone] = 0.0
-        return np.asarray(np.setdiff1d(closed, pairs[lines["k"] == 0]), dtype=np.int64)
+    def look(self, system: System, books: Books) -> tuple[System, Books, float]:
+        """The system with the lines of the encounters that may happen until the next look, its books with room for
+        them, and the time until then [s]."""
+        met, slip, gap = self.met, np.empty(len(self.left)), np.empty(len(self.left))
+        wear(system, self.of_line, slip, gap)
+        worn = (np.maximum(slip, gap) > self.left) & ~met.handed
+        poses, (velocity, about) = self._poses(system), self._velocities(system)
+        ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
+        watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
+        watched[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
+        moved = (poses.far(met.poses, self.sizes) > STAYED * self.sizes) | (watched & ~met.watched)
+        if not watched.any() or not moved.any():
+            return system, books, LOOK
+        met.watched, met.handed = watched, met.handed | worn
+        met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
+        found = self.finder.found(poses, ahead + NEAR * self.sizes, watched)
+        found = found.taken(~np.isin(self._numbers(found), self.law.jointed[~met.handed]))
+        until, soon = self._until(found, velocity, about)
+        system = self._renewed(system, books, poses, found.taken(soon), worn[self.of_line])
+        short = len(system.lines) - len(books.active)
+        return system, books._replace(active=np.append(books.active, np.zeros(max(short, 0), dtype=np.int64))), until
 
-    def _lasting(self, lines: Rows, look: Look) -> Rows:
-        """The lines of corners that have come through their face, or are behind it since the last step."""
-        _, corner, _, face = self.keys.T
-        gaps = (look.normals[face] * look.corners[corner]).sum(axis=1) - look.offsets[face]
-        lasts = (lines["corner"] == THROUGH) | ((lines["corner"] == NEAR) & (gaps < 0))
-        self.keys = self.keys[lasts]
-        lasting: Rows = lines[lasts]
-        return lasting
+    def _until(self, found: Found, velocity: Array, about: Array) -> tuple[float, Flags]:
+        """The time until the next look [s], and which places may touch by then."""
+        if not len(found.gap):
+            return LOOK, np.zeros(0, dtype=bool)
+        first, second = found.pair.T
+        size = np.minimum(self.sizes[first], self.sizes[second])
+        speed = np.linalg.norm(velocity[first] - velocity[second], axis=1) + about[first] + about[second]
+        until = min(LOOK, float((np.maximum(PASSED * size, 0.5 * found.gap) / speed).min()))
+        return until, found.gap < speed * until + NEAR * size
 
-    def _unknown(self, met: Integers, gaps: Array) -> Integers:
-        """Which corners near faces have no line yet: not one on this face, nor, within the block, one on another."""
-        blocks, faces = len(self.body), len(self.normals)
-        corner_and_block, known = (numbers[:, 1] * blocks + numbers[:, 2] for numbers in (met, self.keys))
-        on_face = np.isin(corner_and_block * faces + met[:, 3], known * faces + self.keys[:, 3])
-        return np.flatnonzero(~on_face & ((gaps > 0) | ~np.isin(corner_and_block, known)))
-
-    def _lines(self, met: Integers, within: Array, gaps: Array) -> Rows:
-        """New lines of encounters.
+    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, worn: Flags) -> System:
+        """The system with these places. Pairs that have not moved keep their lines.
 
         Args:
-            met: two blocks with the numbers of a corner of one and of a face of the other, shape (count, 4).
-            within: the corners, from the centroid of the other block in its axes [m], shape (count, d).
-            gaps: of the corners [m], shape (count,).
+            system, books: the system, and the account of what the springs of vanished lines have lost.
+            poses: of all blocks.
+            found: places that may touch.
+            worn: lines of joints that are handed over now, shape (lines of joints,).
         """
-        block, corner, other, face = met.T
-        at, normal = self.corners[corner], self.normals[face]
-        origin = within - np.maximum(gaps, 0.0)[:, None] * normal  # or the face is taken to lie where the corner is
-        self.keys = np.concatenate([self.keys, met])
+        met, count = self.met, len(self.of_line)
+        joints, others, number = system.lines[:count], system.lines[count:], self._numbers(found)
+        stays = (self._moves_of(met.pair) == met.found) & np.isin(met.pair, number)
+        new = ~np.isin(number, met.pair[stays])
+        found, number = found.taken(new), number[new]
+        gone = joined(joints[worn], others[~stays])
+        old = places_of(gone, np.append(self.law.jointed[self.of_line[worn]], met.pair[~stays]), poses, self.free)
+        lines = self._lines(found, number, poses)
+        here = places_of(lines, number, poses, self.free)
+        take_over(lines, here, gone, old, poses)
+        books.ends[1] += spring_energy(gone, old) - spring_energy(lines, here)
+        for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth"):
+            joints[name][worn] = 0.0
+        met.pair = np.append(met.pair[stays], number)
+        met.found = np.append(met.found[stays], self._moves_of(number))
+        lines = joined(joints, others[stays], lines)
+        ways = system.ways
+        if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
+            ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
+        return system._replace(lines=lines, ways=ways)
+
+    def _moves_of(self, pair: Integers) -> Integers:
+        """Moves of both blocks of pairs."""
+        return np.asarray(self.met.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
+
+    def _lines(self, found: Found, pair: Integers, poses: Poses) -> Rows:
+        """New lines at places that were found."""
+        face, normal, block = found.face, found.normal, found.pair.sum(axis=1) - found.face
+        half = 0.5 * found.gap[:, None] * normal
+        held, at_centroid = self.body[face] < 0, poses.drawn + poses.moved
+        at = poses.turned_back(block, found.place + half - at_centroid[block])
+        origin = found.place - half - self._slack(found, pair)[:, None] * normal
+        origin = np.where(held[:, None], origin - poses.moved[face], poses.turned_back(face, origin - at_centroid[face]))
+        rest = np.where(held[:, None], 0.0, self.drawn[face])
         return rows(
-            self.joints.dtype,
-            len(met),
+            self.kind,
+            len(pair),
             body=self.body[block],
-            face=self.body[other],
-            support=-1,
+            face=self.body[face],
+            support=self.support[face],
             group=self.group,
-            corner=NEAR,
             at=at,
             origin=origin,
-            between=self.rest[block] + at - self.rest[other] - origin,
-            normal=normal,
-            first=self.ends[face],
-            last=self.ends[face + 1],
-            **{name: self.softest[name][self.body[block]] for name in ("k", "c", "k_s", "c_s", "friction")},
+            between=self.drawn[block] + at - rest - origin,
+            normal=np.where(held[:, None], normal, poses.turned_back(face, normal)),
+            margin=np.inf,
+            **self.law.of_places(pair, found.share, self.count),
         )
 
-
-def narrowest(masonry: Masonry) -> Array:
-    """Width of the narrowest joint of each free block [m], shape (bodies,)."""
-    widths = np.full(len(masonry.blocks), np.inf)
-    for joint in masonry.joints:
-        for block in (joint.below, joint.above):
-            widths[block] = min(widths[block], joint.width)
-    return widths[list(masonry.free)]
-
-
-def softest(lines: Rows, bodies: int) -> Rows:
-    """The softest line of each body, or of all where it has none."""
-    chosen = np.full(bodies, int(np.argmin(lines["k"])))
-    for name in ("face", "body"):
-        stiffest_first = np.argsort(-lines["k"], kind="stable")
-        stiffest_first = stiffest_first[lines[name][stiffest_first] >= 0]
-        chosen[lines[name][stiffest_first]] = stiffest_first  # the last of a body stays
-    chosen_lines: Rows = lines[chosen]
-    return chosen_lines
+    def _slack(self, found: Found, pair: Integers) -> Array:
+        """What presses nothing of the overlap of each place [m], shape (n,): what a pair without a joint had first, as
+        long as it has it."""
+        slack, known = self.met.slack, set(self.met.pair.tolist())
+        pairs, of = np.unique(pair, return_inverse=True)
+        overlap = np.zeros(len(pairs))
+        np.maximum.at(overlap, of, -found.gap)
+        kept = np.zeros(len(pairs))
+        jointed = np.isin(pairs, self.law.jointed)
+        for i, (number, deep) in enumerate(zip(pairs.tolist(), overlap, strict=True)):
+            if not jointed[i]:
+                kept[i] = min(slack.get(number, 0.0 if number in known else np.inf), deep)
+        self.met.slack = {n: s for n, s in slack.items() if n in known} | dict(zip(pairs.tolist(), kept, strict=True))
+        return np.asarray(kept[of])
 
 
-def pairs_of(masonry: Masonry, joint: Integers) -> Integers:
-    """One number for the pair of blocks of each line, from the number of its joint."""
-    below, above = np.array([(joint.below, joint.above) for joint in masonry.joints])[joint].T
-    return pair_number(below, above, len(masonry.blocks))
+def spring_energy(lines: Rows, places: Places) -> float:
+    """Energy in the springs of lines [J]."""
+    energy = 0.5 * float((lines["k"] * np.minimum(places.gap, 0.0) ** 2).sum())
+    sprung = lines[np.isfinite(lines["k_s"])]
+    return energy + float(stored_along(sprung, (sprung["grip"] ** 2).sum(axis=1)).sum())
+
+
+def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:
+    """The poses of the blocks that have moved, and the old ones of the others."""
+    parts = zip(poses, old, strict=True)
+    return Poses(*(np.where(moved.reshape(-1, *[1] * (new.ndim - 1)), new, before) for new, before in parts))
+

@@ -38,7 +38,7 @@ def solve_explicit(
     (Cundall and Strack, Geotechnique 29, 1979, 47-65). It shares no kinematics and no time integration with MuJoCo.
 
     Masonry in space is stepped likewise, with its angular momentum and a quaternion for each block, see docs/space.md.
-    Edges of blocks that cross do not meet there, which the message of the response says.
+    Blocks that leave their joints meet others wherever they are, in the plane and in space.
 
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
@@ -74,9 +74,7 @@ def solve_explicit(
     steps = Stepping.of(setup, timestep, spacing)
     count, bodies = steps.samples, len(scene.bodies.names)
     require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
-    books = Books.empty(
-        setup.system, len(scene.contacts.joints) + 1, 0 if setup.encounters is None else setup.encounters.capacity
-    )
+    books = Books.empty(setup.system, len(scene.contacts.joints) + 1)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
     samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger)

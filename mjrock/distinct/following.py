@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
+from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +23,6 @@ FIRST = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 HEARD = 0.3
 """Time that later calls take, after which the progress bar moves and Ctrl-C is heard [s]."""
-LOOK = 5e-3
-"""Longest time between two looks for blocks that meet others [s]."""
 WORTH_SAYING = 10.0
 """Time that steps may take before that is spoken of [s]."""
 DAMPED = 10.0
@@ -109,12 +108,10 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
             if clock.step == stepping.last:
                 memory = remember(setup.of, system, clock, setup.blocks)
                 if encounters is not None:
-                    memory = memory._replace(keys=encounters.keys, look=look - clock.step)
+                    memory = memory._replace(met=deepcopy(encounters.met), look=look - clock.step)
             if encounters is not None and clock.step == look:
-                look = clock.step + max(1, int(LOOK / clock.h))
-                loose = encounters.loose(system)
-                if loose.any():
-                    system = encounters.looked_for(system, loose, (look - clock.step) * clock.h)
+                system, books, until = encounters.look(system, books)
+                look = clock.step + max(1, int(until / clock.h))
             begun = time.perf_counter()
             ahead = (look if encounters is not None else stop, clock.step + at_once)
             clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))

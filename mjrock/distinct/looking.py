@@ -1,126 +1,66 @@
-"""Which corners of blocks are near faces of other blocks, at a pose."""
+"""Looking at blocks and joints: which have moved, which joints hold no longer, and which place was nearest."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numpy as np
+import math
 
 from ..compiled import compiled, jitable
-from ..quantities import Array, Flags, Integers
-
-
-class Look(NamedTuple):
-    """What is looked at for encounters, at the pose.
-
-    Args:
-        corners: of all blocks [m], shape (corners, d).
-        first: where those of each block begin, and where those of the last end, shape (blocks + 1,).
-        normals, offsets: of the faces of all blocks, n and n.x of a point x on each [m], (faces, d) and (faces,).
-        first_face: where those of each block begin, and where those of the last end, shape (blocks + 1,).
-        low, high: least and largest coordinates of each block [m], shape (blocks, d).
-        order: the blocks by their low ends along the axis on which they are spread most, shape (blocks,).
-        axis: its number.
-        loose, fixed: which blocks have left their places, and which are fixed, shape (blocks,).
-        held: pairs of blocks that have a joint, increasing, see `pair_number`.
-        flush: difference of depths up to which faces count as equally near [m].
-    """
-
-    corners: Array
-    first: Integers
-    normals: Array
-    offsets: Array
-    first_face: Integers
-    low: Array
-    high: Array
-    order: Integers
-    axis: int
-    loose: Flags
-    fixed: Flags
-    held: Integers
-    flush: float
-
-
-def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
-    """One number for two blocks."""
-    return np.asarray(np.minimum(a, b) * blocks + np.maximum(a, b), dtype=np.int64)
-
-
-@jitable
-def among(values: Integers, number: int) -> bool:
-    """Whether a number is among increasing values."""
-    low, high = 0, len(values)
-    while low < high:
-        middle = (low + high) // 2
-        if values[middle] < number:
-            low = middle + 1
-        else:
-            high = middle
-    return low < len(values) and values[low] == number
-
-
-@jitable
-def gap_to(look: Look, face: int, corner: int) -> float:
-    """Distance of a corner from the plane of a face [m]."""
-    gap: float = -look.offsets[face]
-    for i in range(look.corners.shape[1]):
-        gap += look.normals[face, i] * look.corners[corner, i]
-    return gap
-
-
-@jitable
-def are_apart(look: Look, near: float, a: int, b: int) -> bool:
-    """Whether two blocks are farther apart than a distance along an axis [m]."""
-    for i in range(look.low.shape[1]):
-        if look.low[a, i] > look.high[b, i] + near or look.low[b, i] > look.high[a, i] + near:
-            return True
-    return False
-
-
-@jitable
-def meet_faces(look: Look, near: float, met: Array, count: int, p: int, q: int) -> int:
-    """Write the faces of block q that corners of block p may come through: all that they are outside of.
-
-    For a corner that is inside already, that is the face that it is nearest to, or the faces if several are so. Returns
-    how many rows are written.
-    """
-    for corner in range(look.first[p], look.first[p + 1]):
-        widest = -np.inf
-        for face in range(look.first_face[q], look.first_face[q + 1]):
-            widest = max(widest, gap_to(look, face, corner))
-            if widest > near:
-                break
-        if widest > near:
-            continue
-        for face in range(look.first_face[q], look.first_face[q + 1]):
-            gap = gap_to(look, face, corner)
-            if gap > min(0.0, widest - look.flush) and count < len(met):
-                met[count, 0], met[count, 1], met[count, 2], met[count, 3] = p, corner, q, face
-                met[count, 4] = gap
-                count += 1
-    return count
+from ..geometry.vectors import components, dot, minus, plus, vector
+from ..quantities import Array, Integers
+from .system import System
+from .turning import rotation_change, take_turn
 
 
 @compiled
-def near_corners(look: Look, near: float, met: Array) -> int:
-    """Write corners nearer than `near` [m] to other blocks: block, corner, other block, face, gap [m].
+def wear(system: System, pairs: Integers, slip: Array, gap: Array) -> None:
+    """Write how far each pair of blocks with a joint has slid at most, and opened at least [m], shape (pairs,).
 
-    Returns:
-        How many there are, at most as many as there is room for.
+    Args:
+        system: the system.
+        pairs: number of the pair of each line of the joints.
+        slip, gap: room for the answer.
     """
-    order, blocks, count = look.order, len(look.order), 0
-    for turn in range(blocks):
-        a = order[turn]
-        for other in range(turn + 1, blocks):
-            b = order[other]
-            if look.low[b, look.axis] > look.high[a, look.axis] + near:
-                break
-            if not (look.loose[a] or look.loose[b]) or are_apart(look, near, a, b):
-                continue
-            if among(look.held, min(a, b) * blocks + max(a, b)):
-                continue
-            if not look.fixed[a]:
-                count = meet_faces(look, near, met, count, a, b)
-            if not look.fixed[b]:
-                count = meet_faces(look, near, met, count, b, a)
-    return count
+    wear_of_lines(system, pairs, slip, gap, system.axes)
+
+
+@jitable
+def wear_of_lines(system: System, pairs: Integers, slip: Array, gap: Array, axes: tuple[int, ...]) -> None:
+    """`wear`, in the plane or in space. It brings the rotations of the bodies up to date."""
+    slip[:], gap[:] = 0.0, math.inf
+    for b in range(len(system.bodies)):
+        take_turn(system.bodies[b], axes)
+    for p in range(len(pairs)):
+        line = system.lines[p]
+        body, at, normal = system.bodies[line.body], components(line.at, axes), components(line.normal, axes)
+        across = plus(components(line.between, axes), plus(components(body.place, axes), rotation_change(body, at)))
+        if line.face >= 0:
+            face = system.bodies[line.face]
+            change = rotation_change(face, components(line.origin, axes))
+            across = minus(across, plus(components(face.place, axes), change))
+            normal = plus(normal, rotation_change(face, normal))
+        elif line.support >= 0:
+            across = minus(across, vector(system.supports.moved, line.support, axes))
+        apart = dot(normal, across)
+        slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
+        gap[pairs[p]] = min(gap[pairs[p]], apart)
+
+
+@compiled
+def nearest(pair: Integers, place: Array, first: Integers, old_place: Array, chosen: Integers) -> None:
+    """Write which of the old places of its pair is nearest to each place, -1 where there is none.
+
+    Args:
+        pair: position of the pair of each place in `first`, shape (places,).
+        place: where they are [m], shape (places, d).
+        first: where the old places of each pair begin, and where those of the last end.
+        old_place: where those are, one pair after the other [m].
+        chosen: room for the answer, shape (places,).
+    """
+    for i in range(len(pair)):
+        chosen[i], least = -1, math.inf
+        for j in range(first[pair[i]], first[pair[i] + 1]):
+            square = 0.0
+            for axis in range(place.shape[1]):
+                square += (place[i, axis] - old_place[j, axis]) ** 2
+            if square < least:
+                chosen[i], least = j, square

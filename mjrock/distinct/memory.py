@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.vectors import Vector
-from ..quantities import Array, Integers
+from ..quantities import Array
 from ..result.response import State
 from .assembly import copied
+from .encounters import Met
 from .links import support_place
 from .loop import Clock, accelerated
 from .system import Supports, System
@@ -28,7 +29,7 @@ class Memory(NamedTuple):
         before: length of the step that led to the pose [s].
         pushed: mean acceleration of the ground over the half of that step before the pose [m/s2].
         moved: displacement of each fixed block that moves in that step, by name, shape (d,) each [m].
-        keys: of the lines of encounters, see `Encounters`.
+        met: what was known of the encounters.
         look: steps until the next look for encounters.
     """
 
@@ -37,7 +38,7 @@ class Memory(NamedTuple):
     before: float
     pushed: Vector
     moved: dict[str, Array]
-    keys: Integers | None = None
+    met: Met | None = None
     look: int = 0
 
 

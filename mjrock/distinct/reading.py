@@ -136,8 +136,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
     fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
     quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
-    unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
-    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
+    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet="")
     opening = motion.opening.copy()
     of = scene.contacts.joint
     np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])

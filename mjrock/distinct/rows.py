@@ -90,14 +90,13 @@ def _line(d: int, s: int) -> Fields:
         *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 for a fixed block
         *_integer("support"),  # the support that moves a fixed block, -1 for none
         *_integer("group"),  # number of the account
-        *_integer("corner"),  # 0 for a line of a joint; of a corner near a face see `contact.cornered`
         *_vector(d, "at"),  # the point from the centroid of its body [m]
         *_vector(d, "origin"),  # a point of the face from the centroid of its body [m]
         *_vector(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
         *_vector(d, "normal"),  # unit vector out of the face
         *_number("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
         *_number("friction"),  # coefficient [-]
-        *_number("margin"),  # square of the least way along the face from the origin to its end [m2]
+        *_number("margin"),  # square of the least way along the face from the origin to its end, infinite where it has none [m2]
         *_integer("first", "last"),  # the edges of the face
         *_integer("own_first", "own_last"),  # the edges of the face of its own body
         *_vector(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -75,8 +76,8 @@ def carried_on(setup: Setup, start: object) -> Setup:
     memory = memory_of(start, setup.of)
     if memory is None:
         return setup
-    if setup.encounters is not None and memory.keys is not None:
-        setup.encounters.keys = memory.keys
+    if setup.encounters is not None and memory.met is not None:
+        setup.encounters.met = deepcopy(memory.met)
     return replace(setup, memory=memory, system=recalled(memory, setup.system, setup.blocks))
 
 
@@ -97,9 +98,9 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     started(system, course.pose, course.velocity)
-    limit, encounters = longest_step(system), Encounters(masonry, system, scene.contacts.joint)
     of, blocks = (masonry, case.effects), tuple(support.block for support in case.supports)
-    return Setup(scene, course, encounters.made_room(system), limit, SHARE, encounters=encounters, of=of, blocks=blocks)
+    encounters = Encounters(masonry, at_rest, scene.contacts.joint, blocks)
+    return Setup(scene, course, system, longest_step(system), SHARE, encounters=encounters, of=of, blocks=blocks)
 
 
 def continued(course: Course, state: State | None) -> Course:

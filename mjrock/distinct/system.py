@@ -71,11 +71,11 @@ class Books(NamedTuple):
     active: Integers
 
     @classmethod
-    def empty(cls, system: System, groups: int, further: int = 0) -> Books:
-        """Empty books of a system, with room for some further lines."""
+    def empty(cls, system: System, groups: int) -> Books:
+        """Empty books of a system."""
         sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
         dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
-        active = np.zeros(len(system.lines) + further, dtype=np.int64)
+        active = np.zeros(len(system.lines), dtype=np.int64)
         return cls(dashpots, ties, broken, dampers, ends, rows(kinds(len(system.axes)).total, 1), active)
 
     @property

@@ -241,11 +241,12 @@ def rotations(bodies: Rows) -> Array:
     return np.moveaxis(np.array(matrix), 2, 0)
 
 
-def angles(bodies: Rows) -> Array:
-    """Angle by which each body is turned from rest [rad], shape (n,)."""
+def quaternions(bodies: Rows) -> Array:
+    """Rotation of each body from rest, in the plane about y, shape (n, 4)."""
     if is_flat(bodies):
-        return np.asarray(np.abs(bodies["angle"]))
-    return np.asarray(2 * np.arccos(np.minimum(np.abs(bodies["quaternion"][:, 0]), 1.0)))
+        half, zero = 0.5 * bodies["angle"], np.zeros(len(bodies))
+        return np.column_stack([np.cos(half), zero, np.sin(half), zero])
+    return np.asarray(bodies["quaternion"])
 
 
 def root_of_masses(bodies: Rows) -> csr_array:

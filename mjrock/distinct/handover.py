@@ -1,0 +1,125 @@
+"""Handover: lines of a pair of blocks that take the place of others, with their friction."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..quantities import Array, Flags, Integers
+from .looking import nearest
+from .rows import Rows
+
+
+class Poses(NamedTuple):
+    """Where all blocks are.
+
+    Args:
+        drawn: the centroids as drawn [m], shape (blocks, d).
+        moved: their displacements from there [m], shape (blocks, d).
+        turn: quaternions, shape (blocks, 4).
+        change: rotations less 1, shape (blocks, d, d).
+    """
+
+    drawn: Array
+    moved: Array
+    turn: Array
+    change: Array
+
+    def far(self, other: Poses, sizes: Array) -> Array:
+        """How far a corner of each block may be from where it is in other poses [m], shape (blocks,)."""
+        way = np.linalg.norm(self.moved - other.moved, axis=1)
+        return np.asarray(way + np.linalg.norm(self.change - other.change, axis=(1, 2)) * sizes)
+
+    def turned(self, block: Integers, a: Array) -> Array:
+        """Vectors of blocks in the axes of the world, shape (n, d)."""
+        return np.asarray(a + np.einsum("nij,nj->ni", self.change[block], a))
+
+    def turned_back(self, block: Integers, a: Array) -> Array:
+        """Vectors of the world in the axes of blocks, shape (n, d)."""
+        return np.asarray(a + np.einsum("nji,nj->ni", self.change[block], a))
+
+
+class Places(NamedTuple):
+    """Lines where they are.
+
+    Args:
+        pair: number of the pair of blocks of each line, shape (n,).
+        body, face: blocks of their points and of their faces, shape (n,).
+        held: whether the face is that of a fixed block, shape (n,). Its vectors are those of the world.
+        at: the points [m], shape (n, d).
+        normal: out of the faces, shape (n, d).
+        gap: [m], shape (n,).
+    """
+
+    pair: Integers
+    body: Integers
+    face: Integers
+    held: Flags
+    at: Array
+    normal: Array
+    gap: Array
+
+    @property
+    def sense(self) -> Array:
+        """1 where the point is on the second block of the pair, -1 where it is on the first, shape (n, 1)."""
+        return np.where(self.body > self.face, 1.0, -1.0)[:, None]
+
+
+def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Places:
+    """Where lines are.
+
+    Args:
+        lines: the lines.
+        pair: number of the pair of blocks of each, shape (n,).
+        poses: of all blocks.
+        free: the block of each body, shape (bodies,).
+    """
+    body, held = free[lines["body"]], lines["face"] < 0
+    face = np.sum(np.divmod(pair, len(poses.moved)), axis=0) - body
+    arm, origin = (poses.turned(block, lines[name]) for block, name in ((body, "at"), (face, "origin")))
+    way = arm - lines["at"] + poses.moved[body]
+    of_face = np.where(held[:, None], 0.0, origin - lines["origin"]) + poses.moved[face]
+    normal = np.where(held[:, None], lines["normal"], poses.turned(face, lines["normal"]))
+    gap = np.sum(normal * (lines["between"] + way - of_face), axis=1)
+    return Places(pair, body, face, held, poses.drawn[body] + poses.moved[body] + arm, normal, gap)
+
+
+def take_over(lines: Rows, new: Places, gone: Rows, old: Places, poses: Poses) -> None:
+    """Give lines the friction of the nearest one of their pair that is gone, and what it did in the last step."""
+    order = np.argsort(old.pair, kind="stable")
+    pairs, first = np.unique(old.pair[order], return_index=True)
+    target = np.flatnonzero(np.isin(new.pair, pairs))
+    chosen = np.empty(len(target), dtype=np.int64)
+    own, first = np.searchsorted(pairs, new.pair[target]), np.append(first, len(order))
+    nearest(own, new.at[target], first, old.at[order], chosen)
+    source = order[chosen]
+    for name in ("push", "pressed", "depth"):
+        lines[name][target] = gone[name][source]
+    before, after = _some(old, source), _some(new, target)
+    for name in ("grip", "dragged"):
+        along = before.sense * _in_world(gone[name][source], before, poses, turns=name == "grip")
+        lines[name][target] = _of_line(after.sense * along, after, poses, turns=name == "grip")
+
+
+def _some(places: Places, which: Integers) -> Places:
+    return Places(*(part[which] for part in places))
+
+
+def _in_world(along: Array, places: Places, poses: Poses, *, turns: bool) -> Array:
+    """Vectors of the world from what lines keep along their faces, in the axes of the face if it `turns` with it."""
+    if along.shape[1] == 1:
+        return along * _tangents(places)
+    return np.where(places.held[:, None] | (not turns), along, poses.turned(places.face, along))
+
+
+def _of_line(along: Array, places: Places, poses: Poses, *, turns: bool) -> Array:
+    """What lines keep of vectors of the world, see `_in_world`."""
+    if along.shape[1] == 2:
+        return np.sum(along * _tangents(places), axis=1, keepdims=True)
+    return np.where(places.held[:, None] | (not turns), along, poses.turned_back(places.face, along))
+
+
+def _tangents(places: Places) -> Array:
+    """Directions along the faces of the plane, see `geometry.vectors.tangent`."""
+    return np.column_stack([places.normal[:, 1], -places.normal[:, 0]])

@@ -1,0 +1,79 @@
+"""The law of the contact of two blocks beyond their joints.
+
+Two blocks that had a joint keep its stiffness, dashpot and friction, shared among the places where they touch. Two that
+had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more, since a
+block of a wall has joints on two sides.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..problem.masonry.masonry import Masonry
+from ..quantities import Array, Integers
+from .rows import Rows
+
+SHARED = ("k", "c", "k_s", "c_s")
+"""What the places of a pair share."""
+
+
+def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
+    """One number for two blocks."""
+    return np.asarray(np.minimum(a, b) * blocks + np.maximum(a, b), dtype=np.int64)
+
+
+class PairLaw(NamedTuple):
+    """What each pair of blocks has in all.
+
+    Args:
+        jointed: numbers of the pairs that have a joint, increasing, shape (p,).
+        of_pair: columns of `SHARED` of these pairs, shape (p, 4), and their friction, shape (p,).
+        of_block: likewise of each block as a pair without a joint takes it.
+    """
+
+    jointed: Integers
+    of_pair: tuple[Array, Array]
+    of_block: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, masonry: Masonry, lines: Rows, joint: Integers) -> PairLaw:
+        """The law of masonry, from the lines of its joints and the number of the joint of each."""
+        blocks, joints = len(masonry.blocks), len(masonry.joints)
+        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
+        sums, friction = np.column_stack([_sums(joint, lines[name], joints) for name in SHARED]), np.zeros(joints)
+        friction[joint] = lines["friction"]
+        jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
+        in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
+        least = np.full(len(jointed), np.inf)
+        np.minimum.at(least, of, friction)
+        return cls(jointed, (in_pairs, least), _of_blocks(np.append(below, above), sums, friction, blocks))
+
+    def of_places(self, pair: Integers, share: Array, blocks: int) -> dict[str, Array]:
+        """Columns of lines at places of pairs, from the share that each place has of its pair, shape (n,)."""
+        first, second = np.divmod(pair, blocks)
+        softer = np.where(self.of_block[0][first, 0] <= self.of_block[0][second, 0], first, second)
+        shared, friction = self.of_block[0][softer], np.minimum(self.of_block[1][first], self.of_block[1][second])
+        had = np.isin(pair, self.jointed)
+        there = np.searchsorted(self.jointed, pair[had])
+        shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
+        return {**dict(zip(SHARED, share * shared.T, strict=True)), "friction": friction}
+
+
+def _sums(of: Integers, values: Array, count: int) -> Array:
+    return np.bincount(of, weights=values, minlength=count)
+
+
+def _of_blocks(block: Integers, joints: Array, friction: Array, blocks: int) -> tuple[Array, Array]:
+    """What each block has, from its joints: below of all and then above of all. One without a joint is never softer."""
+    joints, friction = np.concatenate([joints, joints]), np.concatenate([friction, friction])
+    sums = np.column_stack([_sums(block, column, blocks) for column in joints.T])
+    stiffest, least = np.zeros(blocks), np.full(blocks, np.inf)
+    np.maximum.at(stiffest, block, joints[:, 0])
+    np.minimum.at(least, block, friction)
+    alone = sums[:, 0] == 0
+    share = np.maximum(stiffest / np.where(alone, 1.0, sums[:, 0]), 0.5)
+    shared = share[:, None] * sums
+    shared[alone] = np.inf
+    return shared, least
