@@ -1,8 +1,9 @@
 """Clipping: the places where a face of one block lies over a face of another.
 
-The face along the normal of the meeting is cut to the outline of the other one. Each corner of what is left is a place,
-and stands for half of the two edges that meet there, over the whole outline. So corners that fall together stand for
-what one corner stood for.
+The part of one face that lies over the other is bounded by corners of either and by places where edges cross. Each of
+them is a place: a corner meets the other face, and edges that cross meet along the normal of both. It stands for half
+of the two sides of the part that meet there, over its whole outline. So places that fall together stand for what one
+stood for.
 """
 
 from __future__ import annotations
@@ -21,7 +22,11 @@ from ..quantities import Array, Flags, Integers
 ALONG = 0.995
 """Cosine of the angle between a normal and that of a face below which the meeting is one of edges [-]."""
 OUTSIDE = 1e-9
-"""Distance of a corner beyond an edge within which it counts as on it, over the size of its block [-]."""
+"""Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
+SAME = 1e-6
+"""Distance of two places that are one, over the length of an edge [-]."""
+PARALLEL = 1e-3
+"""Sine of the angle of two edges below which they do not cross [-]."""
 
 
 class Shapes(NamedTuple):
@@ -33,7 +38,6 @@ class Shapes(NamedTuple):
         face: where the faces of each block begin, and where those of the last end, shape (blocks + 1,).
         outline: numbers of the corners around each face, one face after the other.
         first: where those of each face begin, and where those of the last end, shape (faces + 1,).
-        fixed: which blocks are fixed, shape (blocks,). A face of theirs is taken before one of the other block.
     """
 
     corners: Array
@@ -41,7 +45,6 @@ class Shapes(NamedTuple):
     face: Integers
     outline: Integers
     first: Integers
-    fixed: Flags
 
     @classmethod
     def of(cls, blocks: list[Polyhedron], centroids: Array) -> Shapes:
@@ -54,7 +57,6 @@ class Shapes(NamedTuple):
             np.cumsum([0, *(len(block.faces) for block in blocks)]),
             np.concatenate(outlines),
             np.cumsum([0, *map(len, outlines)]),
-            np.array([block.fixed for block in blocks]),
         )
 
 
@@ -137,6 +139,87 @@ def edge_length(polygon: Array, i: int, j: int, axes: tuple[int, ...]) -> float:
     return math.sqrt(dot(edge, edge))
 
 
+@jitable
+def distance_of_edge(room: Array, a: Vector, b: Vector, i: int) -> float:
+    """Distance of a place from an edge [m]."""
+    along, off = minus(b, a), minus(vector(room, i, a), a)
+    across = spun(along, off)
+    return math.sqrt(dot(across, across) / dot(along, along))
+
+
+@jitable
+def write_place(table: Array, count: int, pair: int, owner: int, at: Vector, normal: Vector, gap: float) -> None:
+    """Write a place, halfway into its gap from the point on the block that is not the owner."""
+    table[count, 0], table[count, 1], table[count, 8] = pair, owner, gap
+    put(table[count, 2:5], minus(at, scaled(0.5 * gap, normal)))
+    put(table[count, 5:8], normal)
+
+
+@jitable
+def meet(
+    shapes: Shapes,
+    place: Array,
+    matrix: Array,
+    faces: tuple[int, int],
+    blocks: tuple[int, int],
+    room: Array,
+    i: int,
+    table: Array,
+    count: int,
+    pair: int,
+) -> None:
+    """Write what corner i of the part of a face that lies over another is: a corner of either, or edges that cross.
+
+    Args:
+        shapes, place, matrix: the blocks and where they are.
+        faces, blocks: the face below and that over it, and their blocks.
+        room: corners of the part.
+        i: number of the corner.
+        table, count: where to write.
+        pair: number of the pair.
+    """
+    (face, over), (block, other), axes = faces, blocks, SPACE.axes
+    at = vector(room, i, axes)
+    normal, base = turned(matrix, block, shapes.normals[face]), corner_of(shapes, place, matrix, block, shapes.first[face])
+    nearest, first, last = math.inf, shapes.first[over], shapes.first[over + 1]
+    edge, from_edge = first, math.inf
+    for j in range(first, last):
+        corner = corner_of(shapes, place, matrix, other, j)
+        off, after = minus(corner, at), corner_of(shapes, place, matrix, other, first if j + 1 == last else j + 1)
+        nearest = min(nearest, math.sqrt(dot(off, off)))
+        distance = distance_of_edge(room, corner, after, i)
+        if distance < from_edge:
+            edge, from_edge = j, distance
+    after = corner_of(shapes, place, matrix, other, first if edge + 1 == last else edge + 1)
+    along = minus(after, corner_of(shapes, place, matrix, other, edge))
+    close = SAME * math.sqrt(dot(along, along))
+    if nearest < close:
+        write_place(table, count, pair, block, at, normal, dot(normal, minus(at, base)))
+        return
+    own_normal = turned(matrix, other, shapes.normals[over])
+    first, last = shapes.first[face], shapes.first[face + 1]
+    crossed, from_crossed = base, math.inf
+    way = along
+    for j in range(first, last):
+        corner = corner_of(shapes, place, matrix, block, j)
+        own = minus(corner_of(shapes, place, matrix, block, first if j + 1 == last else j + 1), corner)
+        off = minus(at, corner)
+        off = minus(off, scaled(dot(off, normal), normal))
+        if math.sqrt(dot(off, off)) < close:
+            gap = dot(own_normal, minus(corner, corner_of(shapes, place, matrix, other, shapes.first[over])))
+            write_place(table, count, pair, other, corner, own_normal, gap)
+            return
+        across = spun(own, off)
+        distance = math.sqrt(dot(across, across) / dot(own, own))
+        if distance < from_crossed:
+            crossed, from_crossed, way = corner, distance, own
+    across = spun(along, way)
+    size = math.sqrt(dot(across, across))
+    if size > PARALLEL * math.sqrt(dot(along, along) * dot(way, way)):
+        normal = scaled(math.copysign(1 / size, dot(across, normal)), across)
+    write_place(table, count, pair, block, at, normal, dot(normal, minus(at, crossed)))
+
+
 @compiled
 def clip(
     shapes: Shapes,
@@ -145,7 +228,7 @@ def clip(
     pairs: Integers,
     normals: Array,
     table: Array,
-    owners: Integers,
+    are_faces: Flags,
     room: Array,
 ) -> int:
     """Write the places of pairs of blocks whose meeting is one of faces.
@@ -154,8 +237,8 @@ def clip(
         shapes: the blocks.
         place, matrix: where they are [m], shapes (blocks, 3) and (blocks, 3, 3).
         pairs, normals: two blocks each, and the normal from the first to the second, shapes (n, 2) and (n, 3).
-        table: room for pair, place, normal out of the face, gap [m] and share of each place, shape (most, 9).
-        owners: the block of the face of each pair; -1 for a pair of edges, shape (n,).
+        table: room for pair, block of the face, place, normal out of it, gap [m] and share of each place, shape (most, 10).
+        are_faces: room to say whether the meeting of each pair is one of faces, shape (n,).
         room: for the corners of two faces, twice.
 
     Returns:
@@ -166,31 +249,25 @@ def clip(
         first, second, way = pairs[pair, 0], pairs[pair, 1], vector(normals, pair, axes)
         face, cosine = face_along(shapes, matrix, first, way)
         other_face, other_cosine = face_along(shapes, matrix, second, scaled(-1.0, way))
-        owners[pair] = -1
+        are_faces[pair] = False
         if max(cosine, other_cosine) < ALONG:
             continue
         swapped = other_cosine > cosine
-        if shapes.fixed[first] and cosine >= ALONG:
-            swapped = False
-        elif shapes.fixed[second] and other_cosine >= ALONG:
-            swapped = True
         block, other, own = (second, first, other_face) if swapped else (first, second, face)
         normal = turned(matrix, block, shapes.normals[own])
         over, _ = face_along(shapes, matrix, other, scaled(-1.0, normal))
         corners = lying_over(shapes, place, matrix, own, block, over, other, room)
         if corners < 3:
             continue
-        owners[pair] = block
-        base, around = corner_of(shapes, place, matrix, block, shapes.first[own]), 0.0
+        are_faces[pair] = True
+        around = 0.0
         for i in range(corners):
             around += edge_length(room, i, (i + 1) % corners, axes)
         for i in range(corners):
             if count < len(table):
-                gap = dot(normal, minus(vector(room, i, axes), base))
                 edges = edge_length(room, i, (i + 1) % corners, axes)
                 edges += edge_length(room, i, i - 1 if i else corners - 1, axes)
-                table[count, 0], table[count, 7], table[count, 8] = pair, gap, 0.5 * edges / around
-                put(table[count, 1:4], minus(vector(room, i, axes), scaled(0.5 * gap, normal)))
-                put(table[count, 4:7], normal)
+                table[count, 9] = 0.5 * edges / around
+                meet(shapes, place, matrix, (own, over), (block, other), room, i, table, count, pair)
             count += 1
     return count

@@ -33,7 +33,7 @@ from ..geometry.vectors import (
 from ..problem.masonry.joint_law import normal_force, stored
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, carried, list_rigid, sprung_friction
-from .rows import Row, Rows
+from .rows import POINT, Row, Rows
 from .system import Books, Supports, System
 from .turning import in_body, in_world, may_face_away, rotation_change
 
@@ -75,8 +75,11 @@ def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
         across = minus(across, plus(components(face.place, axes), change))
         face_arm = plus(plus(origin, change), across)
         normal = plus(normal, rotation_change(face, normal))
-    elif line.support >= 0:
-        across = minus(across, vector(system.supports.moved, line.support, axes))
+    else:
+        if line.support >= 0:
+            across = minus(across, vector(system.supports.moved, line.support, axes))
+        if line.face == POINT:
+            normal, arm = in_world(body, normal), minus(arm, across)
     gap = dot(normal, across)
     if gap < 0 and line.margin < math.inf:
         if turned and dot(normal, in_world(body, components(line.normal, axes))) < 0:

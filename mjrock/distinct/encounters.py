@@ -13,20 +13,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem.masonry.joint_law import stored_along
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .finder import Finder, Found
-from .handover import Places, Poses, places_of, take_over
-from .looking import wear
+from .handover import Poses, places_of, take_over
+from .looking import held, wear
 from .pair_law import PairLaw, pair_number
-from .rows import Rows, joined, rows
+from .rows import POINT, Rows, joined, rows
 from .system import Books, System
 from .turning import quaternions, rotations
 
 LOOK = 5e-3
 """Longest time between two looks [s]."""
+FALL = 0.5 * GRAVITY * LOOK**2
+"""What a block falls by from one look to the next [m]."""
 PASSED = 0.02
 """Way that a pair may make between two looks, over the size of the smaller block [-]."""
 STAYED = 1e-5
@@ -117,7 +118,7 @@ class Encounters:
         velocity, about, moves = np.zeros_like(self.drawn), np.zeros(self.count), self.support >= 0
         velocity[self.free] = system.bodies["velocity"]
         velocity[moves] = system.supports.moving[self.support[moves]]
-        about[self.free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[self.free] + GRAVITY * LOOK
+        about[self.free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[self.free]
         return velocity, about
 
     def look(self, system: System, books: Books) -> tuple[System, Books, float]:
@@ -135,7 +136,7 @@ class Encounters:
             return system, books, LOOK
         met.watched, met.handed = watched, met.handed | worn
         met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
-        found = self.finder.found(poses, ahead + NEAR * self.sizes, watched)
+        found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched)
         found = found.taken(~np.isin(self._numbers(found), self.law.jointed[~met.handed]))
         until, soon = self._until(found, velocity, about)
         system = self._renewed(system, books, poses, found.taken(soon), worn[self.of_line])
@@ -149,8 +150,8 @@ class Encounters:
         first, second = found.pair.T
         size = np.minimum(self.sizes[first], self.sizes[second])
         speed = np.linalg.norm(velocity[first] - velocity[second], axis=1) + about[first] + about[second]
-        until = min(LOOK, float((np.maximum(PASSED * size, 0.5 * found.gap) / speed).min()))
-        return until, found.gap < speed * until + NEAR * size
+        until = min(LOOK, float((np.maximum(PASSED * size, 0.5 * found.gap) / np.maximum(speed, 1e-9)).min()))
+        return until, found.gap < speed * until + 2 * FALL + NEAR * size
 
     def _renewed(self, system: System, books: Books, poses: Poses, found: Found, worn: Flags) -> System:
         """The system with these places. Pairs that have not moved keep their lines.
@@ -166,12 +167,12 @@ class Encounters:
         stays = (self._moves_of(met.pair) == met.found) & np.isin(met.pair, number)
         new = ~np.isin(number, met.pair[stays])
         found, number = found.taken(new), number[new]
-        gone = joined(joints[worn], others[~stays])
+        of_gone = np.append(worn, ~stays)
+        before, gone = held(system, of_gone), system.lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.of_line[worn]], met.pair[~stays]), poses, self.free)
         lines = self._lines(found, number, poses)
         here = places_of(lines, number, poses, self.free)
         take_over(lines, here, gone, old, poses)
-        books.ends[1] += spring_energy(gone, old) - spring_energy(lines, here)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth"):
             joints[name][worn] = 0.0
         met.pair = np.append(met.pair[stays], number)
@@ -180,7 +181,9 @@ class Encounters:
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
-        return system._replace(lines=lines, ways=ways)
+        system, of_new = system._replace(lines=lines, ways=ways), np.arange(len(lines)) >= len(lines) - len(number)
+        books.ends[1] += before - held(system, of_new)
+        return system
 
     def _moves_of(self, pair: Integers) -> Integers:
         """Moves of both blocks of pairs."""
@@ -188,7 +191,11 @@ class Encounters:
 
     def _lines(self, found: Found, pair: Integers, poses: Poses) -> Rows:
         """New lines at places that were found."""
-        face, normal, block = found.face, found.normal, found.pair.sum(axis=1) - found.face
+        face, normal = found.face, found.normal
+        block = found.pair.sum(axis=1) - face
+        point = self.body[block] < 0
+        face, block = np.where(point, block, face), np.where(point, face, block)
+        normal = np.where(point[:, None], -1.0, 1.0) * normal
         half = 0.5 * found.gap[:, None] * normal
         held, at_centroid = self.body[face] < 0, poses.drawn + poses.moved
         at = poses.turned_back(block, found.place + half - at_centroid[block])
@@ -199,13 +206,13 @@ class Encounters:
             self.kind,
             len(pair),
             body=self.body[block],
-            face=self.body[face],
+            face=np.where(point, POINT, self.body[face]),
             support=self.support[face],
             group=self.group,
             at=at,
             origin=origin,
             between=self.drawn[block] + at - rest - origin,
-            normal=np.where(held[:, None], normal, poses.turned_back(face, normal)),
+            normal=np.where((held & ~point)[:, None], normal, poses.turned_back(np.where(point, block, face), normal)),
             margin=np.inf,
             **self.law.of_places(pair, found.share, self.count),
         )
@@ -224,13 +231,6 @@ class Encounters:
                 kept[i] = min(slack.get(number, 0.0 if number in known else np.inf), deep)
         self.met.slack = {n: s for n, s in slack.items() if n in known} | dict(zip(pairs.tolist(), kept, strict=True))
         return np.asarray(kept[of])
-
-
-def spring_energy(lines: Rows, places: Places) -> float:
-    """Energy in the springs of lines [J]."""
-    energy = 0.5 * float((lines["k"] * np.minimum(places.gap, 0.0) ** 2).sum())
-    sprung = lines[np.isfinite(lines["k_s"])]
-    return energy + float(stored_along(sprung, (sprung["grip"] ** 2).sum(axis=1)).sum())
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

@@ -34,7 +34,7 @@ class Found(NamedTuple):
 
     Args:
         pair: the two blocks, the lower number first, shape (n, 2).
-        face: the block of the face, always a fixed one if there is one, shape (n,).
+        face: the block of the face, of two edges the first, shape (n,).
         place: halfway between the two surfaces [m], shape (n, d).
         normal: unit vector out of the face, shape (n, d).
         gap: between the surfaces, negative for an overlap [m], shape (n,).
@@ -68,13 +68,14 @@ class Finder:
             Polyhedron.prism(replace(block, length=2 * self._half)) if isinstance(block, Polygon) else block
             for block in blocks
         ]
+        self._fixed = np.array([block.fixed for block in blocks])
         self.shapes = Shapes.of(solids, np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)
         self._spec, before = mujoco.MjSpec(), np.cumsum([len(solid.corners) for solid in solids])
         self._spec.memory = MEMORY
         for i, corners in enumerate(np.split(self.shapes.corners, before[:-1])):
             self._add(f"{i}", corners)
         self._build()
-        self._table = np.empty((64, 9))
+        self._table = np.empty((64, 10))
         self._room = np.empty((4 * int(np.diff(self.shapes.first).max()) + 4, 3))
 
     def _add(self, name: str, corners: Array) -> None:
@@ -97,7 +98,7 @@ class Finder:
             reach: of each block [m], shape (blocks,).
             watched: shape (blocks,).
         """
-        fixed = self.shapes.fixed
+        fixed = self._fixed
         place, matrix = self._in_space(poses)
         kind = np.where(fixed, FIXED, np.where(watched, WATCHED, FREE))
         meets = np.where(watched, FREE | WATCHED | np.where(fixed, 0, FIXED), 0)
@@ -131,32 +132,29 @@ class Finder:
         normal, gap = sense[:, None] * contact.frame.reshape(-1, 9)[:, :3], np.array(contact.dist)
         order = np.lexsort((gap, pair[:, 1], pair[:, 0]))  # the nearest place of each pair first
         pairs, first, of = np.unique(pair[order], axis=0, return_index=True, return_inverse=True)
-        owners = np.empty(len(pairs), dtype=np.int64)
+        are_faces = np.empty(len(pairs), dtype=bool)
         pairs = np.ascontiguousarray(pairs)
-        while (of_faces := clip(self.shapes, place, matrix, pairs, normal[order][first], self._table, owners, self._room)) > len(
+        while (of_faces := clip(self.shapes, place, matrix, pairs, normal[order][first], self._table, are_faces, self._room)) > len(
             self._table
         ):
-            self._table = np.empty((2 * of_faces, 9))
+            self._table = np.empty((2 * of_faces, 10))
         table = self._table[:of_faces]
         number = table[:, 0].astype(np.int64)
-        edges = order[owners[of.ravel()] < 0]
-        of_edges = of.ravel()[owners[of.ravel()] < 0]
-        held = self.shapes.fixed[pair[edges]]
-        face = np.where(held[:, 1], pair[edges, 1], pair[edges, 0])
-        outwards = np.where(held[:, 1], -1.0, 1.0)[:, None] * normal[edges]
+        are_edges = ~are_faces[of.ravel()]
+        edges, of_edges = order[are_edges], of.ravel()[are_edges]
         share = 1 / np.maximum(np.bincount(of_edges, minlength=len(pairs))[of_edges], CORNERS)
         return Found(
             np.concatenate([pairs[number], pair[edges]]),
-            np.append(owners[number], face),
-            np.concatenate([table[:, 1:4], contact.pos.reshape(-1, 3)[edges]]),
-            np.concatenate([table[:, 4:7], outwards]),
-            np.append(table[:, 7], gap[edges]),
-            np.append(table[:, 8], share),
+            np.append(table[:, 1].astype(np.int64), pair[edges, 0]),
+            np.concatenate([table[:, 2:5], contact.pos.reshape(-1, 3)[edges]]),
+            np.concatenate([table[:, 5:8], normal[edges]]),
+            np.append(table[:, 8], gap[edges]),
+            np.append(table[:, 9], share),
         )
 
     def _of_the_plane(self, found: Found) -> Found:
         """The places at one end of the prisms, or those between the ends where a pair has none there."""
-        number = found.pair[:, 0] * len(self.shapes.fixed) + found.pair[:, 1]
+        number = found.pair[:, 0] * len(self._fixed) + found.pair[:, 1]
         at_the_end = found.place[:, 1] > 0.5 * self._half
         kept = found.taken(at_the_end | ~np.isin(number, number[at_the_end]))
         normal = kept.normal[:, ::2] / np.hypot(*kept.normal[:, ::2].T)[:, None]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..quantities import Array, Flags, Integers
 from .looking import nearest
-from .rows import Rows
+from .rows import POINT, Rows
 
 
 class Poses(NamedTuple):
@@ -49,7 +49,6 @@ class Places(NamedTuple):
         held: whether the face is that of a fixed block, shape (n,). Its vectors are those of the world.
         at: the points [m], shape (n, d).
         normal: out of the faces, shape (n, d).
-        gap: [m], shape (n,).
     """
 
     pair: Integers
@@ -58,7 +57,6 @@ class Places(NamedTuple):
     held: Flags
     at: Array
     normal: Array
-    gap: Array
 
     @property
     def sense(self) -> Array:
@@ -75,14 +73,15 @@ def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Plac
         poses: of all blocks.
         free: the block of each body, shape (bodies,).
     """
-    body, held = free[lines["body"]], lines["face"] < 0
+    body, held, point = free[lines["body"]], lines["face"] < 0, (lines["face"] == POINT)[:, None]
     face = np.sum(np.divmod(pair, len(poses.moved)), axis=0) - body
     arm, origin = (poses.turned(block, lines[name]) for block, name in ((body, "at"), (face, "origin")))
     way = arm - lines["at"] + poses.moved[body]
     of_face = np.where(held[:, None], 0.0, origin - lines["origin"]) + poses.moved[face]
-    normal = np.where(held[:, None], lines["normal"], poses.turned(face, lines["normal"]))
-    gap = np.sum(normal * (lines["between"] + way - of_face), axis=1)
-    return Places(pair, body, face, held, poses.drawn[body] + poses.moved[body] + arm, normal, gap)
+    turns = np.where(point[:, 0], body, face)
+    normal = np.where(held[:, None] & ~point, lines["normal"], poses.turned(turns, lines["normal"]))
+    at = poses.drawn[body] + poses.moved[body] + arm - np.where(point, lines["between"] + way - of_face, 0.0)
+    return Places(pair, body, face, held, at, normal)
 
 
 def take_over(lines: Rows, new: Places, gone: Rows, old: Places, poses: Poses) -> None:

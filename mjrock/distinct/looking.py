@@ -1,12 +1,14 @@
-"""Looking at blocks and joints: which have moved, which joints hold no longer, and which place was nearest."""
+"""Looking at lines: which joints hold no longer, what springs hold, and which place was nearest."""
 
 from __future__ import annotations
 
 import math
 
 from ..compiled import compiled, jitable
-from ..geometry.vectors import components, dot, minus, plus, vector
-from ..quantities import Array, Integers
+from ..geometry.vectors import components, dot, minus, plus, spin_components, vector
+from ..problem.masonry.joint_law import stored, stored_along
+from ..quantities import Array, Flags, Integers
+from .contact import meeting
 from .system import System
 from .turning import rotation_change, take_turn
 
@@ -43,6 +45,26 @@ def wear_of_lines(system: System, pairs: Integers, slip: Array, gap: Array, axes
         apart = dot(normal, across)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], apart)
+
+
+@compiled
+def held(system: System, which: Flags) -> float:
+    """Energy in the springs of some of the lines [J], shape of the answers (lines,)."""
+    return held_by_lines(system, which, system.axes)
+
+
+@jitable
+def held_by_lines(system: System, which: Flags, axes: tuple[int, ...]) -> float:
+    """`held`, in the plane or in space."""
+    energy = 0.0
+    for p in range(len(which)):
+        if which[p]:
+            line = system.lines[p]
+            energy += stored(line, meeting(system, line, axes).gap)
+            if line.k_s < math.inf:
+                grip = spin_components(line.grip, axes)
+                energy += stored_along(line, dot(grip, grip))
+    return energy
 
 
 @compiled

@@ -18,6 +18,8 @@ from ..quantities import Array, Integers
 Rows = NDArray[np.void]
 Row = Any
 """One of the rows; its numbers are attributes."""
+POINT = -2
+"""Number of the face of a line where the point is on a fixed block and the face on the body."""
 Fields = list[Any]
 """Names of numbers, and of vectors with how many numbers they have."""
 
@@ -87,13 +89,13 @@ def _body(d: int, s: int) -> Fields:
 
 def _line(d: int, s: int) -> Fields:
     return [
-        *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 for a fixed block
+        *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT for a fixed block
         *_integer("support"),  # the support that moves a fixed block, -1 for none
         *_integer("group"),  # number of the account
         *_vector(d, "at"),  # the point from the centroid of its body [m]
         *_vector(d, "origin"),  # a point of the face from the centroid of its body [m]
         *_vector(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]
-        *_vector(d, "normal"),  # unit vector out of the face
+        *_vector(d, "normal"),  # unit vector out of the face, of a POINT into that of the body
         *_number("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
         *_number("friction"),  # coefficient [-]
         *_number("margin"),  # square of the least way along the face from the origin to its end, infinite where it has none [m2]

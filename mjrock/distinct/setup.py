@@ -97,9 +97,9 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     scene, at_rest = standing(masonry, case.effects, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
-    started(system, course.pose, course.velocity)
     of, blocks = (masonry, case.effects), tuple(support.block for support in case.supports)
-    encounters = Encounters(masonry, at_rest, scene.contacts.joint, blocks)
+    encounters = Encounters(masonry, system, scene.contacts.joint, blocks)
+    started(system, course.pose, course.velocity)
     return Setup(scene, course, system, longest_step(system), SHARE, encounters=encounters, of=of, blocks=blocks)
 
 
