@@ -9,83 +9,55 @@ stood for.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-
-from ..compiled import compiled, inlined, jitable
+from ..compiled import inlined, jitable
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
-from ..problem.masonry.polyhedron import Polyhedron
-from ..quantities import Array, Flags, Integers
+from ..quantities import Array, Integers
+from .solids import Solids
 
-ALONG = 0.995
-"""Cosine of the angle between a normal and that of a face below which the meeting is one of edges [-]."""
 OUTSIDE = 1e-9
 """Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
 SAME = 1e-6
 """Distance of two places that are one, over the length of an edge [-]."""
-PARALLEL = 1e-3
-"""Sine of the angle of two edges below which they do not cross [-]."""
-
-
-class Shapes(NamedTuple):
-    """Blocks as faces.
-
-    Args:
-        corners: of all blocks, from their centroids [m], shape (corners, 3).
-        normals: of the faces of all blocks, shape (faces, 3).
-        face: where the faces of each block begin, and where those of the last end, shape (blocks + 1,).
-        outline: numbers of the corners around each face, one face after the other.
-        first: where those of each face begin, and where those of the last end, shape (faces + 1,).
-    """
-
-    corners: Array
-    normals: Array
-    face: Integers
-    outline: Integers
-    first: Integers
-
-    @classmethod
-    def of(cls, blocks: list[Polyhedron], centroids: Array) -> Shapes:
-        """The faces of blocks, shape of the centroids (blocks, 3)."""
-        before = np.cumsum([0, *(len(block.corners) for block in blocks)])
-        outlines = [np.add(face, at) for block, at in zip(blocks, before[:-1], strict=True) for face in block.faces]
-        return cls(
-            np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)]),
-            np.concatenate([block.normals for block in blocks]),
-            np.cumsum([0, *(len(block.faces) for block in blocks)]),
-            np.concatenate(outlines),
-            np.cumsum([0, *map(len, outlines)]),
-        )
+PARALLEL, UPRIGHT = 1e-3, 0.99
+"""Sine of the angle of two edges, and cosine of that between their common normal and that of the face, below which they
+do not meet as edges [-]."""
 
 
 @inlined
-def turned(matrix: Array, block: int, a: Array) -> Vector:
-    """A vector of a block in the axes of the world."""
-    m = matrix[block]
-    return (
-        m[0, 0] * a[0] + m[0, 1] * a[1] + m[0, 2] * a[2],
-        m[1, 0] * a[0] + m[1, 1] * a[1] + m[1, 2] * a[2],
-        m[2, 0] * a[0] + m[2, 1] * a[1] + m[2, 2] * a[2],
-    )
+def corner_of(solids: Solids, number: int) -> Vector:
+    """Where a corner of an outline is [m]."""
+    return vector(solids.corners, solids.outline[number], SPACE.axes)
+
+
+@inlined
+def next_corner(solids: Solids, face: int, number: int) -> Vector:
+    """Where the corner after another one of the outline of a face is [m]."""
+    return corner_of(solids, solids.first[face] if number + 1 == solids.first[face + 1] else number + 1)
+
+
+@inlined
+def normal_of(solids: Solids, face: int) -> Vector:
+    """The normal of a face."""
+    return vector(solids.normals, face, SPACE.axes)
+
+
+@inlined
+def length_of(a: Vector) -> float:
+    """Length of a vector."""
+    return math.sqrt(dot(a, a))
 
 
 @jitable
-def corner_of(shapes: Shapes, place: Array, matrix: Array, block: int, number: int) -> Vector:
-    """Where a corner of the outline of a face of a block is [m]."""
-    return plus(vector(place, block, SPACE.axes), turned(matrix, block, shapes.corners[shapes.outline[number]]))
-
-
-@jitable
-def face_along(shapes: Shapes, matrix: Array, block: int, way: Vector) -> tuple[int, float]:
-    """The face of a block whose normal is nearest to a direction, and the cosine between them."""
-    best, largest = -1, -2.0
-    for face in range(shapes.face[block], shapes.face[block + 1]):
-        cosine = dot(turned(matrix, block, shapes.normals[face]), way)
+def face_towards(solids: Solids, block: int, way: Vector) -> int:
+    """The face of a block whose normal is nearest to a direction."""
+    best, largest = -1, -math.inf
+    for face in range(solids.face[block], solids.face[block + 1]):
+        cosine = dot(normal_of(solids, face), way)
         if cosine > largest:
             best, largest = face, cosine
-    return best, largest
+    return best
 
 
 @jitable
@@ -108,24 +80,21 @@ def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, roo
 
 
 @jitable
-def lying_over(
-    shapes: Shapes, place: Array, matrix: Array, face: int, block: int, over: int, other: int, room: Array
-) -> int:
-    """Write the part of a face of another block that lies over the face of a block into the first half of the room.
+def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
+    """Write the part of a face that lies over another into the first half of the room.
 
     Returns:
         How many corners it has.
     """
     count, extent, polygon, further = 0, 0.0, room[: len(room) // 2], room[len(room) // 2 :]
-    for i in range(shapes.first[over], shapes.first[over + 1]):
-        put(polygon[count], corner_of(shapes, place, matrix, other, i))
+    for i in range(solids.first[over], solids.first[over + 1]):
+        put(polygon[count], corner_of(solids, i))
         count += 1
-    normal = turned(matrix, block, shapes.normals[face])
-    first, last = shapes.first[face], shapes.first[face + 1]
-    for i in range(first, last):
-        a = corner_of(shapes, place, matrix, block, i)
-        way = spun(minus(corner_of(shapes, place, matrix, block, first if i + 1 == last else i + 1), a), normal)
-        length = math.sqrt(dot(way, way))
+    normal = normal_of(solids, face)
+    for i in range(solids.first[face], solids.first[face + 1]):
+        a = corner_of(solids, i)
+        way = spun(minus(next_corner(solids, face, i), a), normal)
+        length = length_of(way)
         extent = max(extent, length)
         way = scaled(1 / length, way)
         count = cut(polygon, count, way, dot(way, a), OUTSIDE * extent, further)
@@ -133,141 +102,87 @@ def lying_over(
 
 
 @inlined
-def edge_length(polygon: Array, i: int, j: int, axes: tuple[int, ...]) -> float:
-    """Distance of two corners of a polygon [m]."""
-    edge = minus(vector(polygon, i, axes), vector(polygon, j, axes))
-    return math.sqrt(dot(edge, edge))
+def distance_from(at: Vector, a: Vector, along: Vector) -> float:
+    """Distance of a place from the line through another one [m]."""
+    return length_of(spun(along, minus(at, a))) / length_of(along)
 
 
 @jitable
-def distance_of_edge(room: Array, a: Vector, b: Vector, i: int) -> float:
-    """Distance of a place from an edge [m]."""
-    along, off = minus(b, a), minus(vector(room, i, a), a)
-    across = spun(along, off)
-    return math.sqrt(dot(across, across) / dot(along, along))
-
-
-@jitable
-def write_place(table: Array, count: int, pair: int, owner: int, at: Vector, normal: Vector, gap: float) -> None:
-    """Write a place, halfway into its gap from the point on the block that is not the owner."""
-    table[count, 0], table[count, 1], table[count, 8] = pair, owner, gap
+def write_place(table: Array, count: int, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
+    """Write a place of a face, the first block, and of a point on the other one."""
+    table[count, 0], table[count, 1], table[count, 8] = blocks[0], blocks[1], gap
     put(table[count, 2:5], minus(at, scaled(0.5 * gap, normal)))
     put(table[count, 5:8], normal)
 
 
 @jitable
 def meet(
-    shapes: Shapes,
-    place: Array,
-    matrix: Array,
-    faces: tuple[int, int],
-    blocks: tuple[int, int],
-    room: Array,
-    i: int,
-    table: Array,
-    count: int,
-    pair: int,
+    solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, table: Array, count: int
 ) -> None:
-    """Write what corner i of the part of a face that lies over another is: a corner of either, or edges that cross.
+    """Write what a corner of the part of a face that lies over another is: a corner of either, or edges that cross.
 
     Args:
-        shapes, place, matrix: the blocks and where they are.
+        solids: the blocks where they are.
         faces, blocks: the face below and that over it, and their blocks.
-        room: corners of the part.
-        i: number of the corner.
+        at: the corner, on the face over the other [m].
         table, count: where to write.
-        pair: number of the pair.
     """
-    (face, over), (block, other), axes = faces, blocks, SPACE.axes
-    at = vector(room, i, axes)
-    normal, base = turned(matrix, block, shapes.normals[face]), corner_of(shapes, place, matrix, block, shapes.first[face])
-    nearest, first, last = math.inf, shapes.first[over], shapes.first[over + 1]
-    edge, from_edge = first, math.inf
-    for j in range(first, last):
-        corner = corner_of(shapes, place, matrix, other, j)
-        off, after = minus(corner, at), corner_of(shapes, place, matrix, other, first if j + 1 == last else j + 1)
-        nearest = min(nearest, math.sqrt(dot(off, off)))
-        distance = distance_of_edge(room, corner, after, i)
-        if distance < from_edge:
-            edge, from_edge = j, distance
-    after = corner_of(shapes, place, matrix, other, first if edge + 1 == last else edge + 1)
-    along = minus(after, corner_of(shapes, place, matrix, other, edge))
-    close = SAME * math.sqrt(dot(along, along))
-    if nearest < close:
-        write_place(table, count, pair, block, at, normal, dot(normal, minus(at, base)))
-        return
-    own_normal = turned(matrix, other, shapes.normals[over])
-    first, last = shapes.first[face], shapes.first[face + 1]
-    crossed, from_crossed = base, math.inf
-    way = along
-    for j in range(first, last):
-        corner = corner_of(shapes, place, matrix, block, j)
-        own = minus(corner_of(shapes, place, matrix, block, first if j + 1 == last else j + 1), corner)
-        off = minus(at, corner)
-        off = minus(off, scaled(dot(off, normal), normal))
-        if math.sqrt(dot(off, off)) < close:
-            gap = dot(own_normal, minus(corner, corner_of(shapes, place, matrix, other, shapes.first[over])))
-            write_place(table, count, pair, other, corner, own_normal, gap)
+    face, over = faces
+    normal, edge, from_edge = normal_of(solids, face), -1, math.inf
+    for i in range(solids.first[over], solids.first[over + 1]):
+        corner = corner_of(solids, i)
+        along = minus(next_corner(solids, over, i), corner)
+        if length_of(minus(at, corner)) < SAME * length_of(along):
+            gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))
+            write_place(table, count, blocks, at, normal, gap)
             return
-        across = spun(own, off)
-        distance = math.sqrt(dot(across, across) / dot(own, own))
+        distance = distance_from(at, corner, along)
+        if distance < from_edge:
+            edge, from_edge = i, distance
+    crossed, from_crossed = -1, math.inf
+    for i in range(solids.first[face], solids.first[face + 1]):
+        corner = corner_of(solids, i)
+        own, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
+        off = minus(off, scaled(dot(off, normal), normal))
+        if length_of(off) < SAME * length_of(own):
+            normal = normal_of(solids, over)
+            gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
+            write_place(table, count, (blocks[1], blocks[0]), corner, normal, gap)
+            return
+        distance = distance_from(off, scaled(0.0, own), own)
         if distance < from_crossed:
-            crossed, from_crossed, way = corner, distance, own
-    across = spun(along, way)
-    size = math.sqrt(dot(across, across))
-    if size > PARALLEL * math.sqrt(dot(along, along) * dot(way, way)):
+            crossed, from_crossed = i, distance
+    below = corner_of(solids, crossed)
+    own, along = minus(next_corner(solids, face, crossed), below), minus(next_corner(solids, over, edge), corner_of(solids, edge))
+    across = spun(along, own)
+    size = length_of(across)
+    if abs(dot(across, normal)) > UPRIGHT * size and size > PARALLEL * length_of(along) * length_of(own):
         normal = scaled(math.copysign(1 / size, dot(across, normal)), across)
-    write_place(table, count, pair, block, at, normal, dot(normal, minus(at, crossed)))
+    write_place(table, count, blocks, at, normal, dot(normal, minus(at, below)))
 
 
-@compiled
-def clip(
-    shapes: Shapes,
-    place: Array,
-    matrix: Array,
-    pairs: Integers,
-    normals: Array,
-    table: Array,
-    are_faces: Flags,
-    room: Array,
-) -> int:
-    """Write the places of pairs of blocks whose meeting is one of faces.
+@jitable
+def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
+    """Write the places where a block lies over a face of another. Returns how many places there are then.
 
     Args:
-        shapes: the blocks.
-        place, matrix: where they are [m], shapes (blocks, 3) and (blocks, 3, 3).
-        pairs, normals: two blocks each, and the normal from the first to the second, shapes (n, 2) and (n, 3).
-        table: room for pair, block of the face, place, normal out of it, gap [m] and share of each place, shape (most, 10).
-        are_faces: room to say whether the meeting of each pair is one of faces, shape (n,).
+        solids: the blocks where they are.
+        face, blocks: the face, its block, and the other one.
+        table: places, a row each: block of the face, other block, place, normal out of the face, gap [m] and share.
+        count: how many places there are.
         room: for the corners of two faces, twice.
-
-    Returns:
-        How many places there are. Those for which there is no room are not written.
     """
-    count, axes = 0, SPACE.axes
-    for pair in range(len(pairs)):
-        first, second, way = pairs[pair, 0], pairs[pair, 1], vector(normals, pair, axes)
-        face, cosine = face_along(shapes, matrix, first, way)
-        other_face, other_cosine = face_along(shapes, matrix, second, scaled(-1.0, way))
-        are_faces[pair] = False
-        if max(cosine, other_cosine) < ALONG:
-            continue
-        swapped = other_cosine > cosine
-        block, other, own = (second, first, other_face) if swapped else (first, second, face)
-        normal = turned(matrix, block, shapes.normals[own])
-        over, _ = face_along(shapes, matrix, other, scaled(-1.0, normal))
-        corners = lying_over(shapes, place, matrix, own, block, over, other, room)
-        if corners < 3:
-            continue
-        are_faces[pair] = True
-        around = 0.0
-        for i in range(corners):
-            around += edge_length(room, i, (i + 1) % corners, axes)
-        for i in range(corners):
-            if count < len(table):
-                edges = edge_length(room, i, (i + 1) % corners, axes)
-                edges += edge_length(room, i, i - 1 if i else corners - 1, axes)
-                table[count, 9] = 0.5 * edges / around
-                meet(shapes, place, matrix, (own, over), (block, other), room, i, table, count, pair)
-            count += 1
+    over, around = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face))), 0.0
+    corners = lying_over(solids, face, over, room)
+    if corners < 3:
+        return count
+    for i in range(corners):
+        around += length_of(minus(vector(room, (i + 1) % corners, SPACE.axes), vector(room, i, SPACE.axes)))
+    for i in range(corners):
+        if count < len(table):
+            at, after = vector(room, i, SPACE.axes), vector(room, (i + 1) % corners, SPACE.axes)
+            before = vector(room, i - 1 if i else corners - 1, SPACE.axes)
+            meet(solids, (face, over), blocks, at, table, count)
+            table[count, 9] = 0.5 * (length_of(minus(after, at)) + length_of(minus(at, before))) / around
+        count += 1
     return count

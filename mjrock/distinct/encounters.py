@@ -93,15 +93,14 @@ class Encounters:
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
-        found = self.finder.found(self.start, self.sizes, np.ones(self.count, dtype=bool))
-        found = found.taken(~np.isin(self._numbers(found), self.law.jointed))
-        apart = self.sizes.copy()
-        for block in found.pair.T:
+        found = self.finder.found(self.start, 0.5 * self.sizes, np.ones(self.count, dtype=bool), self.law.jointed)
+        apart = 0.5 * self.sizes
+        for block in (found.face, found.other):
             np.minimum.at(apart, block, found.gap)
         return np.asarray(np.maximum(TOWARDS * apart, NEAR * self.sizes))
 
     def _numbers(self, found: Found) -> Integers:
-        return pair_number(*found.pair.T, self.count)
+        return pair_number(found.face, found.other, self.count)
 
     def _poses(self, system: System) -> Poses:
         """Where all blocks are."""
@@ -136,10 +135,11 @@ class Encounters:
             return system, books, LOOK
         met.watched, met.handed = watched, met.handed | worn
         met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
-        found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched)
-        found = found.taken(~np.isin(self._numbers(found), self.law.jointed[~met.handed]))
+        stays = self._moves_of(met.pair) == met.found
+        known = np.union1d(self.law.jointed[~met.handed], met.pair[stays])
+        found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched, known)
         until, soon = self._until(found, velocity, about)
-        system = self._renewed(system, books, poses, found.taken(soon), worn[self.of_line])
+        system = self._renewed(system, books, poses, found.taken(soon), worn[self.of_line], stays)
         short = len(system.lines) - len(books.active)
         return system, books._replace(active=np.append(books.active, np.zeros(max(short, 0), dtype=np.int64))), until
 
@@ -147,13 +147,13 @@ class Encounters:
         """The time until the next look [s], and which places may touch by then."""
         if not len(found.gap):
             return LOOK, np.zeros(0, dtype=bool)
-        first, second = found.pair.T
+        first, second = found.face, found.other
         size = np.minimum(self.sizes[first], self.sizes[second])
         speed = np.linalg.norm(velocity[first] - velocity[second], axis=1) + about[first] + about[second]
         until = min(LOOK, float((np.maximum(PASSED * size, 0.5 * found.gap) / np.maximum(speed, 1e-9)).min()))
         return until, found.gap < speed * until + 2 * FALL + NEAR * size
 
-    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, worn: Flags) -> System:
+    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, worn: Flags, stays: Flags) -> System:
         """The system with these places. Pairs that have not moved keep their lines.
 
         Args:
@@ -161,12 +161,10 @@ class Encounters:
             poses: of all blocks.
             found: places that may touch.
             worn: lines of joints that are handed over now, shape (lines of joints,).
+            stays: lines of encounters whose blocks have not moved, shape (lines of encounters,).
         """
         met, count = self.met, len(self.of_line)
         joints, others, number = system.lines[:count], system.lines[count:], self._numbers(found)
-        stays = (self._moves_of(met.pair) == met.found) & np.isin(met.pair, number)
-        new = ~np.isin(number, met.pair[stays])
-        found, number = found.taken(new), number[new]
         of_gone = np.append(worn, ~stays)
         before, gone = held(system, of_gone), system.lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.of_line[worn]], met.pair[~stays]), poses, self.free)
@@ -191,8 +189,7 @@ class Encounters:
 
     def _lines(self, found: Found, pair: Integers, poses: Poses) -> Rows:
         """New lines at places that were found."""
-        face, normal = found.face, found.normal
-        block = found.pair.sum(axis=1) - face
+        face, normal, block = found.face, found.normal, found.other
         point = self.body[block] < 0
         face, block = np.where(point, block, face), np.where(point, face, block)
         normal = np.where(point[:, None], -1.0, 1.0) * normal

@@ -1,0 +1,77 @@
+"""Solids: convex blocks as corners, faces and edges, where they are. Blocks of the plane are prisms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ..problem.masonry.polygon import Polygon
+from ..problem.masonry.polyhedron import Polyhedron
+from ..quantities import Array, Integers
+
+
+class Solids(NamedTuple):
+    """Blocks in space.
+
+    Args:
+        corners: of all blocks [m], shape (corners, 3).
+        corner: where those of each block begin, and where those of the last end, shape (blocks + 1,).
+        normals: out of the faces of all blocks, shape (faces, 3).
+        face: where those of each block begin, and where those of the last end, shape (blocks + 1,).
+        ways: directions of the edges of all blocks, parallel ones once, shape (ways, 3).
+        way: where those of each block begin, and where those of the last end, shape (blocks + 1,).
+        outline: numbers of the corners around each face, one face after the other.
+        first: where those of each face begin, and where those of the last end, shape (faces + 1,).
+    """
+
+    corners: Array
+    corner: Integers
+    normals: Array
+    face: Integers
+    ways: Array
+    way: Integers
+    outline: Integers
+    first: Integers
+
+    @classmethod
+    def of(cls, blocks: Sequence[Polyhedron], centroids: Array) -> Solids:
+        """Blocks about their centroids [m], shape (blocks, 3)."""
+        corner = _begins(block.corners for block in blocks)
+        outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
+        return cls(
+            np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)]),
+            corner,
+            np.concatenate([block.normals for block in blocks]),
+            _begins(block.normals for block in blocks),
+            np.concatenate([block.edges for block in blocks]),
+            _begins(block.edges for block in blocks),
+            np.concatenate(outlines),
+            _begins(outlines),
+        )
+
+    def moved(self, place: Array, change: Array) -> Solids:
+        """The blocks at centroids [m], shape (blocks, 3), turned from where they are by rotations less 1."""
+
+        def turned(vectors: Array, first: Integers) -> tuple[Array, Integers]:
+            block = np.repeat(np.arange(len(place)), np.diff(first))
+            return vectors + np.einsum("nij,nj->ni", change[block], vectors), block
+
+        corners, block = turned(self.corners, self.corner)
+        normals, _ = turned(self.normals, self.face)
+        ways, _ = turned(self.ways, self.way)
+        return self._replace(corners=corners + place[block], normals=normals, ways=ways)
+
+
+def _begins(tables: Sequence[Array]) -> Integers:
+    """Where each of some tables begins, one after the other, and where the last one ends."""
+    return np.cumsum([0, *map(len, tables)])
+
+
+def solids_of(blocks: Sequence[Polygon | Polyhedron], half: float) -> list[Polyhedron]:
+    """Blocks in space: those of the plane as prisms of some half length [m]."""
+    return [
+        Polyhedron.prism(replace(block, length=2 * half)) if isinstance(block, Polygon) else block for block in blocks
+    ]
