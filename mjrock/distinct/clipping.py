@@ -20,7 +20,7 @@ OUTSIDE = 1e-9
 """Distance of a corner beyond an edge within which it counts as on it, over the length of the edges [-]."""
 SAME = 1e-6
 """Distance of two places that are one, over the length of an edge [-]."""
-PARALLEL, UPRIGHT = 1e-3, 0.99
+PARALLEL, UPRIGHT = 1e-4, 0.3
 """Sine of the angle of two edges, and cosine of that between their common normal and that of the face, below which they
 do not meet as edges [-]."""
 
@@ -162,27 +162,30 @@ def meet(
 
 
 @jitable
-def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
+def clip(
+    solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], table: Array, count: int, room: Array
+) -> int:
     """Write the places where a block lies over a face of another. Returns how many places there are then.
 
     Args:
         solids: the blocks where they are.
-        face, blocks: the face, its block, and the other one.
+        faces, blocks: the face, the one that lies over it, and their blocks.
         table: places, a row each: block of the face, other block, place, normal out of the face, gap [m] and share.
         count: how many places there are.
         room: for the corners of two faces, twice.
     """
-    over, around = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face))), 0.0
-    corners = lying_over(solids, face, over, room)
+    corners, around = lying_over(solids, faces[0], faces[1], room), 0.0
     if corners < 3:
         return count
     for i in range(corners):
         around += length_of(minus(vector(room, (i + 1) % corners, SPACE.axes), vector(room, i, SPACE.axes)))
     for i in range(corners):
-        if count < len(table):
-            at, after = vector(room, i, SPACE.axes), vector(room, (i + 1) % corners, SPACE.axes)
-            before = vector(room, i - 1 if i else corners - 1, SPACE.axes)
-            meet(solids, (face, over), blocks, at, table, count)
-            table[count, 9] = 0.5 * (length_of(minus(after, at)) + length_of(minus(at, before))) / around
-        count += 1
+        at, after = vector(room, i, SPACE.axes), vector(room, (i + 1) % corners, SPACE.axes)
+        before = vector(room, i - 1 if i else corners - 1, SPACE.axes)
+        share = 0.5 * (length_of(minus(after, at)) + length_of(minus(at, before))) / around
+        if share > SAME:
+            if count < len(table):
+                meet(solids, faces, blocks, at, table, count)
+                table[count, 9] = share
+            count += 1
     return count

@@ -170,7 +170,7 @@ class Encounters:
         old = places_of(gone, np.append(self.law.jointed[self.of_line[worn]], met.pair[~stays]), poses, self.free)
         lines = self._lines(found, number, poses)
         here = places_of(lines, number, poses, self.free)
-        take_over(lines, here, gone, old, poses)
+        take_over(lines, here, found.gap, gone, old, poses)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth"):
             joints[name][worn] = 0.0
         met.pair = np.append(met.pair[stays], number)

@@ -21,7 +21,7 @@ from ..geometry.vectors import Vector, dot, minus, plus, scaled, spun, vector
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..quantities import Array, Flags, Integers
-from .clipping import clip, corner_of, length_of, next_corner, normal_of, write_place
+from .clipping import clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
 from .handover import Poses
 from .solids import Solids, solids_of
 
@@ -29,8 +29,8 @@ EDGES = 0.8
 """Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""
 ACROSS = 1e-3
 """Sine of the angle of two edges below which there is no direction across both [-]."""
-FLUSH = 1e-4
-"""How much more two edges part blocks than a face does before the edges meet, over the length of an edge [-]."""
+FLUSH = -0.7
+"""Cosine of the angle between the normals of two faces up to which they meet as faces [-]."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
 
@@ -186,21 +186,15 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
     best = max(apart, other_apart)
     if best > reach:
         return count
-    if best < 0:
-        normal, across = across_edges(solids, a, b)
-        if across > EDGES * best + FLUSH * reach_of(solids, a, b):
-            return meet_edges(solids, blocks, normal, across, table, count) if across < reach else count
     if other_apart > apart:
-        return clip(solids, other_face, (b, a), table, count, room)
-    return clip(solids, face, blocks, table, count, room)
-
-
-@inlined
-def reach_of(solids: Solids, a: int, b: int) -> float:
-    """Length of an edge of each of two blocks [m], as a measure of their size."""
-    i, j = solids.first[solids.face[a]], solids.first[solids.face[b]]
-    of_a, of_b = minus(corner_of(solids, i + 1), corner_of(solids, i)), minus(corner_of(solids, j + 1), corner_of(solids, j))
-    return min(length_of(of_a), length_of(of_b))
+        face, blocks = other_face, (b, a)
+    normal = normal_of(solids, face)
+    over = face_towards(solids, blocks[1], scaled(-1.0, normal))
+    if best < 0 and dot(normal, normal_of(solids, over)) > FLUSH:
+        way, across = across_edges(solids, a, b)
+        if across > EDGES * best:
+            return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
+    return clip(solids, (face, over), blocks, table, count, room)
 
 
 @inlined

@@ -84,21 +84,37 @@ def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Plac
     return Places(pair, body, face, held, at, normal)
 
 
-def take_over(lines: Rows, new: Places, gone: Rows, old: Places, poses: Poses) -> None:
-    """Give lines the friction of the nearest one of their pair that is gone, and what it did in the last step."""
-    order = np.argsort(old.pair, kind="stable")
-    pairs, first = np.unique(old.pair[order], return_index=True)
-    target = np.flatnonzero(np.isin(new.pair, pairs))
-    chosen = np.empty(len(target), dtype=np.int64)
-    own, first = np.searchsorted(pairs, new.pair[target]), np.append(first, len(order))
-    nearest(own, new.at[target], first, old.at[order], chosen)
-    source = order[chosen]
-    for name in ("push", "pressed", "depth"):
-        lines[name][target] = gone[name][source]
+def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, poses: Poses) -> None:
+    """Let closed lines take over the friction, and the push of the last step, of those of their pair that are gone.
+
+    Each line that is gone gives all that it has to the nearest one, so that the forces of a pair stay.
+
+    Args:
+        lines, new: the lines, and where they are.
+        gap: of the lines [m], shape (n,).
+        gone, old: those that are gone, and where they are.
+        poses: of all blocks.
+    """
+    closed = np.flatnonzero(gap < 0)
+    closed = closed[np.argsort(new.pair[closed], kind="stable")]
+    pairs, first = np.unique(new.pair[closed], return_index=True)
+    source = np.flatnonzero(np.isin(old.pair, pairs) & (gone["push"] > 0))
+    chosen = np.empty(len(source), dtype=np.int64)
+    own, first = np.searchsorted(pairs, old.pair[source]), np.append(first, len(closed))
+    nearest(own, old.at[source], first, new.at[closed], chosen)
+    target = closed[chosen]
+    for name in ("push", "pressed"):
+        np.add.at(lines[name], target, gone[name][source])
+    np.maximum.at(lines["depth"], target, gone["depth"][source])
     before, after = _some(old, source), _some(new, target)
     for name in ("grip", "dragged"):
-        along = before.sense * _in_world(gone[name][source], before, poses, turns=name == "grip")
-        lines[name][target] = _of_line(after.sense * along, after, poses, turns=name == "grip")
+        turns = name == "grip"
+        along = _in_world(gone[name][source], before, poses, turns=turns)
+        along = _of_line(after.sense * before.sense * along, after, poses, turns=turns)
+        if turns:  # what springs are stretched by is kept, and of rigid friction the force
+            sprung = np.isfinite(lines["k_s"][target])
+            along[sprung] *= (gone["k_s"][source][sprung] / lines["k_s"][target][sprung])[:, None]
+        np.add.at(lines[name], target, along)
 
 
 def _some(places: Places, which: Integers) -> Places:

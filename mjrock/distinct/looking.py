@@ -68,14 +68,14 @@ def held_by_lines(system: System, which: Flags, axes: tuple[int, ...]) -> float:
 
 
 @compiled
-def nearest(pair: Integers, place: Array, first: Integers, old_place: Array, chosen: Integers) -> None:
-    """Write which of the old places of its pair is nearest to each place, -1 where there is none.
+def nearest(pair: Integers, place: Array, first: Integers, other: Array, chosen: Integers) -> None:
+    """Write which of other places of its pair is nearest to each place.
 
     Args:
         pair: position of the pair of each place in `first`, shape (places,).
         place: where they are [m], shape (places, d).
-        first: where the old places of each pair begin, and where those of the last end.
-        old_place: where those are, one pair after the other [m].
+        first: where the others of each pair begin, and where those of the last end.
+        other: where those are, one pair after the other [m].
         chosen: room for the answer, shape (places,).
     """
     for i in range(len(pair)):
@@ -83,6 +83,6 @@ def nearest(pair: Integers, place: Array, first: Integers, old_place: Array, cho
         for j in range(first[pair[i]], first[pair[i] + 1]):
             square = 0.0
             for axis in range(place.shape[1]):
-                square += (place[i, axis] - old_place[j, axis]) ** 2
+                square += (place[i, axis] - other[j, axis]) ** 2
             if square < least:
                 chosen[i], least = j, square
