@@ -19,7 +19,7 @@ from ..quantities import GRAVITY, Array, Flags, Integers
 from .finder import Finder, Found
 from .handover import Poses, places_of, take_over
 from .looking import held, wear
-from .pair_law import PairLaw, pair_number
+from .pair_law import PairLaw, are_among, pair_number
 from .rows import POINT, Rows, joined, rows
 from .system import Books, System
 from .turning import quaternions, rotations
@@ -30,8 +30,8 @@ FALL = 0.5 * GRAVITY * LOOK**2
 """What a block falls by from one look to the next [m]."""
 PASSED = 0.02
 """Way that a pair may make between two looks, over the size of the smaller block [-]."""
-STAYED = 1e-5
-"""Way over its size that a block may make while a find of it stays valid [-]."""
+STAYED = 2e-4
+"""Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]."""
 LEFT = 0.05
@@ -136,7 +136,7 @@ class Encounters:
         met.watched, met.handed = watched, met.handed | worn
         met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
         stays = self._moves_of(met.pair) == met.found
-        known = np.union1d(self.law.jointed[~met.handed], met.pair[stays])
+        known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
         found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched, known)
         until, soon = self._until(found, velocity, about)
         system = self._renewed(system, books, poses, found.taken(soon), worn[self.of_line], stays)
@@ -164,18 +164,18 @@ class Encounters:
             stays: lines of encounters whose blocks have not moved, shape (lines of encounters,).
         """
         met, count = self.met, len(self.of_line)
-        joints, others, number = system.lines[:count], system.lines[count:], self._numbers(found)
+        lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
+        joints, others, number = lines[:count], lines[count:], self._numbers(found)
         of_gone = np.append(worn, ~stays)
-        before, gone = held(system, of_gone), system.lines[of_gone]
+        before, gone = held(system, of_gone), lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.of_line[worn]], met.pair[~stays]), poses, self.free)
-        lines = self._lines(found, number, poses)
-        here = places_of(lines, number, poses, self.free)
-        take_over(lines, here, found.gap, gone, old, poses)
+        new = self._lines(found, number, poses)
+        take_over(new, places_of(new, number, poses, self.free), found.gap, gone, old, poses)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth"):
             joints[name][worn] = 0.0
         met.pair = np.append(met.pair[stays], number)
         met.found = np.append(met.found[stays], self._moves_of(number))
-        lines = joined(joints, others[stays], lines)
+        lines = joined(joints, others[stays], new)
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
@@ -199,7 +199,7 @@ class Encounters:
         origin = found.place - half - self._slack(found, pair)[:, None] * normal
         origin = np.where(held[:, None], origin - poses.moved[face], poses.turned_back(face, origin - at_centroid[face]))
         rest = np.where(held[:, None], 0.0, self.drawn[face])
-        return rows(
+        lines = rows(
             self.kind,
             len(pair),
             body=self.body[block],
@@ -213,21 +213,22 @@ class Encounters:
             margin=np.inf,
             **self.law.of_places(pair, found.share, self.count),
         )
+        return np.asarray(lines)
 
     def _slack(self, found: Found, pair: Integers) -> Array:
         """What presses nothing of the overlap of each place [m], shape (n,): what a pair without a joint had first, as
         long as it has it."""
-        slack, known = self.met.slack, set(self.met.pair.tolist())
-        pairs, of = np.unique(pair, return_inverse=True)
-        overlap = np.zeros(len(pairs))
-        np.maximum.at(overlap, of, -found.gap)
-        kept = np.zeros(len(pairs))
-        jointed = np.isin(pairs, self.law.jointed)
-        for i, (number, deep) in enumerate(zip(pairs.tolist(), overlap, strict=True)):
-            if not jointed[i]:
-                kept[i] = min(slack.get(number, 0.0 if number in known else np.inf), deep)
-        self.met.slack = {n: s for n, s in slack.items() if n in known} | dict(zip(pairs.tolist(), kept, strict=True))
-        return np.asarray(kept[of])
+        slack, kept = self.met.slack, np.zeros(len(pair))
+        first = (found.gap < 0) & ~are_among(pair, np.sort(self.met.pair)) & ~are_among(pair, self.law.jointed)
+        of = first | are_among(pair, np.array(sorted(slack), dtype=np.int64))
+        deepest: dict[int, float] = {}
+        for number, gap in zip(pair[of].tolist(), found.gap[of].tolist(), strict=True):
+            deepest[number] = max(deepest.get(number, 0.0), -gap)
+        deepest = {number: min(slack.get(number, deep), deep) for number, deep in deepest.items()}
+        kept[of] = [deepest[number] for number in pair[of].tolist()]
+        known = set(self.met.pair.tolist()) if slack else set()
+        self.met.slack = {n: s for n, s in slack.items() if n in known} | {n: s for n, s in deepest.items() if s > 0}
+        return kept
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

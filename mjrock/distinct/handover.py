@@ -8,6 +8,7 @@ import numpy as np
 
 from ..quantities import Array, Flags, Integers
 from .looking import nearest
+from .pair_law import are_among
 from .rows import POINT, Rows
 
 
@@ -98,7 +99,7 @@ def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, pos
     closed = np.flatnonzero(gap < 0)
     closed = closed[np.argsort(new.pair[closed], kind="stable")]
     pairs, first = np.unique(new.pair[closed], return_index=True)
-    source = np.flatnonzero(np.isin(old.pair, pairs) & (gone["push"] > 0))
+    source = np.flatnonzero(are_among(old.pair, pairs) & (gone["push"] > 0))
     chosen = np.empty(len(source), dtype=np.int64)
     own, first = np.searchsorted(pairs, old.pair[source]), np.append(first, len(closed))
     nearest(own, old.at[source], first, new.at[closed], chosen)

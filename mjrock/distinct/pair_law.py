@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Integers
+from ..quantities import Array, Flags, Integers
 from .rows import Rows
 
 SHARED = ("k", "c", "k_s", "c_s")
@@ -22,6 +22,14 @@ SHARED = ("k", "c", "k_s", "c_s")
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
     """One number for two blocks."""
     return np.asarray(np.minimum(a, b) * blocks + np.maximum(a, b), dtype=np.int64)
+
+
+def are_among(numbers: Integers, increasing: Integers) -> Flags:
+    """Whether numbers are among increasing ones, shape of the numbers."""
+    if not len(increasing):
+        return np.zeros(len(numbers), dtype=bool)
+    place = np.minimum(np.searchsorted(increasing, numbers), len(increasing) - 1)
+    return np.asarray(increasing[place] == numbers)
 
 
 class PairLaw(NamedTuple):
@@ -55,7 +63,7 @@ class PairLaw(NamedTuple):
         first, second = np.divmod(pair, blocks)
         softer = np.where(self.of_block[0][first, 0] <= self.of_block[0][second, 0], first, second)
         shared, friction = self.of_block[0][softer], np.minimum(self.of_block[1][first], self.of_block[1][second])
-        had = np.isin(pair, self.jointed)
+        had = are_among(pair, self.jointed)
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
         return {**dict(zip(SHARED, share * shared.T, strict=True)), "friction": friction}

@@ -150,5 +150,7 @@ def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | floa
 
 
 def joined(*tables: Rows) -> Rows:
-    """Rows of one kind, one table after the other."""
-    return np.concatenate(tables).view(np.recarray)
+    """Rows of one kind, one table after the other. numpy joins bytes faster than columns."""
+    kind = tables[0].dtype
+    joint = np.concatenate([np.ascontiguousarray(table).view(np.uint8) for table in tables])
+    return joint.view(kind).view(np.recarray)
