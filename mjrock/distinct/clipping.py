@@ -13,7 +13,7 @@ import math
 from ..compiled import inlined, jitable
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
-from ..quantities import Array, Integers
+from ..quantities import Array
 from .solids import Solids
 
 OUTSIDE = 1e-9
@@ -116,9 +116,7 @@ def write_place(table: Array, count: int, blocks: tuple[int, int], at: Vector, n
 
 
 @jitable
-def meet(
-    solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, table: Array, count: int
-) -> None:
+def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, table: Array, count: int) -> None:
     """Write what a corner of the part of a face that lies over another is: a corner of either, or edges that cross.
 
     Args:
@@ -153,7 +151,10 @@ def meet(
         if distance < from_crossed:
             crossed, from_crossed = i, distance
     below = corner_of(solids, crossed)
-    own, along = minus(next_corner(solids, face, crossed), below), minus(next_corner(solids, over, edge), corner_of(solids, edge))
+    own, along = (
+        minus(next_corner(solids, face, crossed), below),
+        minus(next_corner(solids, over, edge), corner_of(solids, edge)),
+    )
     across = spun(along, own)
     size = length_of(across)
     if abs(dot(across, normal)) > UPRIGHT * size and size > PARALLEL * length_of(along) * length_of(own):
@@ -162,9 +163,7 @@ def meet(
 
 
 @jitable
-def clip(
-    solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], table: Array, count: int, room: Array
-) -> int:
+def clip(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
     """Write the places where a block lies over a face of another. Returns how many places there are then.
 
     Args:

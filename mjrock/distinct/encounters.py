@@ -82,10 +82,11 @@ class Encounters:
         self.sizes = np.array([block.size for block in blocks])
         self.finder = Finder(blocks, self.drawn)
         self.law = PairLaw.of(masonry, system.lines, joint)
-        of = np.searchsorted(self.law.jointed, [pair_number(each.below, each.above, self.count) for each in masonry.joints])
+        below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
+        of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         self.of_line, self.left = of[joint], np.full(len(self.law.jointed), np.inf)
         np.minimum.at(self.left, of, [LEFT * each.width for each in masonry.joints])
-        self.kind, self.start = system.lines.dtype, self._poses(system)
+        self.kind, self.start = system.lines.dtype, self.poses(system)
         self.limits = self._limits()
         none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.left), dtype=bool)
@@ -102,7 +103,7 @@ class Encounters:
     def _numbers(self, found: Found) -> Integers:
         return pair_number(found.face, found.other, self.count)
 
-    def _poses(self, system: System) -> Poses:
+    def poses(self, system: System) -> Poses:
         """Where all blocks are."""
         moved, turn = np.zeros_like(self.drawn), np.tile([1.0, 0.0, 0.0, 0.0], (self.count, 1))
         d, moves = moved.shape[1], self.support >= 0
@@ -126,7 +127,7 @@ class Encounters:
         met, slip, gap = self.met, np.empty(len(self.left)), np.empty(len(self.left))
         wear(system, self.of_line, slip, gap)
         worn = (np.maximum(slip, gap) > self.left) & ~met.handed
-        poses, (velocity, about) = self._poses(system), self._velocities(system)
+        poses, (velocity, about) = self.poses(system), self._velocities(system)
         ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
         watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
         watched[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
@@ -197,7 +198,9 @@ class Encounters:
         held, at_centroid = self.body[face] < 0, poses.drawn + poses.moved
         at = poses.turned_back(block, found.place + half - at_centroid[block])
         origin = found.place - half - self._slack(found, pair)[:, None] * normal
-        origin = np.where(held[:, None], origin - poses.moved[face], poses.turned_back(face, origin - at_centroid[face]))
+        origin = np.where(
+            held[:, None], origin - poses.moved[face], poses.turned_back(face, origin - at_centroid[face])
+        )
         rest = np.where(held[:, None], 0.0, self.drawn[face])
         lines = rows(
             self.kind,
@@ -235,4 +238,3 @@ def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:
     """The poses of the blocks that have moved, and the old ones of the others."""
     parts = zip(poses, old, strict=True)
     return Poses(*(np.where(moved.reshape(-1, *[1] * (new.ndim - 1)), new, before) for new, before in parts))
-

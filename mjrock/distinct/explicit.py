@@ -17,6 +17,7 @@ from ..result.stopwatch import Stopwatch
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
+from .overlap import checked_overlap
 from .reading import Run, response_of
 from .setup import carried_on, setup_of
 from .system import Books, Samples
@@ -94,6 +95,8 @@ def solve_explicit(
     }
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
+    if isinstance(case, MasonryCase):
+        stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept])
     run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept])
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     response.stats.update(watch.took())

@@ -55,7 +55,7 @@ class Found(NamedTuple):
 
     def taken(self, which: Flags | Integers) -> Found:
         """Some of the places."""
-        return Found(*(part[which] for part in self))
+        return Found._make(part[which] for part in self)
 
 
 class Near(NamedTuple):
@@ -114,8 +114,8 @@ class Finder:
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = np.empty((2 * count, 10))
         table = self._table[:count]
-        blocks = table[:, :2].astype(np.int64)
-        found = Found(*blocks.T, table[:, 2:5].copy(), table[:, 5:8].copy(), table[:, 8].copy(), table[:, 9].copy())
+        face, other = table[:, :2].astype(np.int64).T
+        found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9)))
         return self._of_the_plane(found) if self.flat else found
 
     def posed(self, poses: Poses) -> Solids:
@@ -171,10 +171,10 @@ def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
 @jitable
 def are_apart(near: Near, a: int, b: int) -> bool:
     """Whether two blocks are apart along an axis."""
+    apart = False
     for i in range(3):
-        if near.low[a, i] > near.high[b, i] or near.low[b, i] > near.high[a, i]:
-            return True
-    return False
+        apart = apart or near.low[a, i] > near.high[b, i] or near.low[b, i] > near.high[a, i]
+    return apart
 
 
 @jitable
@@ -208,8 +208,9 @@ def farthest(solids: Solids, block: int, way: Vector) -> float:
 
 @jitable
 def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
-    """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap. More than
-    it reaches is far enough."""
+    """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap.
+
+    More than it reaches is far enough."""
     best, most = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
         normal = normal_of(solids, face)
@@ -224,7 +225,8 @@ def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[
 @jitable
 def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
     """The direction across an edge of each of two blocks along which they are farthest apart, and how far [m]."""
-    best, most = (0.0, 0.0, 0.0), -math.inf
+    best: Vector = (0.0, 0.0, 0.0)
+    most = -math.inf
     for i in range(solids.way[a], solids.way[a + 1]):
         for j in range(solids.way[b], solids.way[b + 1]):
             normal = spun(vector(solids.ways, i, SPACE.axes), vector(solids.ways, j, SPACE.axes))
@@ -253,9 +255,7 @@ def edge_towards(solids: Solids, block: int, way: Vector) -> tuple[Vector, Vecto
 
 
 @jitable
-def meet_edges(
-    solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Array, count: int
-) -> int:
+def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Array, count: int) -> int:
     """Write the place where two edges cross. Returns how many places there are then."""
     if count < len(table):
         start, along = edge_towards(solids, blocks[0], normal)

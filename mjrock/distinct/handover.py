@@ -119,20 +119,20 @@ def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, pos
 
 
 def _some(places: Places, which: Integers) -> Places:
-    return Places(*(part[which] for part in places))
+    return Places._make(part[which] for part in places)
 
 
 def _in_world(along: Array, places: Places, poses: Poses, *, turns: bool) -> Array:
     """Vectors of the world from what lines keep along their faces, in the axes of the face if it `turns` with it."""
     if along.shape[1] == 1:
-        return along * _tangents(places)
+        return np.asarray(along * _tangents(places))
     return np.where(places.held[:, None] | (not turns), along, poses.turned(places.face, along))
 
 
 def _of_line(along: Array, places: Places, poses: Poses, *, turns: bool) -> Array:
     """What lines keep of vectors of the world, see `_in_world`."""
     if along.shape[1] == 2:
-        return np.sum(along * _tangents(places), axis=1, keepdims=True)
+        return np.asarray(np.sum(along * _tangents(places), axis=1, keepdims=True))
     return np.where(places.held[:, None] | (not turns), along, poses.turned_back(places.face, along))
 
 

@@ -70,7 +70,7 @@ class PairLaw(NamedTuple):
 
 
 def _sums(of: Integers, values: Array, count: int) -> Array:
-    return np.bincount(of, weights=values, minlength=count)
+    return np.asarray(np.bincount(of, weights=values, minlength=count), dtype=float)
 
 
 def _of_blocks(block: Integers, joints: Array, friction: Array, blocks: int) -> tuple[Array, Array]:

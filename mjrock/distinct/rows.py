@@ -89,7 +89,7 @@ def _body(d: int, s: int) -> Fields:
 
 def _line(d: int, s: int) -> Fields:
     return [
-        *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT for a fixed block
+        *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT where fixed
         *_integer("support"),  # the support that moves a fixed block, -1 for none
         *_integer("group"),  # number of the account
         *_vector(d, "at"),  # the point from the centroid of its body [m]
@@ -98,7 +98,7 @@ def _line(d: int, s: int) -> Fields:
         *_vector(d, "normal"),  # unit vector out of the face, of a POINT into that of the body
         *_number("k", "c", "k_s", "c_s"),  # springs and dashpots along the normal and the face
         *_number("friction"),  # coefficient [-]
-        *_number("margin"),  # square of the least way along the face from the origin to its end, infinite where it has none [m2]
+        *_number("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]
         *_integer("first", "last"),  # the edges of the face
         *_integer("own_first", "own_last"),  # the edges of the face of its own body
         *_vector(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`

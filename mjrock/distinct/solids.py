@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -65,7 +65,7 @@ class Solids(NamedTuple):
         return self._replace(corners=corners + place[block], normals=normals, ways=ways)
 
 
-def _begins(tables: Sequence[Array]) -> Integers:
+def _begins(tables: Iterable[Array | Integers]) -> Integers:
     """Where each of some tables begins, one after the other, and where the last one ends."""
     return np.cumsum([0, *map(len, tables)])
 

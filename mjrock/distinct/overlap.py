@@ -1,0 +1,98 @@
+"""Overlap: how much of a block lies inside another, which no account of energy shows."""
+
+from __future__ import annotations
+
+import heapq
+import warnings
+
+import numpy as np
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+from ..problem.masonry.case import MasonryCase
+from ..quantities import Array
+from .encounters import Encounters
+from .handover import Poses
+from .pair_law import pair_number
+from .setup import Setup
+from .solids import Solids
+from .system import System
+from .turning import start_turning
+
+LOOKS = 200
+"""Most samples that are looked at."""
+DEEPEST = 16
+"""Pairs whose overlap is measured: those whose mean depth over their size is largest."""
+ROUNDING = 1e-9
+"""Radius of a sphere inside two blocks below which they have nothing in common [m]."""
+DOUBTED = 0.01
+"""Share of a block from which on its overlap is warned of [-]."""
+
+
+def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> float:
+    """The largest share of a block that lies inside another at samples of a run [-], at most 200 of them.
+
+    All pairs are looked at, whether their joint is intact or not. Where no block has come near another one that it has
+    no intact joint with, nothing is looked at, and the answer is zero.
+
+    Args:
+        setup: of the run.
+        case: its case.
+        pose: at the samples, shape (samples, n, nq).
+        t: times of the samples [s], shape (samples,).
+
+    Warns:
+        UserWarning: of more than 1 %, with the names of the two blocks, and when.
+    """
+    encounters = setup.encounters
+    if encounters is None or not encounters.met.watched.any():
+        return 0.0
+    chosen = np.unique(np.linspace(0, len(t) - 1, min(LOOKS, len(t))).round().astype(int))
+    poses = {i: _posed(encounters, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
+    every, deepest = np.ones(encounters.count, dtype=bool), set[tuple[float, int, int, int]]()
+    for i, there in poses.items():
+        found = encounters.finder.found(there, np.zeros(encounters.count), every, np.zeros(0, dtype=np.int64))
+        pairs, of = np.unique(pair_number(found.face, found.other, encounters.count), return_inverse=True)
+        blocks = np.array(np.divmod(pairs, encounters.count))
+        depth = np.bincount(of, weights=found.share * np.maximum(-found.gap, 0.0)) / encounters.sizes[blocks].min(
+            axis=0
+        )
+        here = {(float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST] if depth[j] > 0}
+        deepest = set(heapq.nlargest(DEEPEST, deepest | here))
+    worst, moment, names = 0.0, 0, ("", "")
+    for _, i, a, b in deepest:
+        solids = encounters.finder.posed(poses[i])
+        share = common_volume(solids, a, b) / min(common_volume(solids, a, a), common_volume(solids, b, b))
+        if share > worst:
+            worst, moment, names = share, i, (case.masonry.names[a], case.masonry.names[b])
+    if worst > DOUBTED:
+        warnings.warn(
+            f"{names[0]} and {names[1]} lie inside each other by {worst:.1%} of the smaller one at {t[moment]:.4g} s: "
+            "stiffer joints keep blocks apart",
+            stacklevel=3,
+        )
+    return worst
+
+
+def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: MasonryCase) -> Poses:
+    """Where all blocks are at a sample."""
+    bodies, d = system.bodies.copy(), len(system.axes)
+    bodies["place"] = pose[:, :d]
+    start_turning(bodies, pose, np.zeros((len(pose), 3 * d - 3)))
+    moved = np.concatenate([np.empty((0, d)), *(support.at(np.array([t])) for support in case.supports)])
+    return encounters.poses(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved)))
+
+
+def common_volume(solids: Solids, a: int, b: int) -> float:
+    """Volume that two blocks have in common [m3]."""
+    faces = np.concatenate([np.arange(solids.face[block], solids.face[block + 1]) for block in (a, b)])
+    normals = solids.normals[faces]
+    reach = np.sum(normals * solids.corners[solids.outline[solids.first[faces]]], axis=1)
+    # the deepest point inside: as far as can be from every face
+    inside = linprog(
+        [0.0, 0.0, 0.0, -1.0], A_ub=np.column_stack([normals, np.ones(len(faces))]), b_ub=reach, bounds=(None, None)
+    )
+    if not inside.success or inside.x[3] < ROUNDING:
+        return 0.0
+    corners = HalfspaceIntersection(np.column_stack([normals, -reach]), inside.x[:3]).intersections
+    return float(ConvexHull(corners).volume)
