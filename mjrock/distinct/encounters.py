@@ -9,6 +9,7 @@ normal with the other. What the springs of a find hold less than those before it
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .finder import Finder, Found
 from .handover import Poses, places_of, take_over
-from .looking import held, wear
+from .looking import Wear, held, wears
 from .pair_law import PairLaw, are_among, pair_number
 from .rows import POINT, Rows, joined, rows
 from .system import Books, System
@@ -33,7 +34,8 @@ PASSED = 0.02
 STAYED = 2e-4
 """Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
 NEAR = 1e-3
-"""Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]."""
+"""Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
+without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
 TOWARDS = 0.4
@@ -70,35 +72,52 @@ class Encounters:
         masonry: the masonry.
         system: its bodies where they stand, and the lines of its joints.
         joint: number of the joint of each line. The account of the encounters comes after those of the joints.
-        supports: names of the fixed blocks that move, in the order of the supports.
     """
 
-    def __init__(self, masonry: Masonry, system: System, joint: Integers, supports: tuple[str, ...] = ()) -> None:
+    def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
         blocks = masonry.blocks
         self.count, self.group = len(blocks), len(masonry.joints)
         self.body, self.free = free_numbers(blocks), np.array(masonry.free)
-        self.support = np.array([supports.index(name) if name in supports else -1 for name in masonry.names])
+        self.names, self.support = masonry.names, np.full(len(blocks), -1)
         self.drawn = np.array(masonry.centroids, dtype=float)
         self.sizes = np.array([block.size for block in blocks])
         self.finder = Finder(blocks, self.drawn)
         self.law = PairLaw.of(masonry, system.lines, joint)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
-        self.of_line, self.left = of[joint], np.full(len(self.law.jointed), np.inf)
-        np.minimum.at(self.left, of, [LEFT * each.width for each in masonry.joints])
+        left = np.full(len(self.law.jointed), np.inf)
+        np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
         self.kind, self.start = system.lines.dtype, self.poses(system)
-        self.limits = self._limits()
+        self.limits, free, slip, gap = self._limits(), self.free, np.zeros(len(left)), np.zeros(len(left))
+        self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
+        self.met = self._nothing_met()
+
+    def begun(self, supports: tuple[str, ...]) -> Encounters:
+        """The same at the start of a run.
+
+        Args:
+            supports: names of the fixed blocks that move, in the order of the supports.
+        """
+        fresh = copy(self)
+        fresh.support = np.array([supports.index(name) if name in supports else -1 for name in self.names])
+        fresh.met = self._nothing_met()
+        return fresh
+
+    def _nothing_met(self) -> Met:
         none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
-        nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.left), dtype=bool)
-        self.met = Met(nobody, intact, none, {}, self.start, unmoved, none)
+        nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.law.jointed), dtype=bool)
+        return Met(nobody, intact, none, {}, self.start, unmoved, none)
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
         found = self.finder.found(self.start, 0.5 * self.sizes, np.ones(self.count, dtype=bool), self.law.jointed)
-        apart = 0.5 * self.sizes
+        apart, limits = (
+            found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other]),
+            self.sizes.copy(),
+        )
         for block in (found.face, found.other):
-            np.minimum.at(apart, block, found.gap)
-        return np.asarray(np.maximum(TOWARDS * apart, NEAR * self.sizes))
+            np.minimum.at(limits, block, np.where(apart, TOWARDS * found.gap, PASSED * self.sizes[block]))
+        return np.asarray(np.maximum(limits, NEAR * self.sizes))
 
     def _numbers(self, found: Found) -> Integers:
         return pair_number(found.face, found.other, self.count)
@@ -124,9 +143,10 @@ class Encounters:
     def look(self, system: System, books: Books) -> tuple[System, Books, float]:
         """The system with the lines of the encounters that may happen until the next look, its books with room for
         them, and the time until then [s]."""
-        met, slip, gap = self.met, np.empty(len(self.left)), np.empty(len(self.left))
-        wear(system, self.of_line, slip, gap)
-        worn = (np.maximum(slip, gap) > self.left) & ~met.handed
+        met, wear = self.met, self.wear
+        if not (wears(system, wear, LOOK) or met.watched.any() or system.supports.moved.any()):
+            return system, books, LOOK
+        worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
         poses, (velocity, about) = self.poses(system), self._velocities(system)
         ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
         watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
@@ -140,7 +160,7 @@ class Encounters:
         known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
         found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched, known)
         until, soon = self._until(found, velocity, about)
-        system = self._renewed(system, books, poses, found.taken(soon), worn[self.of_line], stays)
+        system = self._renewed(system, books, poses, found.taken(soon), worn[wear.pairs], stays)
         short = len(system.lines) - len(books.active)
         return system, books._replace(active=np.append(books.active, np.zeros(max(short, 0), dtype=np.int64))), until
 
@@ -164,12 +184,12 @@ class Encounters:
             worn: lines of joints that are handed over now, shape (lines of joints,).
             stays: lines of encounters whose blocks have not moved, shape (lines of encounters,).
         """
-        met, count = self.met, len(self.of_line)
+        met, count = self.met, len(self.wear.pairs)
         lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         of_gone = np.append(worn, ~stays)
         before, gone = held(system, of_gone), lines[of_gone]
-        old = places_of(gone, np.append(self.law.jointed[self.of_line[worn]], met.pair[~stays]), poses, self.free)
+        old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
         new = self._lines(found, number, poses)
         take_over(new, places_of(new, number, poses, self.free), found.gap, gone, old, poses)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth"):

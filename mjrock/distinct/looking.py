@@ -3,32 +3,78 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from ..compiled import compiled, jitable
 from ..geometry.vectors import components, dot, minus, plus, spin_components, vector
 from ..problem.masonry.joint_law import stored, stored_along
 from ..quantities import Array, Flags, Integers
 from .contact import meeting
+from .rows import Rows
 from .system import System
 from .turning import rotation_change, take_turn
 
+AXES = np.eye(3)
+"""Unit vectors."""
 
-@compiled
-def wear(system: System, pairs: Integers, slip: Array, gap: Array) -> None:
-    """Write how far each pair of blocks with a joint has slid at most, and opened at least [m], shape (pairs,).
+
+class Wear(NamedTuple):
+    """How far joints have worn, and bodies have moved from where they stood.
 
     Args:
-        system: the system.
-        pairs: number of the pair of each line of the joints.
-        slip, gap: room for the answer.
+        pairs: number of the pair of blocks of each line of a joint, shape (m,).
+        slip, gap: largest way along the joints of each pair, and least opening [m], shape (pairs,).
+        left: slip or gap from which on a pair has left its joints [m], shape (pairs,).
+        start: the bodies where they stood.
+        limits: how far each may move before its block is looked at [m], shape (bodies,).
+        sizes: the largest distance of a corner from its centroid [m], shape (bodies,).
     """
-    wear_of_lines(system, pairs, slip, gap, system.axes)
+
+    pairs: Integers
+    slip: Array
+    gap: Array
+    left: Array
+    start: Rows
+    limits: Array
+    sizes: Array
+
+
+@compiled
+def wears(system: System, wear: Wear, time: float) -> bool:
+    """Bring slip and gap of joints up to date. Returns whether a pair has left its joints, or a body may move farther
+    than its limit within a time [s]."""
+    return wears_joints(system, wear, system.axes) or moves_on(system, wear, time, system.axes)
 
 
 @jitable
-def wear_of_lines(system: System, pairs: Integers, slip: Array, gap: Array, axes: tuple[int, ...]) -> None:
-    """`wear`, in the plane or in space. It brings the rotations of the bodies up to date."""
-    slip[:], gap[:] = 0.0, math.inf
+def moves_on(system: System, wear: Wear, time: float, axes: tuple[int, ...]) -> bool:
+    """Whether a body may move farther than its limit within a time [s]."""
+    for b in range(len(system.bodies)):
+        body, start, turned = system.bodies[b], wear.start[b], 0.0
+        take_turn(start, axes)
+        for i in range(len(axes)):
+            unit = vector(AXES, i, axes)
+            change = minus(rotation_change(body, unit), rotation_change(start, unit))
+            turned += dot(change, change)
+        way, velocity = (
+            minus(components(body.place, axes), components(start.place, axes)),
+            components(body.velocity, axes),
+        )
+        spin = spin_components(body.spin, axes)
+        speed = math.sqrt(dot(velocity, velocity)) + math.sqrt(dot(spin, spin)) * wear.sizes[b]
+        if math.sqrt(dot(way, way)) + math.sqrt(turned) * wear.sizes[b] + time * speed > wear.limits[b]:
+            return True
+    return False
+
+
+@jitable
+def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
+    """Bring slip, gap and the rotations of bodies up to date. Returns whether a pair has left its joints."""
+    pairs, slip, gap = wear.pairs, wear.slip, wear.gap
+    for pair in range(len(slip)):
+        slip[pair], gap[pair] = 0.0, math.inf
     for b in range(len(system.bodies)):
         take_turn(system.bodies[b], axes)
     for p in range(len(pairs)):
@@ -45,6 +91,10 @@ def wear_of_lines(system: System, pairs: Integers, slip: Array, gap: Array, axes
         apart = dot(normal, across)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], apart)
+    left = False
+    for pair in range(len(slip)):
+        left = left or max(slip[pair], gap[pair]) > wear.left[pair]
+    return left
 
 
 @compiled

@@ -94,11 +94,11 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     """Masonry at the start of a case, or in a given state."""
     masonry = case.masonry
-    scene, at_rest = standing(masonry, case.effects, case.settled)
+    scene, at_rest, drawn = standing(masonry, case.effects, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     of, blocks = (masonry, case.effects), tuple(support.block for support in case.supports)
-    encounters = Encounters(masonry, system, scene.contacts.joint, blocks)
+    encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
     return Setup(scene, course, system, longest_step(system), SHARE, encounters=encounters, of=of, blocks=blocks)
 
@@ -109,22 +109,27 @@ def continued(course: Course, state: State | None) -> Course:
 
 
 @lru_cache(maxsize=16)
-def standing(masonry: Masonry, effects: tuple[Effect, ...] = (), settled: bool = True) -> tuple[Scene, System]:
-    """Masonry and its system at rest, or as drawn where it is not settled, which cases with the same effects share.
+def standing(
+    masonry: Masonry, effects: tuple[Effect, ...] = (), settled: bool = True
+) -> tuple[Scene, System, Encounters]:
+    """Masonry, its system at rest, or as drawn where it is not settled, and its blocks as they may meet, which cases
+    with the same effects share.
 
     Raises:
         ValueError: if it is to settle and does not stand. The message names the blocks that fall.
     """
     if not settled:
         drawn = drawn_masonry(masonry, effects)
-        return drawn, system_of(drawn, masonry)
+        system = system_of(drawn, masonry)
+        return drawn, system, Encounters(masonry, system, drawn.contacts.joint)
     if not masonry.in_space:
         require_standing(masonry, effects)
     scene = standing_masonry(masonry, effects)
     system = system_of(scene, masonry)
     pose, drag = rest_in_space(scene, masonry, effects) if masonry.in_space else rest_in_plane(scene, system)
     take_grips(system.lines, drag)
-    return scene, started(system, pose)
+    started(system, pose)
+    return scene, system, Encounters(masonry, system, scene.contacts.joint)
 
 
 def rest_in_plane(scene: Scene, system: System) -> tuple[Array, Array]:
