@@ -8,13 +8,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..geometry.kinematics import gaps
-from ..geometry.poses import angles
+from ..geometry.poses import angles, tilts
 from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
 from ..result.ending import Outcome, ending, masonry_ending
-from ..result.fallen import fallen_blocks
+from ..result.fallen import fallen_blocks, in_order, left_joints
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion
@@ -104,7 +104,10 @@ class AskedMasonry:
         up = scene.freedom.translations - 1
         motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose)
         drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
-        fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
+        left = left_joints(masonry, t, motion.off)
+        fell = fallen_blocks(masonry, t, motion.parted, tilts(steps.pose, scene.freedom), drop)
+        both = {name: min(left.get(name, np.inf), fell.get(name, np.inf)) for name in left | fell}
+        fallen = in_order(both) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
         quiet = is_quiet(scene, float(energy[-1]), steps.velocity[-1].reshape(len(scene.bodies.names), -1))
         return Reading(
