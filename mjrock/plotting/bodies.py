@@ -149,7 +149,7 @@ class Bodies:
         free, blocks = case.masonry.free, case.masonry.blocks
         if block in free:
             body = free.index(block)
-            return self.placed(frame, body, (point - self.rests[body])[None])[0]
+            return np.asarray(self.placed(frame, body, (point - self.rests[body])[None])[0])
         shift = self.shifts.get([i for i, one in enumerate(blocks) if one.fixed].index(block))
         return point if shift is None else np.asarray(point + self.magnify * shift[frame])
 

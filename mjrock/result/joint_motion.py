@@ -67,20 +67,23 @@ def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array
         pose: of the steps or samples, shape (steps, n nq).
     """
     joints, frames = masonry.joints, frames_of(start, places.freedom)
-    above = np.array([each.above for each in joints])[joint] == np.array(masonry.free)[places.body]
-    at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
-    points = JointPoints(joint, at_rest, np.where(above, 1.0, -1.0))
+    points = JointPoints.of(masonry, places, joint, frames)
     slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
     widths = np.array([each.width for each in joints])
 
     def look(some: Array) -> Followed:
-        opened, nearest = np.empty((2, len(some), len(joints)))
-        slid = np.empty((len(some), len(joints), at_rest.shape[1]))
-        _look(places, points, some, frames, opened, nearest, slid)
+        opened, nearest, slid = _looked(places, points, some, frames, len(joints))
         far, off = slid_off(slid)
         return Followed(opened, far, max(0.0, -float(nearest.min())), off, (far > widths) | (nearest > PARTED * widths))
 
     return in_parts(pose, len(joints), look)
+
+
+def slips(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Array:
+    """How far the block above each joint has slid on the one below [m], as of `joint_motion`, shape (steps, joints, d)."""
+    frames = frames_of(start, places.freedom)
+    points = JointPoints.of(masonry, places, joint, frames)
+    return _looked(places, points, np.ascontiguousarray(pose), frames, len(masonry.joints))[2]
 
 
 SlidOff = Callable[[Array], tuple[Array, Flags]]
@@ -118,6 +121,21 @@ class JointPoints(NamedTuple):
     joint: Integers
     at_rest: Array
     sign: Array
+
+    @classmethod
+    def of(cls, masonry: Masonry, places: Places, joint: Integers, frames: Array) -> JointPoints:
+        """The points of masonry, with the number of the joint of each, and the frames at rest."""
+        above = np.array([each.above for each in masonry.joints])[joint] == np.array(masonry.free)[places.body]
+        at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
+        return cls(joint, at_rest, np.where(above, 1.0, -1.0))
+
+
+def _looked(places: Places, points: JointPoints, pose: Array, frames: Array, joints: int) -> tuple[Array, Array, Array]:
+    """The gap of each joint at its widest point and at its nearest, and how far the block above has slid there."""
+    opened, nearest = np.empty((2, len(pose), joints))
+    slid = np.empty((len(pose), joints, points.at_rest.shape[1]))
+    _look(places, points, pose, frames, opened, nearest, slid)
+    return opened, nearest, slid
 
 
 @jitable
