@@ -87,9 +87,9 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     of, number = scene.contacts.joint, free_numbers(masonry.blocks)
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
-        edges_of(face, origins[block])
+        edges_of(face, origins[block], met)
         for joint, faces in zip(masonry.joints, outlines_of_joints(masonry), strict=True)
-        for block, face in zip((joint.below, joint.above), faces, strict=True)
+        for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)

@@ -16,9 +16,9 @@ from ..geometry.poses import tilts
 from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, Array, Integers
+from ..quantities import GRAVITY, Array, Integers, named
 from ..result.ending import ending, masonry_ending
-from ..result.fallen import fallen_blocks, sunk_ground
+from ..result.fallen import below_everything, fallen_blocks, sunk_ground
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion
@@ -135,11 +135,14 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     flat = pose.reshape(len(pose), -1)
     up = scene.freedom.translations - 1
     motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
-    drop = scene.at_rest[:, up] - pose[:, :, up] - sunk_ground(masonry, case.supports, run.t)
-    fallen = fallen_blocks(masonry, run.t, motion.parted, tilts(flat, scene.freedom), drop)
+    drop = scene.at_rest[:, up] - pose[:, :, up]
+    below = drop - sunk_ground(masonry, case.supports, run.t)
+    fallen = fallen_blocks(masonry, run.t, motion.parted, tilts(flat, scene.freedom), below)
     quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
     unmet = "of edges that cross, and of corners of fixed blocks," if run.in_space else ""
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet)
+    if gone := below_everything(masonry, case.supports, run.t, drop):
+        message += f" Below all fixed blocks, past the edge of any ground: {named(gone)}."
     opening = motion.opening.copy()
     of = scene.contacts.joint
     np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])

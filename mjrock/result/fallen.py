@@ -65,6 +65,22 @@ def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
     return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
 
 
+def below_everything(masonry: Masonry, supports: tuple[Support, ...], t: Array, drop: Array) -> list[str]:
+    """Names of the blocks that lie below all fixed blocks in the end, as those that fall past the edge of the ground.
+
+    Args:
+        masonry: the masonry.
+        supports: that move fixed blocks.
+        t: times [s], shape (n,).
+        drop: how far the centroid of each free block lies below where it was at rest [m], shape (n, bodies).
+    """
+    moved = {support.block: float(support.at(t[-1:])[0, -1]) for support in supports}
+    fixed = [(masonry.names[i], block.corners[:, -1].min()) for i, block in enumerate(masonry.blocks) if block.fixed]
+    lowest = min(low + moved.get(name, 0.0) for name, low in fixed)
+    heights = masonry.centroids[list(masonry.free), -1] - drop[-1]
+    return [masonry.names[block] for block, height in zip(masonry.free, heights, strict=True) if height < lowest]
+
+
 def in_order(when: Mapping[str, float]) -> dict[str, float]:
     """The finite times, the first first."""
     return {name: when[name] for name in sorted(when, key=when.__getitem__) if np.isfinite(when[name])}

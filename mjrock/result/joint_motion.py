@@ -80,7 +80,7 @@ def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array
 
 
 def slips(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Array:
-    """How far the block above each joint has slid on the one below [m], as of `joint_motion`, shape (steps, joints, d)."""
+    """How far the block above each joint has slid on the one below [m], shape (steps, joints, d)."""
     frames = frames_of(start, places.freedom)
     points = JointPoints.of(masonry, places, joint, frames)
     return _looked(places, points, np.ascontiguousarray(pose), frames, len(masonry.joints))[2]
