@@ -70,7 +70,7 @@ def links_of(scene: Scene) -> tuple[Rows, Rows, Rows]:
 
     def links(some: Links, between: Array, **more: Array | float) -> Rows:
         columns = {name: getattr(some, name) for name in LinkLaw._fields} | more
-        ends = {"anchor": some.anchor_body, "at": some.at, "origin": some.anchor_at, "between": between}
+        ends = {"anchor": some.anchor_body, "support": -1, "at": some.at, "origin": some.anchor_at, "between": between}
         return rows(kind, len(some.body), body=some.body, **columns | ends if len(some.body) else {})
 
     ties = links(scene.links.sprung, scene.ties.between, reach=scene.ties.reach, broken=np.inf)
@@ -87,9 +87,9 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     of, number = scene.contacts.joint, free_numbers(masonry.blocks)
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     tables = [
-        edges_of(face, origins[block])
+        edges_of(face, origins[block], met)
         for joint, faces in zip(masonry.joints, outlines_of_joints(masonry), strict=True)
-        for block, face in zip((joint.below, joint.above), faces, strict=True)
+        for block, face, met in zip((joint.below, joint.above), faces, faces[::-1], strict=True)
     ]
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
@@ -114,8 +114,10 @@ def started(system: System, pose: Array, velocity: Array | None = None) -> Syste
 
 
 def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[Support]) -> System:
-    """The system with supports that move fixed blocks."""
+    """The system with supports that move fixed blocks, and the links that are anchored on these."""
     numbers = {masonry.names.index(support.block): i for i, support in enumerate(supports)}
+    for links, of_scene in ((system.ties, scene.links.sprung), (system.dampers, scene.links.damped)):
+        links["support"] = [numbers.get(block, -1) for block in of_scene.anchor_block.tolist()]
     below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
     of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)

@@ -18,9 +18,9 @@ from ..quantities import Array
 from .rows import Rows, kinds, rows
 
 OVERHANG = 0.02
-"""Length by which a face is taken to be longer at either end, over its length [-]. The points of a block that stands
-flush lie at the very end of the face, and move to and fro there. Over the same length beyond, the normal turns from
-that of the face to that of the face of the block above."""
+"""Length by which a face is taken to be longer at either end, over its length or that of the face that it meets, which
+is shorter [-]. The points of a block that stands flush lie at the very end of the face, and move to and fro there. Over
+the same length beyond, the normal turns from that of the face to that of the face of the block above."""
 ROUNDS = 3
 """Rounds over the edges of a face in the search for the nearest place of its outline. One is enough in the plane and
 for a rectangle."""
@@ -65,10 +65,15 @@ def _polygonal(face: Face) -> Outline:
     return Outline(face.corners, face.normal, ways / np.linalg.norm(ways, axis=1)[:, None])
 
 
-def edges_of(face: Outline, origin: Array) -> Rows:
-    """The edges of a face, which is taken to be longer by `OVERHANG` at either end, from a point of its block [m]."""
+def edges_of(face: Outline, origin: Array, met: Outline | None = None) -> Rows:
+    """The edges of a face, which is taken to be longer by `OVERHANG` at either end, from a point of its block [m].
+
+    A joint is made by this face and another that is `met`.
+    """
     places = (face.corners - origin) @ face.ways.T  # (corners, edges)
     extent = np.ptp(places, axis=0)
+    if met is not None:
+        extent = np.minimum(extent, np.ptp(met.corners @ face.ways.T, axis=0))
     reach, band = places.max(axis=0) + OVERHANG * extent, OVERHANG * (1 + 2 * OVERHANG) * extent
     edge = kinds(len(origin)).edge
     return rows(edge, len(face.ways), way=face.ways, reach=reach, band=band)

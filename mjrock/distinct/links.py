@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined, jitable
-from ..geometry.vectors import Vector, components, dot, minus, plus, scaled, spin_components, spun
+from ..geometry.vectors import Vector, components, dot, minus, plus, scaled, spin_components, spun, vector
 from .contact import add_force
 from .rows import Row, Rows
 from .system import Books, Supports, System
@@ -23,8 +23,9 @@ class Pull(NamedTuple):
 
 
 @inlined
-def pull(link: Row, bodies: Rows, axes: tuple[int, ...]) -> Pull:
+def pull(link: Row, system: System, axes: tuple[int, ...]) -> Pull:
     """Where a tie or a damper is."""
+    bodies = system.bodies
     body, at = bodies[link.body], components(link.at, axes)
     change = rotation_change(body, at)
     arm, across = plus(at, change), plus(components(link.between, axes), plus(components(body.place, axes), change))
@@ -34,6 +35,8 @@ def pull(link: Row, bodies: Rows, axes: tuple[int, ...]) -> Pull:
         change = rotation_change(anchor, anchor_arm)
         across = minus(across, plus(components(anchor.place, axes), change))
         anchor_arm = plus(anchor_arm, change)
+    elif link.support >= 0:
+        across = minus(across, vector(system.supports.moved, link.support, axes))
     length = math.sqrt(dot(across, across))
     return Pull(length, scaled(1 / length, across), arm, anchor_arm)
 
@@ -47,15 +50,27 @@ def act(link: Row, bodies: Rows, now: Pull, force: float) -> None:
 
 
 @inlined
-def lengthening(link: Row, bodies: Rows, now: Pull, axes: tuple[int, ...]) -> float:
+def lengthening(link: Row, system: System, now: Pull, axes: tuple[int, ...]) -> float:
     """Rate of the length of a link [m/s]."""
+    bodies = system.bodies
     body = bodies[link.body]
     velocity = plus(components(body.velocity, axes), spun(spin_components(body.spin, axes), now.arm))
     if link.anchor >= 0:
         anchor = bodies[link.anchor]
         of_anchor = plus(components(anchor.velocity, axes), spun(spin_components(anchor.spin, axes), now.anchor_arm))
         velocity = minus(velocity, of_anchor)
+    elif link.support >= 0:
+        velocity = minus(velocity, vector(system.supports.moving, link.support, axes))
     return dot(now.way, velocity)
+
+
+@inlined
+def book_support(link: Row, system: System, books: Books, now: Pull, force: float, h: float) -> None:
+    """Book the work that the support of a link does in a time h, from the force of the last step to this one [N]."""
+    if link.support >= 0:
+        carried = dot(now.way, vector(system.supports.moving, link.support, now.way))
+        books.totals[0].ground += 0.5 * h * (link.pulled + force) * carried
+    link.pulled = force
 
 
 @inlined
@@ -89,7 +104,7 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
         tie = system.ties[i]
         if t >= tie.broken:
             continue
-        now = pull(tie, bodies, axes)
+        now = pull(tie, system, axes)
         beyond = now.length - tie.reach - tie.strength / tie.k
         shorter = tie.reach - now.length - tie.push / tie.k
         if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
@@ -97,21 +112,24 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
             tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
             books.ties[i] += tie.strength * min(beyond, left)
             if beyond >= left:
-                since = since_broken(beyond - left, lengthening(tie, bodies, now, axes), h)
+                since = since_broken(beyond - left, lengthening(tie, system, now, axes), h)
+                book_support(tie, system, books, now, -tie.strength, h - since)
                 tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
                 act(tie, bodies, now, -pulled_until_broken(tie, since, h))
                 continue
         elif tie.push > 0 and shorter > 0:  # it slips the other way
             tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter
             books.ties[i] += tie.push * shorter
-        act(tie, bodies, now, -tie.k * elongation(tie, now.length))
+        force = -tie.k * elongation(tie, now.length)
+        book_support(tie, system, books, now, force, h)
+        act(tie, bodies, now, force)
     for i in range(len(system.dampers)):
         damper = system.dampers[i]
-        now = pull(damper, bodies, axes)
-        rate = lengthening(damper, bodies, now, axes)
+        now = pull(damper, system, axes)
+        rate = lengthening(damper, system, now, axes)
         force = -damper.c * rate
         books.dampers[i] -= 0.5 * h * (force + damper.pulled) * rate
-        damper.pulled = force
+        book_support(damper, system, books, now, force, h)
         act(damper, bodies, now, force)
     for i in range(len(system.forces)):
         row = system.forces[i]
@@ -127,7 +145,7 @@ def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
         tie = system.ties[i]
         if tie.broken < math.inf:
             continue
-        stretched = elongation(tie, pull(tie, system.bodies, axes).length)
+        stretched = elongation(tie, pull(tie, system, axes).length)
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.forces)):
         row = system.forces[i]

@@ -93,5 +93,6 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
         system.supports.moved[i] = places(system.supports, i, 0.0) - memory.moved.get(block, 0.0)
     carried = copied(memory.system)
     carried.lines["support"][: len(system.lines)] = system.lines["support"]
+    carried.ties["support"], carried.dampers["support"] = system.ties["support"], system.dampers["support"]
     carried.lines["widest"] = 0.0
     return system._replace(bodies=carried.bodies, lines=carried.lines, ties=carried.ties, dampers=carried.dampers)

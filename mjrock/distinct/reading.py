@@ -12,12 +12,13 @@ from typing import Any
 import numpy as np
 
 from ..geometry.frames import SPACE
+from ..geometry.poses import tilts
 from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, Array, Integers
+from ..quantities import GRAVITY, Array, Integers, named
 from ..result.ending import ending, masonry_ending
-from ..result.fallen import fallen_blocks
+from ..result.fallen import below_everything, fallen_blocks, sunk_ground
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion
@@ -36,6 +37,8 @@ from .system import Books, Samples
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
 and over the energy there was [-]."""
+STILL = 0.2
+"""Time without motion after which blocks that have left their joints lie still [s]."""
 ROUNDING = 1e-12
 """Rounding of a position in many steps, over its size [-]."""
 
@@ -134,9 +137,13 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     flat = pose.reshape(len(pose), -1)
     up = scene.freedom.translations - 1
     motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
-    fallen = fallen_blocks(masonry, run.t, motion.lost, scene.at_rest[:, up] - pose[:, :, up])
-    quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1])
+    drop = scene.at_rest[:, up] - pose[:, :, up]
+    below = drop - sunk_ground(masonry, case.supports, run.t)
+    fallen = fallen_blocks(masonry, run.t, motion.parted, tilts(flat, scene.freedom), below)
+    quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1]) or lies_still(run)
     outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet="")
+    if gone := below_everything(masonry, case.supports, run.t, drop):
+        message += f" Below all fixed blocks, past the edge of any ground: {named(gone)}."
     opening = motion.opening.copy()
     of = scene.contacts.joint
     np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])
@@ -147,6 +154,15 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
         "count": int(np.searchsorted(run.t, next(iter(fallen.values()), np.inf))),
         "stats": {"deepest": motion.deepest},
     }
+
+
+def lies_still(run: Run) -> bool:
+    """Whether blocks that have left their joints lie still: for the last 0.2 s none of them moved as `is_quiet` says."""
+    met = None if run.followed.memory is None else run.followed.memory.met
+    if met is None or not met.handed.any():
+        return False
+    last = run.samples.velocity[run.t >= run.t[-1] - STILL]
+    return run.t[-1] > STILL and all(is_quiet(run.scene, 0.0, velocity) for velocity in last)
 
 
 def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:

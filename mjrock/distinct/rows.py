@@ -131,13 +131,14 @@ def _way(d: int, s: int) -> Fields:
 def _link(d: int) -> Fields:
     return [
         *_integer("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
+        *_integer("support"),  # the support that moves the fixed block of the other end, -1 for none
         *_vector(d, "at"),  # where, from its centroid [m]
         *_vector(d, "origin"),  # the other end from the centroid of the anchor [m]
         *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]
         *_number("k", "c"),  # spring and dashpot [N/m, N s/m]
         *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
         *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
-        *_number("pulled"),  # force of a damper in the last step [N]
+        *_number("pulled"),  # force in the last step, negative where it pulls [N]
     ]
 
 

@@ -8,16 +8,18 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..geometry.kinematics import gaps
-from ..geometry.poses import angles
+from ..geometry.poses import angles, tilts
 from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects import laden
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
 from ..result.ending import Outcome, ending, masonry_ending
-from ..result.fallen import fallen_blocks
+from ..result.fallen import fallen_blocks, in_order, left_joints
 from ..result.history import rocking_history
-from ..result.joint_motion import joint_motion
+from ..result.joint_motion import joint_motion, slips
 from ..result.joints import JointMotion
+from ..result.overhang import past_support, told_of_overhang
 from ..result.rocking import Rocking
 from ..scene.course import Course
 from ..scene.scene import Scene, is_quiet
@@ -104,11 +106,22 @@ class AskedMasonry:
         up = scene.freedom.translations - 1
         motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose)
         drop = scene.at_rest[:, up] - steps.pose[:, up :: scene.freedom.nq]
-        fallen = fallen_blocks(masonry, t, motion.lost, drop) or left_behind(scene, course, steps)
+        left = left_joints(masonry, t, motion.off)
+        fell = fallen_blocks(masonry, t, motion.parted, tilts(steps.pose, scene.freedom), drop)
+        both = {name: min(left.get(name, np.inf), fell.get(name, np.inf)) for name in left | fell}
+        fallen = in_order(both) or left_behind(scene, course, steps)
         count = int(np.searchsorted(t, next(iter(fallen.values()), np.inf)))
         quiet = is_quiet(scene, float(energy[-1]), steps.velocity[-1].reshape(len(scene.bodies.names), -1))
+        outcome, message = masonry_ending(fallen, quiet, min(float(t[-1]), course.duration))
+        past = past_support(
+            masonry,
+            laden(masonry, self.case.effects)[1],
+            motion,
+            lambda some: slips(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), steps.pose[some]),
+        )
         return Reading(
-            *masonry_ending(fallen, quiet, min(float(t[-1]), course.duration)),
+            outcome,
+            message + told_of_overhang({name: far for name, far in past.items() if name not in fallen}),
             marks=np.linspace(0, count - 1, min(count, MARKS)).astype(int),
             count=count,
             joints=JointMotion(motion.opening, motion.sliding, fallen),

@@ -61,6 +61,15 @@ def turned(pose: Array, freedom: Freedom) -> Array:
     return angle_of(_by_body(pose, 7))
 
 
+def tilts(pose: Array, freedom: Freedom) -> Array:
+    """Angle between the axis of each body that was vertical at rest and the vertical [rad], from 0 to pi, shape (...,
+    bodies), of poses of shape (..., bodies nq)."""
+    if freedom == PLANE:
+        turn = np.abs(pose[..., 2::3]) % (2 * np.pi)
+        return np.minimum(turn, 2 * np.pi - turn)
+    return tilt_of(_by_body(pose, 7))
+
+
 def angles(pose: Array, start: Array, freedom: Freedom) -> Array:
     """Angle by which each body is turned from a start to a pose [rad], shape (..., bodies)."""
     if freedom == PLANE:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
@@ -142,6 +143,15 @@ class Bodies:
         `magnify`. A point that does not move, such as a toe, then stays where it is; what is magnified is distorted.
         """
         return self._drawn(self.poses[frame, body], self.rests[body], points)
+
+    def anchored(self, frame: int, case: MasonryCase, block: int, point: Array) -> Array:
+        """Where a point of a block of masonry, fixed or not, given at rest [m], shape (2,), is drawn at a frame [m]."""
+        free, blocks = case.masonry.free, case.masonry.blocks
+        if block in free:
+            body = free.index(block)
+            return np.asarray(self.placed(frame, body, (point - self.rests[body])[None])[0])
+        shift = self.shifts.get([i for i, one in enumerate(blocks) if one.fixed].index(block))
+        return point if shift is None else np.asarray(point + self.magnify * shift[frame])
 
     def support(self, frame: int, body: int) -> Array:
         """Where the corners of a fixed body are drawn at a frame [m], shape (corners, 2)."""

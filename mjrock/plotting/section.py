@@ -116,22 +116,29 @@ def _tie(
     broke. An anchor beyond an x [m] is drawn there."""
     body, held, centroid = held_by(case, tie)
     anchor = tie.anchor_of(held)
-    if anchor[0] < edge:
+    number = tie.anchor_block
+    if number is None and anchor[0] < edge:
         anchor = held + (anchor - held) * (held[0] - edge) / tie.length
-    pulls, broken = pulling(case, tie, bodies.poses)
+    pulls, broken = pulling(case, tie, bodies.t, bodies.poses)
     (line,) = ax.plot([], [], color=tie.colour, linewidth=1.8, zorder=4, animated=True)
-    ax.plot(*anchor, marker="s", markersize=markersize, color=tie.colour, zorder=4)
+    (mark,) = ax.plot(
+        *anchor[:, None], marker="s", markersize=markersize, color=tie.colour, zorder=4, animated=number is not None
+    )
 
     def update(frame: int) -> None:
         point = bodies.placed(frame, body, (held - centroid)[None])[0]
-        line.set_data([anchor[0], point[0]], [anchor[1], point[1]])
+        end = anchor
+        if isinstance(case, MasonryCase) and number is not None:
+            end = bodies.anchored(frame, case, number, anchor)
+            mark.set_data(end[:, None])
+        line.set_data([end[0], point[0]], [end[1], point[1]])
         line.set_linestyle(tie.dashes if pulls[frame] else ":")
         line.set_visible(not broken[frame])
 
     return update
 
 
-def pulling(case: Case | MasonryCase, tie: Anchored, poses: Array) -> tuple[Flags, Flags]:
+def pulling(case: Case | MasonryCase, tie: Anchored, t: Array, poses: Array) -> tuple[Flags, Flags]:
     """Whether a link acts at each frame, and whether it has broken.
 
     A tie acts where it is longer than when it was slack or last yielded, and what also pushes acts always.
@@ -139,7 +146,7 @@ def pulling(case: Case | MasonryCase, tie: Anchored, poses: Array) -> tuple[Flag
     law = tie.law
     if not law.holds:
         return np.ones(len(poses), dtype=bool), np.zeros(len(poses), dtype=bool)
-    elongation = elongation_of(case, tie, poses)
+    elongation = elongation_of(case, tie, t, poses)
     yielded = law.drawn(elongation)
     broken: Flags = yielded > law.ultimate
     return (elongation > yielded) & ~broken, broken

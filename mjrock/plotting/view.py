@@ -113,7 +113,7 @@ def ties_in_view(ax: Axes, case: MasonryCase, bodies: Solids) -> Update:
         held = held_at(link)
         ends = [(held, link.block), (link.anchor_of(held), link.anchor_block)]
         (line,) = space.plot([], [], [], color=link.colour, linewidth=1.8, zorder=4, animated=True)
-        moves.append((line, link.dashes, ends, *pulling(case, link, bodies.poses)))
+        moves.append((line, link.dashes, ends, *pulling(case, link, bodies.t, bodies.poses)))
 
     def update(frame: int) -> None:
         for line, dashes, ends, pulls, broken in moves:

@@ -2,48 +2,111 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import connected_components, dijkstra
 
-from ..problem.masonry.joints import Joint
-from ..problem.masonry.joints_in_space import SpaceJoint
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Flags
+from ..problem.masonry.support import Support
+from ..quantities import Array, Flags, Integers
 
-LOST = 0.7
-"""Opening of a joint, over its width, beyond which it holds no longer [-]: the blocks have turned by 45 degrees."""
-DROPPED = 1.0
-"""Drop of a centroid, over the largest distance of a corner from it, beyond which a block has fallen [-]."""
+TOPPLED = 0.25 * np.pi
+"""Tilt of a block beyond which it has fallen [rad]."""
+DROPPED = 0.5
+"""Drop of a block that nothing holds beyond which it has fallen, over its height at rest [-]."""
+PARTED = 0.1
+"""Gap between the faces of a joint where they are nearest, over its width, beyond which the joint holds nothing [-]."""
 
 
-def fallen_blocks(masonry: Masonry, t: Array, lost: Flags, drop: Array) -> dict[str, float]:
+def fallen_blocks(masonry: Masonry, t: Array, parted: Flags, tilt: Array, drop: Array) -> dict[str, float]:
     """When each block that fell did [s], by its name, the first first.
+
+    A block has fallen when, as the run ends, it is tilted by more than 45 degrees, or no joint that holds connects it
+    with a fixed block and it lies lower than at rest by more than half its height. It fell when this became so for
+    good.
 
     Args:
         masonry: the masonry.
         t: times [s], shape (n,).
-        lost: whether each joint has ceased to hold by then, shape (n, joints).
-        drop: how far the centroid of each free block has dropped from rest [m], shape (n, bodies).
+        parted: whether the blocks of each joint have parted then, shape (n, joints).
+        tilt: of each free block from rest [rad], shape (n, bodies).
+        drop: how far the centroid of each free block lies below where its ground holds it at rest [m], (n, bodies).
     """
-    gone: dict[int, float] = {}
-    for body, block in enumerate(masonry.free):
-        late = np.flatnonzero(drop[:, body] / masonry.blocks[block].size > DROPPED)
-        if late.size:
-            gone[block] = float(t[late[0]])
-    for step in np.flatnonzero(np.diff(lost.sum(axis=1), prepend=0)):
-        held = [joint for joint, over in zip(masonry.joints, lost[step], strict=True) if not over]
-        for block in _cut_off(masonry, held):
-            gone[block] = min(gone.get(block, np.inf), float(t[step]))
-    return {masonry.names[block]: gone[block] for block in sorted(gone, key=gone.__getitem__)}
+    heights = np.array([np.ptp(masonry.blocks[block].corners[:, -1]) for block in masonry.free])
+    toppled, low = tilt > TOPPLED, drop > DROPPED * heights
+    down, since = np.ones(len(masonry.free), dtype=bool), np.full(len(masonry.free), np.inf)
+    for n in reversed(range(len(t))):
+        down &= toppled[n] | low[n]
+        if not down.any():
+            break
+        if n == len(t) - 1 or (parted[n] != parted[n + 1]).any():
+            loose = _cut_off(masonry, parted[n])
+        down &= toppled[n] | loose
+        since[down] = t[n]
+    return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
 
 
-def _cut_off(masonry: Masonry, held: Sequence[Joint | SpaceJoint]) -> list[int]:
-    """Blocks that no joint in `held` connects with a fixed block."""
-    pairs, count = [(joint.below, joint.above) for joint in held], len(masonry.blocks)
-    graph = coo_array((np.ones(len(pairs)), np.reshape(pairs, (-1, 2)).T.astype(int)), shape=(count, count))
+def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
+    """When each block that left its joints did [s]: it slid off, and none connects it with a fixed block any more.
+
+    In MuJoCo faces have no end and blocks have no other contacts. So the motion of such a block is none of masonry, and
+    it counts as fallen there.
+
+    Args:
+        masonry, t: as of `fallen_blocks`.
+        off: whether one block of each joint has slid off the other then, shape (n, joints).
+    """
+    off, since = np.logical_or.accumulate(off, axis=0), np.full(len(masonry.free), np.inf)
+    for n in np.flatnonzero(np.diff(off.sum(axis=1), prepend=0)):
+        loose = _cut_off(masonry, off[n])
+        since[loose] = np.minimum(since[loose], t[n])
+    return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
+
+
+def below_everything(masonry: Masonry, supports: tuple[Support, ...], t: Array, drop: Array) -> list[str]:
+    """Names of the blocks that lie below all fixed blocks in the end, as those that fall past the edge of the ground.
+
+    Args:
+        masonry: the masonry.
+        supports: that move fixed blocks.
+        t: times [s], shape (n,).
+        drop: how far the centroid of each free block lies below where it was at rest [m], shape (n, bodies).
+    """
+    moved = {support.block: float(support.at(t[-1:])[0, -1]) for support in supports}
+    fixed = [(masonry.names[i], block.corners[:, -1].min()) for i, block in enumerate(masonry.blocks) if block.fixed]
+    lowest = min(low + moved.get(name, 0.0) for name, low in fixed)
+    heights = masonry.centroids[list(masonry.free), -1] - drop[-1]
+    return [masonry.names[block] for block, height in zip(masonry.free, heights, strict=True) if height < lowest]
+
+
+def in_order(when: Mapping[str, float]) -> dict[str, float]:
+    """The finite times, the first first."""
+    return {name: when[name] for name in sorted(when, key=when.__getitem__) if np.isfinite(when[name])}
+
+
+def sunk_ground(masonry: Masonry, supports: tuple[Support, ...], t: Array) -> Array:
+    """How far the ground of each free block has sunk [m], shape (n, bodies): the fixed block that the fewest joints
+    part it from."""
+    pairs = _pairs(masonry)
+    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(masonry.blocks),) * 2)
+    fixed = [i for i, block in enumerate(masonry.blocks) if block.fixed]
+    nearest = dijkstra(graph, directed=False, indices=fixed, min_only=True, return_predecessors=True)[2]
+    sunk = {masonry.names.index(support.block): -support.at(t)[:, -1] for support in supports}
+    still = np.zeros(len(t))
+    return np.stack([sunk.get(ground, still) for ground in nearest[list(masonry.free)].tolist()], axis=1)
+
+
+def _pairs(masonry: Masonry) -> Integers:
+    """The two blocks of each joint, shape (joints, 2)."""
+    return np.array([(joint.below, joint.above) for joint in masonry.joints])
+
+
+def _cut_off(masonry: Masonry, parted: Flags) -> Flags:
+    """Which free blocks no joint that has not parted connects with a fixed block, shape (bodies,)."""
+    pairs, count = _pairs(masonry)[~parted], len(masonry.blocks)
+    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
     labels = connected_components(graph, directed=False)[1]
     standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
-    return [block for block in masonry.free if labels[block] not in standing]
+    return ~np.isin(labels[list(masonry.free)], list(standing))

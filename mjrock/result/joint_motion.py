@@ -1,4 +1,4 @@
-"""What the joints of masonry do in a run: how far they open and slide, and when they hold no longer."""
+"""What the joints of masonry do in a run: how far they open and slide, and when their blocks part."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..geometry.vectors import Vector, minus, plus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints, travels
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
-from .fallen import LOST
+from .fallen import PARTED
 
 AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
@@ -26,35 +26,39 @@ class Followed(NamedTuple):
     Args:
         opening, sliding: the largest of each joint [m], shape (joints,).
         deepest: the deepest penetration [m].
-        lost: which joints hold no longer, shape (steps, joints).
+        off: whether one block of each joint has slid off the other, shape (steps, joints).
+        parted: whether each joint holds nothing any more, of the same shape, see `joint_motion`.
     """
 
     opening: Array
     sliding: Array
     deepest: float
-    lost: Flags
+    off: Flags
+    parted: Flags
 
 
 def in_parts(pose: Array, joints: int, look: Callable[[Array], Followed]) -> Followed:
     """What joints did at poses, looked at a part of the steps at a time.
 
-    `look` takes the poses of some steps and gives what the joints do at each: opening, sliding and lost have the shape
-    (steps, joints).
+    `look` takes the poses of some steps and gives what the joints do at each: all but `deepest` has the shape (steps,
+    joints).
     """
     opening, sliding, deepest = np.zeros(joints), np.zeros(joints), 0.0
-    lost = np.zeros((len(pose), joints), dtype=bool)
+    off, parted = np.zeros((2, len(pose), joints), dtype=bool)
     size = max(1, AT_ONCE // max(1, joints))
     for first in range(0, len(pose), size):
         seen = look(np.ascontiguousarray(pose[first : first + size]))
         opening, sliding = np.maximum(opening, seen.opening.max(axis=0)), np.maximum(sliding, seen.sliding.max(axis=0))
-        lost[first : first + size], deepest = seen.lost, max(deepest, seen.deepest)
-    return Followed(opening, sliding, deepest, np.logical_or.accumulate(lost, axis=0))
+        off[first : first + size], parted[first : first + size] = seen.off, seen.parted
+        deepest = max(deepest, seen.deepest)
+    return Followed(opening, sliding, deepest, off, parted)
 
 
 def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Followed:
     """What the joints of masonry did.
 
-    A joint holds no longer when it has opened by 0.7 of its width, or when one block has slid off the other.
+    The blocks of a joint have parted where one has slid by more than the width of the joint, or where their faces are
+    apart by more than a tenth of this width at the nearest point.
 
     Args:
         masonry: the masonry.
@@ -63,19 +67,23 @@ def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array
         pose: of the steps or samples, shape (steps, n nq).
     """
     joints, frames = masonry.joints, frames_of(start, places.freedom)
-    above = np.array([each.above for each in joints])[joint] == np.array(masonry.free)[places.body]
-    at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
-    points = JointPoints(joint, at_rest, np.where(above, 1.0, -1.0))
+    points = JointPoints.of(masonry, places, joint, frames)
     slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
-    widths = LOST * np.array([each.width for each in joints])
+    widths = np.array([each.width for each in joints])
 
     def look(some: Array) -> Followed:
-        opened, slid = np.empty((len(some), len(joints))), np.empty((len(some), len(joints), at_rest.shape[1]))
-        deepest = _look(places, points, some, frames, np.empty(len(joints)), opened, slid)
+        opened, nearest, slid = _looked(places, points, some, frames, len(joints))
         far, off = slid_off(slid)
-        return Followed(opened, far, deepest, (opened > widths) | off)
+        return Followed(opened, far, max(0.0, -float(nearest.min())), off, (far > widths) | (nearest > PARTED * widths))
 
     return in_parts(pose, len(joints), look)
+
+
+def slips(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Array:
+    """How far the block above each joint has slid on the one below [m], shape (steps, joints, d)."""
+    frames = frames_of(start, places.freedom)
+    points = JointPoints.of(masonry, places, joint, frames)
+    return _looked(places, points, np.ascontiguousarray(pose), frames, len(masonry.joints))[2]
 
 
 SlidOff = Callable[[Array], tuple[Array, Flags]]
@@ -114,6 +122,21 @@ class JointPoints(NamedTuple):
     at_rest: Array
     sign: Array
 
+    @classmethod
+    def of(cls, masonry: Masonry, places: Places, joint: Integers, frames: Array) -> JointPoints:
+        """The points of masonry, with the number of the joint of each, and the frames at rest."""
+        above = np.array([each.above for each in masonry.joints])[joint] == np.array(masonry.free)[places.body]
+        at_rest = np.array([_along(places, i, frames) for i in range(len(joint))])
+        return cls(joint, at_rest, np.where(above, 1.0, -1.0))
+
+
+def _looked(places: Places, points: JointPoints, pose: Array, frames: Array, joints: int) -> tuple[Array, Array, Array]:
+    """The gap of each joint at its widest point and at its nearest, and how far the block above has slid there."""
+    opened, nearest = np.empty((2, len(pose), joints))
+    slid = np.empty((len(pose), joints, points.at_rest.shape[1]))
+    _look(places, points, pose, frames, opened, nearest, slid)
+    return opened, nearest, slid
+
 
 @jitable
 def _along(places: Places, i: int, frames: Array) -> Vector:
@@ -125,31 +148,25 @@ def _along(places: Places, i: int, frames: Array) -> Vector:
 
 @compiled
 def _look(
-    places: Places, points: JointPoints, pose: Array, frames: Array, most: Array, opened: Array, slid: Array
-) -> float:
-    """Write the opening of each joint at its widest point, and how far the block above has slid at its most pressed.
+    places: Places, points: JointPoints, pose: Array, frames: Array, opened: Array, nearest: Array, slid: Array
+) -> None:
+    """Write the gap of each joint at its widest point and at its nearest, and how far the block above has slid there.
 
     Args:
         places, points: the points.
         pose: of the steps, shape (steps, n nq).
-        frames, most: room for the frames of a pose, and for the deepest point of each joint, shape (joints,).
-        opened, slid: shapes (steps, joints) and (steps, joints, d).
-
-    Returns:
-        The deepest penetration [m].
+        frames: room for the frames of a pose.
+        opened, nearest, slid: shapes (steps, joints), the same and (steps, joints, d).
     """
-    deepest = 0.0
     for n in range(len(pose)):
         take_frames(pose[n], frames, places.axes)
-        for j in range(len(most)):
-            opened[n, j], most[j] = 0.0, -np.inf
+        for j in range(opened.shape[1]):
+            opened[n, j], nearest[n, j] = 0.0, np.inf
         for i in range(len(points.joint)):
             gap, j = meeting(places, i, frames).gap, points.joint[i]
             opened[n, j] = max(opened[n, j], gap)
-            if -gap > most[j]:
-                most[j] = -gap
+            if gap < nearest[n, j]:
+                nearest[n, j] = gap
                 along = _along(places, i, frames)
                 for axis in range(len(along)):
                     slid[n, j, axis] = points.sign[i] * (along[axis] - points.at_rest[i, axis])
-                deepest = max(deepest, -gap)
-    return deepest

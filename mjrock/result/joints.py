@@ -17,9 +17,11 @@ class JointMotion:
     Args:
         opening: largest gap of each joint [m], shape (joints,).
         sliding: largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,).
-        fallen: when each block that fell did [s], by its name, the first first. A block has fallen when no joint that
-            holds connects it with a fixed block any more, or when its centroid has dropped by its size. A joint no
-            longer holds when it has opened by 0.7 of its width, or when one block has slid off the other.
+        fallen: when each block that fell did [s], by its name, the first first. A block has fallen when, as the run
+            ends, it is tilted by more than 45 degrees, or no joint that holds connects it with a fixed block and it
+            lies lower than at rest by more than half its height. A joint holds nothing where one block has slid by more
+            than its width, or where its faces are apart by more than a tenth of its width at the nearest point. In
+            MuJoCo, where faces have no end, a block that has slid off its joints counts as fallen at once.
     """
 
     opening: Array

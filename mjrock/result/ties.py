@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import held_at, laden, placed
+from ..problem.masonry.effects import laden, placed
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored
 from ..quantities import Array
@@ -73,7 +73,7 @@ def motion_of_ties(
 
 
 def _motion(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array, ended: Plastic | None) -> TieMotion:
-    elongation, law = elongation_of(case, tie, pose), tie.law
+    elongation, law = elongation_of(case, tie, t, pose), tie.law
     if law.push > 0:
         elongation = elongation - (0.0 if ended is None else ended.start)
         drawn = law.drawn(elongation)
@@ -90,30 +90,35 @@ def _motion(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array, ende
     return TieMotion(elongation, drawn, force, law.strength if spent else float(force.max()), broken)
 
 
-def elongation_of(case: Case | MasonryCase, tie: Anchored, pose: Array) -> Array:
-    """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack."""
-    if isinstance(case, MasonryCase) and case.masonry.in_space:
-        held = held_at(tie)
-        anchor = tie.anchor_of(held)
-        between = held - anchor + _displaced(case, tie.block, held, pose)
-        if tie.anchor_block is not None:
-            between = between - _displaced(case, tie.anchor_block, anchor, pose)
-        return np.asarray(np.linalg.norm(between, axis=1) - tie.law.reach)
-    body, held, centroid = held_by(case, tie)
-    arm, (x, z, theta) = held - centroid, pose[:, body].T
-    sine, cosine = np.sin(theta), np.cos(theta)
-    across = tie.length + x + arm[0] * (cosine - 1) + arm[1] * sine
-    up = z - arm[0] * sine + arm[1] * (cosine - 1) - tie.rise
-    return np.asarray(np.hypot(across, up) - tie.law.reach)
+def elongation_of(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array) -> Array:
+    """How much longer than its slack length a tie is at poses as of a `Response` [m], negative where it is slack.
+
+    The times t [s] say where supports are, shape (n,).
+    """
+    held = held_by(case, tie)[1]
+    anchor = tie.anchor_of(held)
+    between = held - anchor + _displaced(case, tie.block, held, t, pose)
+    if tie.anchor_block is not None:
+        between = between - _displaced(case, tie.anchor_block, anchor, t, pose)
+    return np.asarray(np.linalg.norm(between, axis=1) - tie.law.reach)
 
 
-def _displaced(case: MasonryCase, block: int, point: Array, pose: Array) -> Array:
-    """Displacement of a point of a block in space from rest [m], zero of a fixed one, shape (n, 3)."""
-    free = case.masonry.free
-    if block not in free:
-        return np.zeros((len(pose), 3))
-    moved = pose[:, free.index(block)]
-    w, v, arm = moved[:, 3:4], moved[:, 4:], point - laden(case.masonry, case.effects)[1][block]
+def _displaced(case: Case | MasonryCase, block: int, point: Array, t: Array, pose: Array) -> Array:
+    """Displacement of a point of a block from rest [m], shape (n, d); that of its support where the block is fixed."""
+    if isinstance(case, Case):
+        body, centroid = 0, np.array([case.wall.centroid_offset, case.wall.centroid_height])
+    elif block not in case.masonry.free:
+        name = case.masonry.names[block]
+        still = np.zeros((len(t), len(point)))
+        return next((support.at(t) for support in case.supports if support.block == name), still)
+    else:
+        body, centroid = case.masonry.free.index(block), laden(case.masonry, case.effects)[1][block]
+    moved, arm = pose[:, body], point - centroid
+    if len(arm) == 2:
+        sine, cosine = np.sin(moved[:, 2]), np.cos(moved[:, 2]) - 1
+        turned = np.column_stack([arm[0] * cosine + arm[1] * sine, arm[1] * cosine - arm[0] * sine])
+        return np.asarray(moved[:, :2] + turned)
+    w, v = moved[:, 3:4], moved[:, 4:]
     # (R - 1) r = 2 w v x r + 2 v x (v x r)
     turned = np.cross(v, np.broadcast_to(arm, v.shape))
     return np.asarray(moved[:, :3] + 2 * w * turned + 2 * np.cross(v, turned))

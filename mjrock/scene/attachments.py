@@ -34,12 +34,12 @@ def attachments(
     pulled, pushed = Links(), ConstantForces()
     if links:
         bodies, points, at = on(links.values())
-        blocks = [link.anchor_block for link in links.values()]
-        others = np.array([GROUND if block is None else number[block] for block in blocks])
+        blocks = np.array([GROUND if link.anchor_block is None else link.anchor_block for link in links.values()])
+        others = np.where(blocks == GROUND, GROUND, number[blocks])
         ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
         ends = ends - np.where(others[:, None] == GROUND, 0.0, centroids[others])
         laws = LinkLaw(*np.array([link.law for link in links.values()]).T)
-        pulled = Links(tuple(links), bodies, at, others, ends, **laws._asdict())
+        pulled = Links(tuple(links), bodies, at, others, ends, **laws._asdict(), anchor_block=blocks)
     if forces:
         bodies, _, at = on([effect for effect, _ in forces.values()])
         vectors = np.array([force for _, force in forces.values()])

@@ -19,7 +19,7 @@ from scipy.sparse import csr_array
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.wall.effect import LinkLaw
 from ..quantities import Array, Flags, Integers, frozen
-from .checks import keep_array, require_inertia, require_others
+from .checks import GROUND, keep_array, require_inertia, require_others
 from .masses import mass_diagonals, principal, products_of
 
 
@@ -160,6 +160,7 @@ class Links:
         anchor_body, anchor_at: the body of the other end, or -1 for the ground, and the end, as of a face, shapes (t,)
             and (t, d).
         k, reach, strength, push, ultimate, c: the law of each, shape (t,); what is left out is as in `LinkLaw`.
+        anchor_block: number of the block of masonry that the other end moves with, or -1 for the ground, shape (t,).
     """
 
     names: tuple[str, ...] = ()
@@ -173,10 +174,13 @@ class Links:
     push: Array = field(default_factory=_none)
     ultimate: Array = field(default_factory=_none)
     c: Array = field(default_factory=_none)
+    anchor_block: Integers = field(default_factory=_none)
 
     def __post_init__(self) -> None:
         t, directions = len(self.names), np.shape(self.at)[-1] if np.size(self.at) else 2
-        for name in ("body", "anchor_body"):
+        if not np.size(self.anchor_block):
+            object.__setattr__(self, "anchor_block", np.full(t, GROUND))
+        for name in ("body", "anchor_body", "anchor_block"):
             keep_array(self, name, (t,), kind=np.int64)
         for name in ("at", "anchor_at"):
             keep_array(self, name, (t, directions))

@@ -56,6 +56,18 @@ def test_a_face_ends_where_it_ends():
             assert run.pose[-1, 1, 0] == pytest.approx(reach, rel=0.02)
 
 
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_long_face_ends_where_it_ends_too(in_space):
+    """On a step of 10 m a block of 1 m tips when its centroid has come to lie 50 mm past the edge."""
+    blocks = [box(-30, 30, -1, 0, fixed=True), box(-10, 0, 0, 1, fixed=True), box(-1.4, -0.4, 1, 1.4, name="box")]
+    velocity = [np.sqrt(2 * 0.1 * mr.GRAVITY * 0.95), 0, 0]
+    if in_space:
+        blocks, velocity = [mr.Polyhedron.prism(block) for block in blocks], [*velocity, 0, 0, 0]
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.1, xi=0.3)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 2.5, velocity=[velocity]), output_step=1e-2)
+    assert list(run.fallen) == ["box"]
+
+
 @pytest.mark.parametrize(("beyond", "meets"), [(-0.1, True), (0.012, False)])
 def test_the_face_of_a_block_that_lies_ends_where_it_lies(beyond, meets):
     """A bar that stood has turned by 90 degrees and falls freely, and a cube falls faster past its end or on it."""

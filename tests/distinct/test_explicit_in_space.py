@@ -357,9 +357,11 @@ def test_an_arch_in_the_plane_and_in_space_with_rigid_friction():
 
 def test_a_block_that_has_turned_over_and_left_the_ground_falls_freely():
     """The ground is drawn away below it. Its points would meet their face again from behind, after a whole turn."""
-    block = mr.Masonry.box((0.3, 0.3, 1.0), k_n=1e9, friction=0.7, xi=0.05)
-    case = mr.MasonryCase(block, 3.0, mr.GroundMotion(np.full(5, -6.0), 1.0))
+    ground = mr.Polyhedron.box((0.6, 0.6, 0.1), (0, 0, -0.05), fixed=True)
+    masonry = mr.Masonry([ground, mr.Polyhedron.box((0.3, 0.3, 1.0), (0, 0, 0.5), name="block")], k_n=1e9, xi=0.05)
+    case = mr.MasonryCase(masonry, 3.0, mr.GroundMotion(np.full(5, -6.0), 1.0))
     response = mr.solve_explicit(case, ledger=True)
     assert list(response.fallen) == ["block"]
+    assert "Below all fixed blocks, past the edge of any ground: block." in response.message
     assert np.abs(response.velocity[..., :3]).max() < 3.0 * mr.GRAVITY
     assert np.abs(response.energy_residual).max() < 1e-4 * response.energy.max()

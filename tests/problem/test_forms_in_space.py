@@ -12,6 +12,27 @@ from mjrock.problem.masonry.statics import falling
 UNIT = (0.4, 0.2)
 
 
+@pytest.mark.parametrize(
+    "masonry",
+    [
+        mr.Masonry.box((0.4, 0.6, 2.0)),
+        mr.Masonry.column(0.5, 4.0, 2),
+        mr.Masonry.dome(2.0, 0.3, 4, 2),
+        mr.Masonry.facade(1.2, 0.8, 0.4, (0.4, 0.2), gable=1),
+        mr.Masonry.running_bond(1.0, 2.0, (0.5, 0.25)),
+        mr.Masonry.stack([mr.Block(0.3, 2.0), mr.Block(0.3, 1.0)], 1e9),
+    ],
+    ids=["box", "column", "dome", "facade", "bond", "stack"],
+)
+def test_the_ground_reaches_two_heights_beyond(masonry):
+    """What falls over lies on it."""
+    ground = masonry.blocks[0].corners
+    above = np.concatenate([masonry.blocks[i].corners for i in masonry.free])
+    beyond = np.minimum(above.min(axis=0) - ground.min(axis=0), ground.max(axis=0) - above.max(axis=0))[:-1]
+    assert beyond.min() >= 2 * np.ptp(above[:, -1]) - 1e-9
+    assert ground[:, -1].max() == pytest.approx(above[:, -1].min(), abs=1e-12)
+
+
 def test_a_box():
     masonry = mr.Masonry.box((0.6, 0.4, 2.0), k_n=1e8)
     (joint,) = masonry.joints

@@ -21,7 +21,9 @@ from ..wall.effects import SideStop
 from .polygon import Polygon
 
 DEEP = 0.25
-"""Depth of the ground that is drawn, over its half width [-]."""
+"""Depth of the ground, over the width of what stands on it [-]."""
+BEYOND = 2.0
+"""How far the ground reaches beyond what stands on it, over the height of that [-]: what falls over lies on it."""
 SMALLEST_PIECE = 0.1
 """Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
 MOST_BLOCKS = 5000
@@ -36,10 +38,11 @@ def rectangle(
     return Polygon(corners, density=density, length=length, fixed=fixed, name=name)
 
 
-def ground_under(left: float, right: float, length: float) -> Polygon:
-    """Fixed ground with its surface at z = 0, twice as wide as what stands on it between two x [m]."""
-    middle, half = 0.5 * (left + right), right - left
-    return rectangle(middle - half, middle + half, -DEEP * half, 0.0, 2000.0, length, True, "ground")
+def ground_under(left: float, right: float, height: float, length: float) -> Polygon:
+    """Fixed ground with its surface at z = 0, under what stands on it between two x, of a height [m]."""
+    wide = right - left
+    beyond = max(BEYOND * height, 0.5 * wide)
+    return rectangle(left - beyond, right + beyond, -DEEP * wide, 0.0, 2000.0, length, True, "ground")
 
 
 def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
@@ -68,7 +71,7 @@ def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
         z += 2 * block.h
     if ground:
         b, length = max(block.b for block in blocks), max(block.length for block in blocks)
-        polygons.insert(0, ground_under(-b, b, length))
+        polygons.insert(0, ground_under(-b, b, z, length))
     return polygons
 
 
@@ -145,7 +148,7 @@ def bonded_wall(
         raise ValueError(
             f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
         )
-    polygons = [ground_under(0.0, length, thickness)]
+    polygons = [ground_under(0.0, length, height, thickness)]
     for course in range(courses):
         shift = 0.5 * long if course % 2 else long
         inner = shift + long * np.arange(math.ceil(length / long))

@@ -11,20 +11,20 @@ from numpy.typing import ArrayLike
 
 from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown
 from ..wall.section import Opening
-from .builders import DEEP, MOST_BLOCKS, required_faces, required_unit
+from .builders import BEYOND, DEEP, MOST_BLOCKS, required_faces, required_unit
 from .polyhedron import Polyhedron
 
 WHOLE = 1e-6
 """How far a length may be from a whole number of units, over the unit [-]."""
 
 
-def ground_below(low: ArrayLike, high: ArrayLike, surface: float = 0.0) -> Polyhedron:
-    """Fixed ground with its surface at a z [m], twice as wide as what stands on it between two corners x, y [m]."""
-    low, high = np.asarray(low, dtype=float)[:2], np.asarray(high, dtype=float)[:2]
-    deep = DEEP * float((high - low).max())
-    middle = 0.5 * (low + high)
-    size = (*(2 * (high - low)), deep)
-    return Polyhedron.box(size, (*middle, surface - 0.5 * deep), fixed=True, name="ground")
+def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
+    """Fixed ground under what stands on it between two corners x, y, z [m]."""
+    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    wide = (high - low)[:2]
+    beyond, deep = np.maximum(BEYOND * (high[2] - low[2]), 0.5 * wide), DEEP * float(wide.max())
+    middle = 0.5 * (low + high)[:2]
+    return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
 
 
 def whole_units(name: str, extent: float, unit: float, most: int) -> int:
@@ -52,7 +52,7 @@ def column_of(width: float, height: float, drums: int, sides: int, density: floa
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
     ring = 0.5 * width / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
     levels = np.linspace(0.0, height, drums + 1)
-    blocks = [ground_below(ring.min(axis=0), ring.max(axis=0))]
+    blocks = [ground_below((*ring.min(axis=0), 0.0), (*ring.max(axis=0), height))]
     for i in range(drums):
         vertices = [(x, y, z) for z in (levels[i], levels[i + 1]) for x, y in ring]
         blocks.append(Polyhedron(vertices, density, name=f"drum_{i}"))
@@ -71,7 +71,7 @@ def dome_of(radius: float, thickness: float, lunes: int, hoops: int, oculus: flo
     rays = sines[:, None, None] * np.column_stack([np.cos(around), np.sin(around)])
     directions = np.dstack([rays, np.broadcast_to(levels[:, None], rays.shape[:2])])  # (hoops + 1, lunes + 1, 3)
     directions[:, -1] = directions[:, 0]
-    blocks = [ground_below((-outer, -outer), (outer, outer))]
+    blocks = [ground_below((-outer, -outer, 0.0), (outer, outer, outer))]
     for j in range(hoops):
         for i in range(lunes):
             corners = directions[j : j + 2, i : i + 2].reshape(4, 3)
@@ -107,7 +107,7 @@ def facade_of(
         top = np.array([x[1], left + t * cells[1], (course + 1) * high])
         return Polyhedron(np.array(np.meshgrid(*np.stack([low, top], axis=1))).reshape(3, -1).T, density, name=name)
 
-    blocks = [ground_below((-deep * long, left), (0.0, -left))]
+    blocks = [ground_below((-deep * long, left, 0.0), (0.0, -left, (courses + gable) * high))]
     for course in range(courses + gable):
         bond = course % 2
         first = bond if course < courses else course - courses + courses % 2

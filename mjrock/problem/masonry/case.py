@@ -23,7 +23,7 @@ from ..ground.motion import GroundMotion
 from ..wall.effect import Effect
 from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import LATER, require_in_plane
-from .effects import require_in_space
+from .effects import require_anchored, require_in_space
 from .masonry import Masonry
 from .plausible import doubts
 from .support import supports_of
@@ -110,7 +110,8 @@ class MasonryCase(Carrying):
             if self.masonry.in_space:
                 require_in_space(name, effect, self.masonry)
                 continue
-            require_in_plane(name, effect)
+            require_in_plane(name, effect, but="anchor_block")
+            require_anchored(name, effect, self.masonry)
             low, high = block.corners.min(axis=0) - 1e-9, block.corners.max(axis=0) + 1e-9
             require_within(f"{name}, height", effect.height, float(low[1]), float(high[1]), "m")
             if isinstance(effect, Load):

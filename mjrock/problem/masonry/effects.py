@@ -7,6 +7,7 @@ import numpy as np
 from ...quantities import GRAVITY, Array, require_whole
 from ..wall.effect import Anchored, Effect
 from .masonry import Masonry
+from .polygon import Polygon
 from .polyhedron import Polyhedron
 
 BESIDE = 1e-3
@@ -69,21 +70,33 @@ def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
     block = masonry.polyhedra[effect.block]
     if effect.on_block:
         _require_on(f"{name}, at", effect.at, block)
-    if isinstance(effect, Anchored):
-        number = effect.anchor_block
-        if number is not None:
-            require_whole(f"{name}, anchor_block", number, 0, len(masonry.blocks) - 1)
-            if number == effect.block:
-                raise ValueError(f"{name}, anchor_block = {number} is the block itself; give another, or None")
-            if effect.anchor is None:
-                raise ValueError(f"{name}, anchor_block = {number} needs anchor=(x, y, z)")
-            _require_on(f"{name}, anchor", effect.anchor, masonry.polyhedra[number])
-        if np.linalg.norm(held_at(effect) - effect.anchor_of(held_at(effect))) < 1e-2:
-            raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
+    require_anchored(name, effect, masonry)
+    if isinstance(effect, Anchored) and np.linalg.norm(held_at(effect) - effect.anchor_of(held_at(effect))) < 1e-2:
+        raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
 
 
-def _require_on(name: str, point: tuple[float, ...], block: Polyhedron) -> None:
-    outside = float(((point - block.corners[[face[0] for face in block.faces]]) * block.normals).sum(axis=1).max())
+def require_anchored(name: str, effect: Effect, masonry: Masonry) -> None:
+    """Raise a ValueError that names the field, unless the anchor of an effect lies on its `anchor_block`, if it has
+    one."""
+    number = effect.anchor_block if isinstance(effect, Anchored) else None
+    if not isinstance(effect, Anchored) or number is None:
+        return
+    require_whole(f"{name}, anchor_block", number, 0, len(masonry.blocks) - 1)
+    if number == effect.block:
+        raise ValueError(f"{name}, anchor_block = {number} is the block itself; give another, or None")
+    if masonry.in_space and effect.anchor is None:
+        raise ValueError(f"{name}, anchor_block = {number} needs anchor=(x, y, z)")
+    anchor = tuple(effect.anchor_of(np.array(placed(masonry, effect))).tolist())
+    _require_on(f"{name}, anchor", anchor, masonry.blocks[number])
+
+
+def _require_on(name: str, point: tuple[float, ...], block: Polygon | Polyhedron) -> None:
+    if isinstance(block, Polyhedron):
+        corners, normals = block.corners[[face[0] for face in block.faces]], block.normals
+    else:
+        ways = np.roll(block.corners, -1, axis=0) - block.corners
+        corners, normals = block.corners, np.column_stack([ways[:, 1], -ways[:, 0]]) / np.hypot(*ways.T)[:, None]
+    outside = float(((point - corners) * normals).sum(axis=1).max())
     if outside > BESIDE:
         raise ValueError(f"{name} = {point} m lies {outside:.3g} m outside the block; the valid range is on it")
 

@@ -575,7 +575,7 @@ class Masonry:
             blocks = blocks_of(meshes, density, fixed)
             if ground:
                 corners = np.concatenate([block.corners for block in blocks])
-                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0), float(corners[:, 2].min())))
+                blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
             masonry = cls(blocks, **options)
             masonry._require_touching()
         except ValueError as error:

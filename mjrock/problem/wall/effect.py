@@ -105,8 +105,8 @@ class Anchored(Effect):
     Attributes:
         colour, dashes: how its line is drawn, in the ways of matplotlib.
         length: distance from the inner face to the anchor [m].
-        anchor, anchor_block: in space, the anchor at rest [m], and the block that it moves with; None is `length`
-            behind the point, and the ground.
+        anchor: in space, the anchor at rest [m]; None is `length` behind the point.
+        anchor_block: of masonry, the block that it moves with; None is the ground.
     """
 
     on_face = True

@@ -68,9 +68,9 @@ def _height(kind: str, height: float | None, at: Point | None) -> float:
     return at[2]
 
 
-def require_in_plane(name: str, effect: Any) -> None:
-    """Raise a ValueError that names the field, if an effect has one that only masonry in space takes."""
+def require_in_plane(name: str, effect: Any, but: str = "") -> None:
+    """Raise a ValueError that names the field, if an effect has one that only masonry in space takes, `but` for one."""
     for entry in fields(effect):
-        if entry.metadata.get("later") and getattr(effect, entry.name) is not None:
+        if entry.metadata.get("later") and entry.name != but and getattr(effect, entry.name) is not None:
             given = getattr(effect, entry.name)
             raise ValueError(f"{name}, {entry.name} = {given} is for masonry in space; in the plane give height")

@@ -31,7 +31,8 @@ class Tie(Anchored):
             pulled through; 0 for one that breaks as it begins to yield. None never breaks.
         at: in space, the point that it holds, x, y, z at rest [m]; it takes the place of the height.
         anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
-        anchor_block: in space, the block that the other end is fixed to and moves with; None is the ground.
+        anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
+            plane the end lies `length` to the left.
 
     Raises:
         ValueError: for a value outside its range, or an `ultimate` without a finite strength.
