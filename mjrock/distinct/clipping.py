@@ -1,9 +1,9 @@
 """Clipping: the places where a face of one block lies over a face of another.
 
 The part of one face that lies over the other is bounded by corners of either and by places where edges cross. Each of
-them is a place: a corner meets the other face, and edges that cross meet along the normal of both. It stands for half
-of the two sides of the part that meet there, over its whole outline. So places that fall together stand for what one
-stood for.
+them is a place: a corner meets the other face, and edges that cross meet along the normal of both. It stands for the
+angle by which the outline of the part turns there, over a whole turn: a quarter for each corner of a rectangle. So
+places that fall together stand for what one stood for, and one on a straight side stands for nothing.
 """
 
 from __future__ import annotations
@@ -101,6 +101,18 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
     return count
 
 
+@jitable
+def parted(polygon: Array, count: int) -> int:
+    """Leave out the corners of a polygon that fall on those before them. Returns how many are left."""
+    left = 0
+    for i in range(count):
+        at, last = vector(polygon, i, SPACE.axes), vector(polygon, left - 1 if left else count - 1, SPACE.axes)
+        if length_of(minus(at, last)) > OUTSIDE * (length_of(at) + length_of(last)):
+            put(polygon[left], at)
+            left += 1
+    return left
+
+
 @inlined
 def distance_from(at: Vector, a: Vector, along: Vector) -> float:
     """Distance of a place from the line through another one [m]."""
@@ -173,15 +185,14 @@ def clip(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], table:
         count: how many places there are.
         room: for the corners of two faces, twice.
     """
-    corners, around = lying_over(solids, faces[0], faces[1], room), 0.0
+    corners = parted(room, lying_over(solids, faces[0], faces[1], room))
     if corners < 3:
         return count
     for i in range(corners):
-        around += length_of(minus(vector(room, (i + 1) % corners, SPACE.axes), vector(room, i, SPACE.axes)))
-    for i in range(corners):
-        at, after = vector(room, i, SPACE.axes), vector(room, (i + 1) % corners, SPACE.axes)
-        before = vector(room, i - 1 if i else corners - 1, SPACE.axes)
-        share = 0.5 * (length_of(minus(after, at)) + length_of(minus(at, before))) / around
+        at = vector(room, i, SPACE.axes)
+        before = minus(at, vector(room, i - 1 if i else corners - 1, SPACE.axes))
+        after = minus(vector(room, (i + 1) % corners, SPACE.axes), at)
+        share = math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
         if share > SAME:
             if count < len(table):
                 meet(solids, faces, blocks, at, table, count)

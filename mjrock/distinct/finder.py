@@ -31,6 +31,9 @@ ACROSS = 1e-3
 """Sine of the angle of two edges below which there is no direction across both [-]."""
 FLUSH = -0.7
 """Cosine of the angle between the normals of two faces up to which they meet as faces [-]."""
+LEAD = 1e-6
+"""By how much the other block may be less outside of a face, over how much longer its outline is than that of another
+face, for it to be taken [-]. The corners of the smaller one then lie over it."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
 
@@ -186,7 +189,7 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
     best = max(apart, other_apart)
     if best > reach:
         return count
-    if other_apart > apart:
+    if other_face >= 0 and other_apart + LEAD * (extent(solids, other_face) - extent(solids, face)) > apart:
         face, blocks = other_face, (b, a)
     normal = normal_of(solids, face)
     over = face_towards(solids, blocks[1], scaled(-1.0, normal))
@@ -195,6 +198,15 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
         if across > EDGES * best:
             return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
     return clip(solids, (face, over), blocks, table, count, room)
+
+
+@inlined
+def extent(solids: Solids, face: int) -> float:
+    """Length of the outline of a face [m]."""
+    length = 0.0
+    for i in range(solids.first[face], solids.first[face + 1]):
+        length += length_of(minus(next_corner(solids, face, i), corner_of(solids, i)))
+    return length
 
 
 @inlined
