@@ -25,11 +25,12 @@ from ..geometry.vectors import (
 from ..problem.masonry.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground, mean_acceleration
-from .contact import meeting, press_lines
+from .contact import press_lines, settle_touches
 from .friction import book_rubbing, note_slips, stick
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
 from .system import Books, Samples, System
+from .touches import in_transit, was_open
 from .turning import (
     apply_inverse_inertia,
     in_body,
@@ -130,10 +131,13 @@ def move_bodies(bodies: Rows, h: float, axes: tuple[int, ...]) -> None:
 
 
 @jitable
-def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+def keep_pose(
+    system: System, books: Books, samples: Samples, row: int, before: float, axes: tuple[int, ...]
+) -> None:
     """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work.
 
-    In place of the spins the angular momenta are kept for now, see `keep_velocity`."""
+    In place of the spins the angular momenta are kept for now, see `keep_velocity`. `before` is the length of the last
+    step [s]."""
     d = len(axes)
     for b in range(len(system.bodies)):
         body, pose, velocity = system.bodies[b], samples.pose[row, b], samples.velocity[row, b]
@@ -145,7 +149,8 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tu
     sheared = 0.0
     for p in range(len(system.lines)):
         line = system.lines[p]
-        elastic += stored(line, meeting(system, line, axes).gap)
+        if not was_open(line):
+            elastic += stored(line, -line.depth) + in_transit(line, before)
         if line.k_s < math.inf:
             grip = spin_components(line.grip, axes)
             sheared += stored_along(line, dot(grip, grip))
@@ -170,17 +175,23 @@ def keep_account(account: Array, kept: Array) -> None:
 def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
     """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
-    Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]."""
+    Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]. The
+    kinetic energy is that which the steps conserve: half the product of velocity and momentum before and after the
+    pose. It is less than that of the mean velocity, and below zero where a stiff contact turns a motion round."""
     kinetic, potential, share, d = 0.0, 0.0, 0.5 if before > 0 else 0.0, len(axes)
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
         linear, momentum = components(velocity, axes), spin_components(velocity[d:], axes)
         linear = plus(linear, scaled(share, minus(components(body.velocity, axes), linear)))
-        momentum = in_body(body, plus(momentum, scaled(share, minus(momentum_of(body, axes), momentum))))
+        after = momentum_of(body, axes)
+        momentum = plus(momentum, scaled(share, minus(after, momentum)))
+        to_come = in_body(body, minus(after, momentum))
+        change, momentum = minus(components(body.velocity, axes), linear), in_body(body, momentum)
         spin = apply_inverse_inertia(body, momentum)
         put(velocity, linear)
         put(velocity[d:], spin)
-        kinetic += 0.5 * body.mass * dot(linear, linear) + 0.5 * dot(momentum, spin)
+        kinetic += 0.5 * body.mass * (dot(linear, linear) - dot(change, change))
+        kinetic += 0.5 * (dot(momentum, spin) - dot(to_come, apply_inverse_inertia(body, to_come)))
         potential += GRAVITY * body.mass * body.place[d - 1]
     samples.energy[row].kinetic = kinetic
     samples.energy[row].potential += potential
@@ -213,7 +224,7 @@ def make_steps(
     system: System, books: Books, samples: Samples, clock: Clock, axes: tuple[int, ...]
 ) -> tuple[int, int, bool]:
     """The steps of `advance`. The compiler drops what is of the plane or of space by the length of the axes."""
-    n, h, row, totals = clock.step, clock.h, clock.row, books.totals[0]
+    n, h, row = clock.step, clock.h, clock.row
     accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
     while n < clock.stop:
         before = h if n > 0 else clock.before
@@ -225,21 +236,26 @@ def make_steps(
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
-        sticking = press_lines(system, books, before, kick, axes)
+        sticking, touched = press_lines(system, books, before, kick, axes)
         if sampled:
-            keep_pose(system, books, samples, row, axes)
+            keep_pose(system, books, samples, row, before, axes)
         if accounted:
             note_slips(system, books.active, sticking, axes)
         kick_bodies(system.bodies, kick, axes)
-        stick(system, books.active, sticking, kick, axes)
-        if accounted:
-            rubbed, put_in = totals.friction, totals.ground
-            book_rubbing(system, books, sticking, axes)
-            if sampled and before > 0:  # half of it belongs to the time before the pose
-                samples.energy[row].friction += 0.5 * (totals.friction - rubbed)
-                samples.energy[row].ground += 0.5 * (totals.ground - put_in)
-        if sampled:
+        if sampled and before == 0:
             keep_velocity(system.bodies, samples, row, before, axes)
+        stick(system, books.active, sticking, kick, axes)
+        pressed = settle_touches(system, books.touched, touched, kick, axes)
+        if sampled:
+            samples.energy[row].elastic += pressed
+        if accounted:
+            rubbed, put_in = book_rubbing(system, books, sticking, axes)
+            if sampled and before > 0:  # halves that belong to the time before the pose
+                samples.energy[row].friction += rubbed
+                samples.energy[row].ground += put_in
+        if sampled:
+            if before > 0:
+                keep_velocity(system.bodies, samples, row, before, axes)
             row += 1
             if is_astray(system.bodies, clock.ends, axes):
                 return n, row, True

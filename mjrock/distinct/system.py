@@ -59,7 +59,8 @@ class Books(NamedTuple):
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
-        active: room for the numbers of the lines that stick rigidly, shape (m,).
+        active, touched: room for the numbers of the lines that stick rigidly, and of those that met or left their face
+            in the last step, shape (m,) each.
     """
 
     dashpots: Array
@@ -69,14 +70,15 @@ class Books(NamedTuple):
     ends: Array
     totals: Rows
     active: Integers
+    touched: Integers
 
     @classmethod
     def empty(cls, system: System, groups: int, further: int = 0) -> Books:
         """Empty books of a system, with room for some further lines."""
         sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
         dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
-        active = np.zeros(len(system.lines) + further, dtype=np.int64)
-        return cls(dashpots, ties, broken, dampers, ends, rows(kinds(len(system.axes)).total, 1), active)
+        active, touched = (np.zeros(len(system.lines) + further, dtype=np.int64) for _ in range(2))
+        return cls(dashpots, ties, broken, dampers, ends, rows(kinds(len(system.axes)).total, 1), active, touched)
 
     @property
     def size(self) -> int:
