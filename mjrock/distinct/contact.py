@@ -31,7 +31,6 @@ from ..geometry.vectors import (
     vector,
 )
 from ..problem.masonry.joint_law import normal_force, stored
-from ..quantities import Integers
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, carried, last_friction, list_rigid, sprung_friction
 from .rows import Row, Rows
@@ -45,6 +44,10 @@ TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
 NEAR, THROUGH, BESIDE = 1, 2, 3
 """A corner outside a face, one that has come through it, and one that is behind it and passed beside its outline."""
+
+
+PASSES = 3
+"""Passes over the lines that touched in a step, which change the rates of each other."""
 
 
 class Meeting(NamedTuple):
@@ -223,7 +226,8 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
         if line.support >= 0:
             work = plus(scaled(0.5 * h * (line.push + push), meet.normal), as_vector(meet.normal, mean))
             put_in += carried(line, supports, work)
-        line.push, line.pressed, line.rate = push, push - sprung, rate
+        line.push, line.rate = push, rate
+        line.pressed = push - sprung if meet.gap < 0 or push < 0 else 0.0
         line.depth, line.past = max(-meet.gap, 0.0), meet.past
         put(line.dragged, drag)
         if meet.gap == TURNED_OVER:
@@ -238,20 +242,26 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
 
 
 @jitable
-def settle_touches(system: System, touched: Integers, count: int, kick: float, axes: tuple[int, ...]) -> float:
+def settle_touches(system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]) -> float:
     """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
 
     Returns what a sample counts as held by the springs [J]: the halves of these impulses before the pose have taken it.
     """
     done = 0.0
     for i in range(count):
-        line = system.lines[touched[i]]
-        meet = meeting(system, line, axes)
-        rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet, axes))
-        impulse = due_impulse(line, rate)
-        strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
-        if line.face >= 0:
-            strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
-        line.push, line.due = line.push + impulse / kick, 0.0
-        done -= 0.5 * impulse * line.rate
+        books.struck[i] = 0.0
+    for sweep in range(PASSES):
+        for i in range(count):
+            line = system.lines[books.touched[i]]
+            meet = meeting(system, line, axes)
+            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet, axes))
+            impulse = due_impulse(line, rate) - books.struck[i]
+            strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
+            if line.face >= 0:
+                strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
+            books.struck[i] += impulse
+    for i in range(count):
+        line = system.lines[books.touched[i]]
+        line.push, line.due = line.push + books.struck[i] / kick, 0.0
+        done -= 0.5 * books.struck[i] * line.rate
     return done

@@ -79,7 +79,8 @@ def solve_explicit(
     )
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger)
+    looks = len(steps.looks(steps.last + 1))
+    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
@@ -96,7 +97,8 @@ def solve_explicit(
     }
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
-    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept])
+    looked = steps.looks(followed.steps)
+    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     response.stats.update(watch.took())
     return response

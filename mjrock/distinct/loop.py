@@ -7,6 +7,7 @@ to they stand at the pose, and the forces act on them for half a step.
 from __future__ import annotations
 
 import math
+import sys
 from typing import NamedTuple
 
 from ..compiled import compiled, inlined, jitable
@@ -59,6 +60,7 @@ class Clock(NamedTuple):
         ends: rotation at which the run ends [rad], infinite for a run to its end.
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
+        look: steps from one look to the next.
     """
 
     step: int
@@ -70,6 +72,7 @@ class Clock(NamedTuple):
     ends: float
     before: float
     pushed: Vector
+    look: int = sys.maxsize
 
 
 @inlined
@@ -156,12 +159,23 @@ def keep_pose(
             sheared += stored_along(line, dot(grip, grip))
     energy, totals = samples.energy[row], books.totals[0]
     energy.potential, energy.elastic = potential, elastic + sheared
-    energy.friction, energy.ground = totals.friction - sheared, totals.ground
+    energy.friction, energy.ground, energy.dashpots = totals.friction - sheared, totals.ground, 0.0
+    for account in books.dashpots:
+        energy.dashpots += account
     keep_account(books.dampers, samples.dampers[row])
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
     keep_account(books.dashpots, samples.dashpots[row])
     keep_account(books.ends, energy.ends)
+
+
+@jitable
+def keep_energy(samples: Samples, row: int, look: int) -> None:
+    """Keep the energy of a sample as that of a look."""
+    of, energy = samples.energy[row], samples.looks[look]
+    energy.kinetic, energy.potential, energy.elastic = of.kinetic, of.potential, of.elastic
+    energy.dashpots, energy.friction, energy.ground = of.dashpots, of.friction, of.ground
+    keep_account(of.ends, energy.ends)
 
 
 @inlined
@@ -212,7 +226,7 @@ def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
 
 @compiled
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
-    """Steps up to that before which to stop. Samples are made of every so many, and of the last.
+    """Steps up to that before which to stop. Samples and looks are made of every so many, and of the last.
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
@@ -230,6 +244,8 @@ def make_steps(
         before = h if n > 0 else clock.before
         kick = 0.5 * (before + h)
         sampled = n % clock.every == 0 or n == clock.last
+        looked = n % clock.look == 0 or n == clock.last
+        kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
         push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
         if n == 0:
@@ -237,25 +253,25 @@ def make_steps(
         start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
         sticking, touched = press_lines(system, books, before, kick, axes)
-        if sampled:
-            keep_pose(system, books, samples, row, before, axes)
+        if sampled or looked:
+            keep_pose(system, books, samples, kept, before, axes)
         if accounted:
             note_slips(system, books.active, sticking, axes)
         kick_bodies(system.bodies, kick, axes)
-        if sampled and before == 0:
-            keep_velocity(system.bodies, samples, row, before, axes)
+        if before == 0:
+            keep_velocity(system.bodies, samples, kept, before, axes)
         stick(system, books.active, sticking, kick, axes)
-        pressed = settle_touches(system, books.touched, touched, kick, axes)
-        if sampled:
-            samples.energy[row].elastic += pressed
+        samples.energy[kept].elastic += settle_touches(system, books, touched, kick, axes)
         if accounted:
             rubbed, put_in = book_rubbing(system, books, sticking, axes)
-            if sampled and before > 0:  # halves that belong to the time before the pose
-                samples.energy[row].friction += rubbed
-                samples.energy[row].ground += put_in
+            if before > 0:  # halves that belong to the time before the pose
+                samples.energy[kept].friction += rubbed
+                samples.energy[kept].ground += put_in
+        if (sampled or looked) and before > 0:
+            keep_velocity(system.bodies, samples, kept, before, axes)
+        if looked:
+            keep_energy(samples, kept, -(-n // clock.look))
         if sampled:
-            if before > 0:
-                keep_velocity(system.bodies, samples, row, before, axes)
             row += 1
             if is_astray(system.bodies, clock.ends, axes):
                 return n, row, True

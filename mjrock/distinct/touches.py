@@ -22,7 +22,7 @@ from .rows import Row
 @inlined
 def was_open(line: Row) -> bool:
     """Whether a line was open at the last pose and did no work there."""
-    return bool(line.depth == 0 and line.push == 0 and line.pressed == 0)
+    return bool(line.depth == 0 and line.push == 0)
 
 
 @inlined
@@ -63,7 +63,9 @@ def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[flo
             return sprung, push
         since = line.depth / rate
         mass = 0.5 * line.k * since * (h - since)
-        sprung, line.due = -mass * rate / h, mass if held > 0 else 0.0
+        if held == 0:  # the dashpot has held the spring back, and takes what it held
+            return -2 * mass * rate / h, 0.0
+        sprung, line.due = -mass * rate / h, mass
     pull = line.k * gap + line.c * rate  # the law, if it could pull
     if held > 0 and pull > 0:
         push = -0.5 * held * pull / (held + pull)
