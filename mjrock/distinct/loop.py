@@ -148,24 +148,25 @@ def keep_pose(
         write_turn(body, pose, axes)
         put(velocity, components(body.velocity, axes))
         put(velocity[d:], momentum_of(body, axes))
+    keep_account(books.dashpots, samples.dashpots[row])
     potential, elastic = linked_energy(system, axes)
     sheared = 0.0
     for p in range(len(system.lines)):
         line = system.lines[p]
         if not was_open(line):
-            elastic += stored(line, -line.depth) + in_transit(line, before)
+            transit, early = in_transit(line, before)
+            elastic += stored(line, -line.depth) + transit
+            if samples.dashpots.shape[1] > 0:
+                samples.dashpots[row, line.group] += early
         if line.k_s < math.inf:
             grip = spin_components(line.grip, axes)
             sheared += stored_along(line, dot(grip, grip))
     energy, totals = samples.energy[row], books.totals[0]
     energy.potential, energy.elastic = potential, elastic + sheared
-    energy.friction, energy.ground, energy.dashpots = totals.friction - sheared, totals.ground, 0.0
-    for account in books.dashpots:
-        energy.dashpots += account
+    energy.friction, energy.ground = totals.friction - sheared, totals.ground
     keep_account(books.dampers, samples.dampers[row])
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
-    keep_account(books.dashpots, samples.dashpots[row])
     keep_account(books.ends, energy.ends)
 
 
@@ -174,7 +175,7 @@ def keep_energy(samples: Samples, row: int, look: int) -> None:
     """Keep the energy of a sample as that of a look."""
     of, energy = samples.energy[row], samples.looks[look]
     energy.kinetic, energy.potential, energy.elastic = of.kinetic, of.potential, of.elastic
-    energy.dashpots, energy.friction, energy.ground = of.dashpots, of.friction, of.ground
+    energy.friction, energy.ground = of.friction, of.ground
     keep_account(of.ends, energy.ends)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -37,9 +36,6 @@ from .system import Books, Samples
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
 and over the energy there was [-]."""
-GIVEN_BACK = 0.05
-"""Most energy that dashpots may give back, over the energy there was [-]: what they do where a line leaves its face within
-a step belongs to two steps."""
 ROUNDING = 1e-12
 """Rounding of a position in many steps, over its size [-]."""
 
@@ -160,9 +156,7 @@ def require_no_gain(run: Run, stats: Mapping[str, Any]) -> None:
     """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
     of faces, which have an account.
 
-    The looks decide, which are made every so many steps, so that the spacing of the samples plays no part. What
-    dashpots take counts as energy that is there. Else it would hide what appears, and they give some of it back for a
-    step where a line leaves its face.
+    The looks decide, which are made every so many steps, so that the spacing of the samples plays no part.
 
     Args:
         run: the run.
@@ -176,11 +170,10 @@ def require_no_gain(run: Run, stats: Mapping[str, Any]) -> None:
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
     scale = max(given, kinetic, run.rounding / ENERGY_GAIN)
-    for balance, most in ((own + looks["dashpots"], scale), (own, GIVEN_BACK / ENERGY_GAIN * scale)):
-        gain = from_nowhere(balance, most)
-        if gain is not None:
-            worst, share, said = gain
-            raise RuntimeError(f"{said} by t = {run.looked[worst]:.4g} s; {advice(stats, share * most / scale)}")
+    gain = from_nowhere(own, scale)
+    if gain is not None:
+        worst, share, said = gain
+        raise RuntimeError(f"{said} by t = {run.looked[worst]:.4g} s; {advice(stats, share)}")
     if -left.min() > OPEN * scale:
         warnings.warn(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "

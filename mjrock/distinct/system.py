@@ -12,13 +12,10 @@ from ..scene.ground import Ground
 from .rows import Rows, kinds, rows
 
 ENERGY = np.dtype(
-    [
-        *((name, float) for name in ("kinetic", "potential", "elastic", "dashpots", "friction", "ground")),
-        ("ends", float, (2,)),
-    ]
+    [*((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")), ("ends", float, (2,))]
 )
-"""Energy at a sample or a look, what dashpots of lines and friction have taken, what ground and supports have put in,
-and what lines of joints and of encounters have lost at the ends of faces by then [J]."""
+"""Energy at a sample or a look, what friction has taken, what ground and supports have put in, and what lines of joints
+and of encounters have lost at the ends of faces by then [J]."""
 
 
 class Supports(NamedTuple):
@@ -128,7 +125,7 @@ class Samples(NamedTuple):
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
         for table in (self.energy, self.looks):
-            for name in ("dashpots", "friction", "ground", "ends"):
+            for name in ("friction", "ground", "ends"):
                 table[name] -= table[name][0]
         for account in (self.dampers, self.ties, self.broken, self.dashpots):
             account -= account[0]

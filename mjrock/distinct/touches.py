@@ -82,7 +82,11 @@ def due_impulse(line: Row, rate: float) -> float:
 
 
 @inlined
-def in_transit(line: Row, h: float) -> float:
-    """Work of a spring for a touch in the last step that a sample counts as held by it [J]."""
-    work: float = 0.5 * h * (line.push - line.pressed - line.k * line.depth) * line.rate
-    return work
+def in_transit(line: Row, h: float) -> tuple[float, float]:
+    """Work for a touch in the last step that a sample counts as held by the spring, and what it counts as taken by the
+    dashpot, which the halves of the impulses after the pose will take [J]."""
+    by_spring = 0.5 * h * (line.push - line.pressed - line.k * line.depth) * line.rate
+    if line.push < 0:
+        work = 0.5 * h * line.push * line.rate
+        return work, by_spring - work
+    return by_spring, 0.0
