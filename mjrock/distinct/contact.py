@@ -35,7 +35,7 @@ from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, carried, last_friction, list_rigid, sprung_friction
 from .rows import Row, Rows
 from .system import Books, Supports, System
-from .touches import due_impulse, time_closed, touched_forces, was_open
+from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
 from .turning import in_body, in_world, may_face_away, rotation_change, strike_body
 
 OPEN = 1.0
@@ -176,13 +176,16 @@ def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
 
 
 @jitable
-def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple[int, ...]) -> tuple[int, int]:
+def press_lines(
+    system: System, books: Books, h: float, kick: float, lead: float, axes: tuple[int, ...]
+) -> tuple[int, int]:
     """Add the forces of all lines but rigid friction, and list the lines that stick rigidly, and those that touched.
 
     Args:
         system, books: the bodies and their lines, and the accounts.
         h: length of the step that led to the pose [s], zero at the start.
         kick: time for which the forces act on the velocities [s].
+        lead: by how many steps dashpots look ahead, see `foreseen`.
         axes: of the system.
 
     Returns:
@@ -202,6 +205,8 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
         velocity = relative(bodies, line, supports, meet, axes)
         rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
+        if lead > 0 and push > 0 and line.push > 0:
+            push = normal_force(line, meet.gap, foreseen(line, rate, push, lead))
         if (push > 0) != (line.push > 0) or (meet.gap < 0) != (line.depth > 0):
             sprung, push = touched_forces(line, meet.gap, rate, h)
             if line.due != 0:

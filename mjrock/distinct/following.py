@@ -20,6 +20,9 @@ from .system import Books, Samples, System
 
 LOOKED, LOOKS = 100, 1_000_000
 """Steps from one look at the energy to the next, and most looks."""
+SHORT, LEAD = 0.1, 0.5
+"""Step over the longest stable one up to which dashpots take the rate at the pose, half a step ahead of the velocity
+that there is [-]. At longer steps what is foreseen is worse than that velocity."""
 FIRST = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 HEARD = 0.3
@@ -112,6 +115,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     """
     system, encounters, stop, memory = setup.system, setup.encounters, stepping.last + 1, setup.memory
     clock = Clock(0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look)
+    clock = clock._replace(lead=LEAD if stepping.h <= SHORT * setup.limit else 0.0)
     look = 0
     if memory is not None:
         clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look

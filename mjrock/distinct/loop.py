@@ -61,6 +61,7 @@ class Clock(NamedTuple):
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
         look: steps from one look to the next.
+        lead: by how many steps dashpots look ahead, see `touches.foreseen`.
     """
 
     step: int
@@ -73,6 +74,7 @@ class Clock(NamedTuple):
     before: float
     pushed: Vector
     look: int = sys.maxsize
+    lead: float = 0.0
 
 
 @inlined
@@ -253,7 +255,7 @@ def make_steps(
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
-        sticking, touched = press_lines(system, books, before, kick, axes)
+        sticking, touched = press_lines(system, books, before, kick, clock.lead, axes)
         if sampled or looked:
             keep_pose(system, books, samples, kept, before, axes)
         if accounted:

@@ -26,6 +26,13 @@ def was_open(line: Row) -> bool:
 
 
 @inlined
+def foreseen(line: Row, rate: float, push: float, lead: float) -> float:
+    """Rate of a line some steps on [m/s], changed as in the last step and as the force that changes it has grown."""
+    ahead: float = rate + lead * (rate - line.rate) * min(push / line.push, 2.0)
+    return ahead
+
+
+@inlined
 def time_closed(line: Row, gap: float, rate: float, h: float) -> float:
     """Time in the last step for which a line that presses was closed [s]."""
     met: float = gap / rate if line.depth == 0 and h * rate < gap else h
