@@ -247,12 +247,15 @@ def press_lines(
 
 
 @jitable
-def settle_touches(system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]) -> float:
+def settle_touches(
+    system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]
+) -> tuple[float, float]:
     """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
 
-    Returns what a sample counts as held by the springs [J]: the halves of these impulses before the pose have taken it.
+    Returns what the halves of these impulses before the pose have taken, which a sample counts as held by the springs,
+    and what the supports have put in through them [J].
     """
-    done = 0.0
+    taken, put_in = 0.0, 0.0
     for i in range(count):
         books.struck[i] = 0.0
     for sweep in range(PASSES):
@@ -267,6 +270,10 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
             books.struck[i] += impulse
     for i in range(count):
         line = system.lines[books.touched[i]]
+        if line.support >= 0:
+            impulse = 0.5 * books.struck[i]
+            put_in += carried(line, system.supports, scaled(impulse, meeting(system, line, axes).normal))
         line.push, line.due = line.push + books.struck[i] / kick, 0.0
-        done -= 0.5 * books.struck[i] * line.rate
-    return done
+        taken -= 0.5 * books.struck[i] * line.rate
+    books.totals[0].ground += put_in
+    return taken, put_in

@@ -264,7 +264,9 @@ def make_steps(
         if before == 0:
             keep_velocity(system.bodies, samples, kept, before, axes)
         stick(system, books.active, sticking, kick, axes)
-        samples.energy[kept].elastic += settle_touches(system, books, touched, kick, axes)
+        taken, put_in = settle_touches(system, books, touched, kick, axes)
+        samples.energy[kept].elastic += taken
+        samples.energy[kept].ground += put_in
         if accounted:
             rubbed, put_in = book_rubbing(system, books, sticking, axes)
             if before > 0:  # halves that belong to the time before the pose

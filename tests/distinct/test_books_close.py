@@ -124,11 +124,11 @@ def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, 
     history = ([0.0, 0.1], *([0.0, 0.0] for _ in range(1 + in_space)), [0.0, -0.1 * sinks])
     name = masonry.names[0]
     run = mr.solve_explicit(mr.MasonryCase(masonry, 0.1, supports={name: history}), ledger=True)
-    held, dashpots = run.ledger.elastic[0], sum(run.ledger.dashpots.values())
+    held, taken = run.ledger.elastic[0], -run.ledger.ground[1:]
     assert held == pytest.approx(0.5 * (2000 * mr.GRAVITY) ** 2 / 1e9)
-    np.testing.assert_allclose(dashpots[1:] - run.ledger.ground[1:], held, rtol=1e-3)
-    assert -run.ledger.ground[-1] > 0.5 * held
-    assert dashpots[-1] >= 0 if xi else np.abs(dashpots).max() < 1e-12 * held
+    np.testing.assert_allclose(taken, held, rtol=0.5 if xi else 1e-3)
+    assert taken.max() < held * (1 + 1e-3)
+    assert np.abs(run.energy_residual).max() < 1e-9 * held
     assert run.velocity[-1, 0, 2 if in_space else 1] == pytest.approx(-mr.GRAVITY * 0.1, rel=1e-2)
 
 
