@@ -31,7 +31,7 @@ def followed(system, duration, h, every):
     system, books = copied(system), Books.empty(system, 1)
     samples = Samples.room(last // every + 1, len(system.bodies), books, SPACE)
     advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf, 0.0, (0.0, 0.0, 0.0)))
-    return samples, system
+    return samples.taken(slice(-1)), system
 
 
 def about_vertical(blocks, angle):

@@ -32,15 +32,20 @@ from ..geometry.vectors import (
 )
 from ..problem.masonry.joint_law import normal_force, stored
 from .faces import is_beside, pulled_inside
-from .friction import along_face, as_vector, carried, list_rigid, sprung_friction
+from .friction import along_face, as_vector, carried, last_friction, list_rigid, sprung_friction
 from .rows import POINT, Row, Rows
 from .system import Books, Supports, System
-from .turning import in_body, in_world, may_face_away, rotation_change
+from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
+from .turning import in_body, in_world, may_face_away, rotation_change, strike_body
 
 OPEN = 1.0
 """Gap of a line that has left its face [m]."""
 TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
+
+
+PASSES = 3
+"""Passes over the lines that touched in a step, which change the rates of each other."""
 
 
 class Meeting(NamedTuple):
@@ -141,16 +146,6 @@ def where_friction_rubs(meet: Meeting) -> Meeting:
 
 
 @inlined
-def closed_share(line: Row, gap: float, opened: float) -> float:
-    """Share of the last step in which a line was closed [-], whose gap has grown by some length in it [m]."""
-    if line.depth > 0 and gap < 0:
-        return 1.0
-    depth = max(line.depth, -gap)
-    share: float = depth / abs(opened) if depth < abs(opened) else 1.0
-    return share
-
-
-@inlined
 def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
     """Energy that a line has lost in the last step since it was past the end of its face before or after it [J]: what
     its spring holds less, and has not done as work while the gap grew by some length [m].
@@ -165,40 +160,52 @@ def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
 
 
 @jitable
-def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple[int, ...]) -> int:
-    """Add the forces of all lines but rigid friction, and list the lines that stick rigidly.
+def press_lines(
+    system: System, books: Books, h: float, kick: float, lead: float, axes: tuple[int, ...]
+) -> tuple[int, int]:
+    """Add the forces of all lines but rigid friction, and list the lines that stick rigidly, and those that touched.
 
     Args:
         system, books: the bodies and their lines, and the accounts.
         h: length of the step that led to the pose [s], zero at the start.
         kick: time for which the forces act on the velocities [s].
+        lead: by how many steps dashpots look ahead, see `foreseen`.
         axes: of the system.
 
     Returns:
-        How many lines stick rigidly.
+        How many lines stick rigidly, and how many met or left their face in the last step.
     """
-    bodies, lines, supports, active = system.bodies, system.lines, system.supports, 0
+    bodies, lines, supports, active, touched = system.bodies, system.lines, system.supports, 0, 0
     rubbed, put_in = 0.0, 0.0
     for p in range(len(lines)):
         line = lines[p]
         meet = meeting(system, line, axes)
         if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, 0.0 if meet.past else meet.gap)
-            if line.depth == 0:  # nor did it press in the last step
+            if was_open(line):
                 put(line.grip, no_spin(axes))
                 continue
         meet = where_friction_rubs(meet)
         velocity = relative(bodies, line, supports, meet, axes)
         rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
+        if lead > 0 and push > 0 and line.push > 0:
+            push = normal_force(line, meet.gap, foreseen(line, rate, push, lead))
+        if (push > 0) != (line.push > 0) or (meet.gap < 0) != (line.depth > 0):
+            sprung, push = touched_forces(line, meet.gap, rate, h)
+            if line.due != 0:
+                books.touched[touched] = p
+                touched += 1
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
         if meet.past or line.past == 1:
             books.ends[0] += lost_at_the_end(line, meet, h * rate)
         last, drag = spin_components(line.dragged, axes), no_spin(axes)
-        if push == 0:
-            put(line.grip, drag)
+        if push <= 0:
+            if push < 0 and line.push > 0:
+                drag = scaled(push / line.push, last_friction(bodies, line, last))
+            put(line.grip, no_spin(axes))
         elif line.k_s < math.inf:
-            drag = sprung_friction(bodies, line, meet.normal, slip, push, h)
+            drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
         elif line.friction > 0:
             books.active[active] = p
             list_rigid(system, line, (len(axes) - 1) * active, meet.normal, meet.arm, meet.face_arm)
@@ -207,8 +214,10 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
         rubbed -= dot(mean, slip)
         if line.support >= 0:
             work = plus(scaled(0.5 * h * (line.push + push), meet.normal), as_vector(meet.normal, mean))
-            put_in += closed_share(line, meet.gap, h * rate) * carried(line, supports, work)
-        line.push, line.pressed, line.depth, line.past = push, push - sprung, max(-meet.gap, 0.0), meet.past
+            put_in += carried(line, supports, work)
+        line.push, line.rate = push, rate
+        line.pressed = push - sprung if meet.gap < 0 or push < 0 else 0.0
+        line.depth, line.past = max(-meet.gap, 0.0), meet.past
         put(line.dragged, drag)
         if meet.gap == TURNED_OVER:
             line.k = line.c = line.friction = 0.0
@@ -218,4 +227,35 @@ def press_lines(system: System, books: Books, h: float, kick: float, axes: tuple
             add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
     books.totals[0].friction += rubbed
     books.totals[0].ground += put_in
-    return active
+    return active, touched
+
+
+@jitable
+def settle_touches(system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]) -> tuple[float, float]:
+    """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
+
+    Returns what the halves of these impulses before the pose have taken, which a sample counts as held by the springs,
+    and what the supports have put in through them [J].
+    """
+    taken, put_in = 0.0, 0.0
+    for i in range(count):
+        books.struck[i] = 0.0
+    for sweep in range(PASSES):
+        for i in range(count):
+            line = system.lines[books.touched[i]]
+            meet = meeting(system, line, axes)
+            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet, axes))
+            impulse = due_impulse(line, rate) - books.struck[i]
+            strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
+            if line.face >= 0:
+                strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
+            books.struck[i] += impulse
+    for i in range(count):
+        line = system.lines[books.touched[i]]
+        if line.support >= 0:
+            impulse = 0.5 * books.struck[i]
+            put_in += carried(line, system.supports, scaled(impulse, meeting(system, line, axes).normal))
+        line.push, line.due = line.push + books.struck[i] / kick, 0.0
+        taken -= 0.5 * books.struck[i] * line.rate
+    books.totals[0].ground += put_in
+    return taken, put_in

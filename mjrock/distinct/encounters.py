@@ -161,8 +161,7 @@ class Encounters:
         found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched, known)
         until, soon = self._until(found, velocity, about)
         system = self._renewed(system, books, poses, found.taken(soon), worn[wear.pairs], stays)
-        short = len(system.lines) - len(books.active)
-        return system, books._replace(active=np.append(books.active, np.zeros(max(short, 0), dtype=np.int64))), until
+        return system, books.with_room(len(system.lines)), until
 
     def _until(self, found: Found, velocity: Array, about: Array) -> tuple[float, Flags]:
         """The time until the next look [s], and which places may touch by then."""
@@ -192,7 +191,7 @@ class Encounters:
         old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
         new = self._lines(found, number, poses)
         take_over(new, places_of(new, number, poses, self.free), found.gap, gone, old, poses)
-        for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth"):
+        for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
         met.pair = np.append(met.pair[stays], number)
         met.found = np.append(met.found[stays], self._moves_of(number))

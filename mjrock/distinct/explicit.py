@@ -44,7 +44,7 @@ def solve_explicit(
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
         contacts: the interfaces of the wall; masonry has its own joints.
-        timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry and 0.005 of it
+        timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry and 0.05 of it
             for a wall, whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
@@ -78,7 +78,8 @@ def solve_explicit(
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger)
+    looks = len(steps.looks(steps.last + 1))
+    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
@@ -97,7 +98,8 @@ def solve_explicit(
     samples = samples.taken(kept).since_the_start()
     if isinstance(case, MasonryCase):
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept])
-    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept])
+    looked = steps.looks(followed.steps)
+    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     response.stats.update(watch.took())
     return response

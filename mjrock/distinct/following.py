@@ -19,6 +19,11 @@ from .memory import Memory, remember
 from .setup import Setup
 from .system import Books, Samples, System
 
+LOOKED, LOOKS = 100, 1_000_000
+"""Steps from one look at the energy to the next, and most looks."""
+SHORT, LEAD = 0.1, 0.5
+"""Step over the longest stable one up to which dashpots take the rate at the pose, half a step ahead of the velocity
+that there is [-]. At longer steps what is foreseen is worse than that velocity."""
 FIRST = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 HEARD = 0.3
@@ -72,6 +77,16 @@ class Stepping(NamedTuple):
         return cls(timestep, every, max(1, round(output_step / (timestep * every))), last, last * timestep)
 
     @property
+    def look(self) -> int:
+        """Steps from one look at the energy to the next."""
+        return max(LOOKED, -(-self.last // LOOKS))
+
+    def looks(self, steps: int) -> Array:
+        """Times of the looks of so many steps [s]."""
+        count = steps // self.look + 1 if steps <= self.last else -(-self.last // self.look) + 1
+        return self.h * np.minimum(self.look * np.arange(count), self.last)
+
+    @property
     def samples(self) -> int:
         """How many samples there are."""
         return -(-self.last // self.every) + 1
@@ -98,7 +113,10 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
     """
     system, encounters, stop, memory = setup.system, setup.encounters, stepping.last + 1, setup.memory
-    clock = Clock(0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes))
+    clock = Clock(
+        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
+    )
+    clock = clock._replace(lead=LEAD if stepping.h <= SHORT * setup.limit else 0.0)
     look = 0
     if memory is not None:
         clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look

@@ -79,8 +79,9 @@ def carried(line: Row, supports: Supports, way: Vector) -> float:
 
 
 @inlined
-def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push: float, h: float) -> Vector:
-    """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it.
+def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push: float, time: float) -> Vector:
+    """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it for
+    as long as the line was closed in the last step [s].
 
     The slider shortens the spring to what the face holds, and then spring and dashpot together pull no more than that.
     A dashpot that alone exceeds it stretches no spring, which would put energy in.
@@ -88,12 +89,21 @@ def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push:
     grip, limit = spin_components(line.grip, normal), shear_limit(line, push)
     if line.face >= 0:
         grip = in_world(bodies[line.face], grip)
-    grip = shortened(along_face(normal, plus(grip, scaled(h, slip))), limit / line.k_s)
+    grip = shortened(along_face(normal, plus(grip, scaled(time, slip))), limit / line.k_s)
     drag = shortened(minus(scaled(-line.k_s, grip), scaled(line.c_s, slip)), limit)
     if line.face >= 0:
         grip = in_body(bodies[line.face], grip)
     put(line.grip, grip)
     return drag
+
+
+@inlined
+def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
+    """Friction of a line in the last step [N], of which `dragged` is that of its shear spring."""
+    if line.k_s < math.inf:
+        return dragged
+    grip = spin_components(line.grip, dragged) if len(dragged) == 3 else (line.grip[0],)
+    return in_world(bodies[line.face], grip) if line.face >= 0 else grip
 
 
 @inlined
@@ -266,12 +276,16 @@ def note_slips(system: System, active: Integers, count: int, axes: tuple[int, ..
 
 
 @jitable
-def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> None:
+def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> tuple[float, float]:
     """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
-    the supports put in through it."""
-    totals, each = books.totals[0], len(axes) - 1
+    the supports put in through it. Returns the halves of both before the pose [J]."""
+    totals, each, rubbed, put_in = books.totals[0], len(axes) - 1, 0.0, 0.0
     for i in range(each * count):
         row, line = system.ways[i], system.lines[books.active[i // each]]
         slip = 0.5 * (row.slip + slip_along(system, line, row, axes))
         totals.friction -= row.impulse * slip
-        totals.ground += row.impulse * carried(line, system.supports, components(row.way, axes))
+        work = row.impulse * carried(line, system.supports, components(row.way, axes))
+        totals.ground += work
+        rubbed -= 0.5 * row.impulse * row.slip
+        put_in += 0.5 * work
+    return rubbed, put_in

@@ -99,7 +99,7 @@ def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, pos
     closed = np.flatnonzero(gap < 0)
     closed = closed[np.argsort(new.pair[closed], kind="stable")]
     pairs, first = np.unique(new.pair[closed], return_index=True)
-    source = np.flatnonzero(are_among(old.pair, pairs) & (gone["push"] > 0))
+    source = np.flatnonzero(are_among(old.pair, pairs) & ((gone["push"] != 0) | (gone["depth"] > 0)))
     chosen = np.empty(len(source), dtype=np.int64)
     own, first = np.searchsorted(pairs, old.pair[source]), np.append(first, len(closed))
     nearest(own, old.at[source], first, new.at[closed], chosen)
@@ -107,6 +107,7 @@ def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, pos
     for name in ("push", "pressed"):
         np.add.at(lines[name], target, gone[name][source])
     np.maximum.at(lines["depth"], target, gone["depth"][source])
+    lines["rate"][target] = gone["rate"][source]
     before, after = _some(old, source), _some(new, target)
     for name in ("grip", "dragged"):
         turns = name == "grip"

@@ -7,6 +7,7 @@ to they stand at the pose, and the forces act on them for half a step.
 from __future__ import annotations
 
 import math
+import sys
 from typing import NamedTuple
 
 from ..compiled import compiled, inlined, jitable
@@ -25,11 +26,12 @@ from ..geometry.vectors import (
 from ..problem.masonry.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground, mean_acceleration
-from .contact import meeting, press_lines
+from .contact import press_lines, settle_touches
 from .friction import book_rubbing, note_slips, stick
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
 from .system import Books, Samples, System
+from .touches import in_transit, was_open
 from .turning import (
     apply_inverse_inertia,
     in_body,
@@ -58,6 +60,8 @@ class Clock(NamedTuple):
         ends: rotation at which the run ends [rad], infinite for a run to its end.
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
+        look: steps from one look to the next.
+        lead: by how many steps dashpots look ahead, see `touches.foreseen`.
     """
 
     step: int
@@ -69,6 +73,8 @@ class Clock(NamedTuple):
     ends: float
     before: float
     pushed: Vector
+    look: int = sys.maxsize
+    lead: float = 0.0
 
 
 @inlined
@@ -130,10 +136,11 @@ def move_bodies(bodies: Rows, h: float, axes: tuple[int, ...]) -> None:
 
 
 @jitable
-def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+def keep_pose(system: System, books: Books, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
     """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work.
 
-    In place of the spins the angular momenta are kept for now, see `keep_velocity`."""
+    In place of the spins the angular momenta are kept for now, see `keep_velocity`. `before` is the length of the last
+    step [s]."""
     d = len(axes)
     for b in range(len(system.bodies)):
         body, pose, velocity = system.bodies[b], samples.pose[row, b], samples.velocity[row, b]
@@ -141,11 +148,16 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tu
         write_turn(body, pose, axes)
         put(velocity, components(body.velocity, axes))
         put(velocity[d:], momentum_of(body, axes))
+    keep_account(books.dashpots, samples.dashpots[row])
     potential, elastic = linked_energy(system, axes)
     sheared = 0.0
     for p in range(len(system.lines)):
         line = system.lines[p]
-        elastic += stored(line, meeting(system, line, axes).gap)
+        if not was_open(line):
+            transit, early = in_transit(line, before)
+            elastic += stored(line, -line.depth) + transit
+            if samples.dashpots.shape[1] > 0:
+                samples.dashpots[row, line.group] += early
         if line.k_s < math.inf:
             grip = spin_components(line.grip, axes)
             sheared += stored_along(line, dot(grip, grip))
@@ -155,8 +167,16 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, axes: tu
     keep_account(books.dampers, samples.dampers[row])
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
-    keep_account(books.dashpots, samples.dashpots[row])
     keep_account(books.ends, energy.ends)
+
+
+@jitable
+def keep_energy(samples: Samples, row: int, look: int) -> None:
+    """Keep the energy of a sample as that of a look."""
+    of, energy = samples.energy[row], samples.looks[look]
+    energy.kinetic, energy.potential, energy.elastic = of.kinetic, of.potential, of.elastic
+    energy.friction, energy.ground = of.friction, of.ground
+    keep_account(of.ends, energy.ends)
 
 
 @inlined
@@ -170,17 +190,23 @@ def keep_account(account: Array, kept: Array) -> None:
 def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
     """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
-    Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]."""
+    Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]. The
+    kinetic energy is that which the steps conserve: half the product of velocity and momentum before and after the
+    pose. It is less than that of the mean velocity, and below zero where a stiff contact turns a motion round."""
     kinetic, potential, share, d = 0.0, 0.0, 0.5 if before > 0 else 0.0, len(axes)
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
         linear, momentum = components(velocity, axes), spin_components(velocity[d:], axes)
         linear = plus(linear, scaled(share, minus(components(body.velocity, axes), linear)))
-        momentum = in_body(body, plus(momentum, scaled(share, minus(momentum_of(body, axes), momentum))))
+        after = momentum_of(body, axes)
+        momentum = plus(momentum, scaled(share, minus(after, momentum)))
+        to_come = in_body(body, minus(after, momentum))
+        change, momentum = minus(components(body.velocity, axes), linear), in_body(body, momentum)
         spin = apply_inverse_inertia(body, momentum)
         put(velocity, linear)
         put(velocity[d:], spin)
-        kinetic += 0.5 * body.mass * dot(linear, linear) + 0.5 * dot(momentum, spin)
+        kinetic += 0.5 * body.mass * (dot(linear, linear) - dot(change, change))
+        kinetic += 0.5 * (dot(momentum, spin) - dot(to_come, apply_inverse_inertia(body, to_come)))
         potential += GRAVITY * body.mass * body.place[d - 1]
     samples.energy[row].kinetic = kinetic
     samples.energy[row].potential += potential
@@ -201,7 +227,7 @@ def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
 
 @compiled
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
-    """Steps up to that before which to stop. Samples are made of every so many, and of the last.
+    """Steps up to that before which to stop. Samples and looks are made of every so many, and of the last.
 
     Returns the number of the next step and of the next sample, and whether the run has ended.
     """
@@ -213,33 +239,42 @@ def make_steps(
     system: System, books: Books, samples: Samples, clock: Clock, axes: tuple[int, ...]
 ) -> tuple[int, int, bool]:
     """The steps of `advance`. The compiler drops what is of the plane or of space by the length of the axes."""
-    n, h, row, totals = clock.step, clock.h, clock.row, books.totals[0]
+    n, h, row = clock.step, clock.h, clock.row
     accounted = samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0
     while n < clock.stop:
         before = h if n > 0 else clock.before
         kick = 0.5 * (before + h)
         sampled = n % clock.every == 0 or n == clock.last
+        looked = n % clock.look == 0 or n == clock.last
+        kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
         push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
         if n == 0:
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
-        sticking = press_lines(system, books, before, kick, axes)
-        if sampled:
-            keep_pose(system, books, samples, row, axes)
+        sticking, touched = press_lines(system, books, before, kick, clock.lead, axes)
+        if sampled or looked:
+            keep_pose(system, books, samples, kept, before, axes)
         if accounted:
             note_slips(system, books.active, sticking, axes)
         kick_bodies(system.bodies, kick, axes)
+        if before == 0:
+            keep_velocity(system.bodies, samples, kept, before, axes)
         stick(system, books.active, sticking, kick, axes)
+        taken, put_in = settle_touches(system, books, touched, kick, axes)
+        samples.energy[kept].elastic += taken
+        samples.energy[kept].ground += put_in
         if accounted:
-            rubbed, put_in = totals.friction, totals.ground
-            book_rubbing(system, books, sticking, axes)
-            if sampled and before > 0:  # half of it belongs to the time before the pose
-                samples.energy[row].friction += 0.5 * (totals.friction - rubbed)
-                samples.energy[row].ground += 0.5 * (totals.ground - put_in)
+            rubbed, put_in = book_rubbing(system, books, sticking, axes)
+            if before > 0:  # halves that belong to the time before the pose
+                samples.energy[kept].friction += rubbed
+                samples.energy[kept].ground += put_in
+        if (sampled or looked) and before > 0:
+            keep_velocity(system.bodies, samples, kept, before, axes)
+        if looked:
+            keep_energy(samples, kept, -(-n // clock.look))
         if sampled:
-            keep_velocity(system.bodies, samples, row, before, axes)
             row += 1
             if is_astray(system.bodies, clock.ends, axes):
                 return n, row, True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ from ..scene.course import Course
 from ..scene.scene import Scene, is_quiet
 from .following import Followed
 from .memory import remembered
+from .rows import Rows
 from .system import Books, Samples
 
 OPEN = 0.01
@@ -45,7 +45,8 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s]."""
+    """A run by explicit steps: what was asked, what stood, what was kept of the motion, and when [s], and the times of
+    the looks [s]."""
 
     case: Case | MasonryCase
     contacts: Contacts | None
@@ -55,6 +56,7 @@ class Run:
     books: Books
     samples: Samples
     t: Array
+    looked: Array
 
     @property
     def in_space(self) -> bool:
@@ -64,8 +66,11 @@ class Run:
     @cached_property
     def energy(self) -> Array:
         """Energy above the scene at rest [J]. Shear springs count from what they hold at the start."""
+        return self.above_rest(self.samples.energy)
+
+    def above_rest(self, energy: Rows) -> Array:
+        """The same of samples or looks, the first of which is the start."""
         at_rest = self.scene.rest_energies.sum()
-        energy = self.samples.energy
         there = energy["kinetic"] + energy["potential"] + energy["elastic"]
         preloaded = float(there[0] - at_rest - self.course.energy(self.scene))
         return np.asarray(there - (float(at_rest) + preloaded))
@@ -85,8 +90,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         RuntimeError: if energy has appeared from nowhere.
     """
     reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
-    count = reading.pop("count")
-    require_no_gain(run, count, stats)
+    require_no_gain(run, stats)
     samples, kept = run.samples, thinned(len(run.t), stride)
     response = Response(
         case=run.case,
@@ -113,7 +117,7 @@ def plastic_of(run: Run) -> dict[str, Plastic]:
 
 
 def wall_reading(run: Run) -> dict[str, Any]:
-    """Peaks and impacts of a wall, and up to which sample it can still come back."""
+    """Peaks and impacts of a wall."""
     case, contacts = run.case, run.contacts
     assert isinstance(case, Case)
     assert contacts is not None
@@ -126,13 +130,12 @@ def wall_reading(run: Run) -> dict[str, Any]:
         "rocking": Rocking(impacts, peaks),
         "outcome": outcome,
         "message": message,
-        "count": case.returning(theta),
         "stats": {"base_displacement": float(slip[-1] - slip[0])},
     }
 
 
 def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
-    """Openings, slidings and falls of masonry, and the sample at which the first block falls."""
+    """Openings, slidings and falls of masonry."""
     masonry, scene, pose = case.masonry, run.scene, run.samples.pose
     flat = pose.reshape(len(pose), -1)
     up = scene.freedom.translations - 1
@@ -151,7 +154,6 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
         "joints": JointMotion(opening, motion.sliding, fallen),
         "outcome": outcome,
         "message": message,
-        "count": int(np.searchsorted(run.t, next(iter(fallen.values()), np.inf))),
         "stats": {"deepest": motion.deepest},
     }
 
@@ -165,27 +167,28 @@ def lies_still(run: Run) -> bool:
     return run.t[-1] > STILL and all(is_quiet(run.scene, 0.0, velocity) for velocity in last)
 
 
-def require_no_gain(run: Run, count: int, stats: Mapping[str, Any]) -> None:
-    """Raise a RuntimeError if energy appears from nowhere up to a sample, or if the motion is not finite; warn if much
-    appears at ends of faces, which have an account.
+def require_no_gain(run: Run, stats: Mapping[str, Any]) -> None:
+    """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
+    of faces, which have an account.
+
+    The looks decide, which are made every so many steps, so that the spacing of the samples plays no part.
 
     Args:
         run: the run.
-        count: number of the sample.
-        stats: with the step that was taken, and the longest stable one.
+        stats: with the step that was taken.
     """
     if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
-    energy = run.samples.energy[: max(count, 1)]
-    work, left = energy["ground"], energy["ends"].sum(axis=1)
-    own = run.energy[: len(work)] - work + left
-    given = max(float(run.energy[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
-    kinetic = float(energy["kinetic"].max())  # what falls below its rest has more
+    looks = run.samples.looks[: len(run.looked)]
+    work, left, there = looks["ground"], looks["ends"].sum(axis=1), run.above_rest(looks)
+    own = there - work + left
+    given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
     scale = max(given, kinetic, run.rounding / ENERGY_GAIN)
     gain = from_nowhere(own, scale)
     if gain is not None:
         worst, share, said = gain
-        raise RuntimeError(f"{said} by t = {run.t[worst]:.4g} s; {advice(stats, share)}")
+        raise RuntimeError(f"{said} by t = {run.looked[worst]:.4g} s; {advice(stats, share)}")
     if -left.min() > OPEN * scale:
         warnings.warn(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "
@@ -203,7 +206,7 @@ def warn_if_open(response: Response, rounding: float) -> None:
         enough = 0.5 * OPEN * largest / residual * response.stats["timestep"]
         warnings.warn(
             f"the ledger does not close: {residual:.3g} J, {residual / largest:.1%} of its largest part, have no "
-            f"account. Touches are met up to half a step late; take timestep = {enough:.2g} s",
+            f"account. The step is long for this motion; take timestep = {enough:.2g} s",
             stacklevel=4,
         )
 
@@ -211,18 +214,10 @@ def warn_if_open(response: Response, rounding: float) -> None:
 def advice(stats: Mapping[str, Any], gained: float) -> str:
     """What to do against a share of energy from nowhere, in words.
 
-    A contact with a stiffness k that closes or opens between two poses with the gaps a and -b puts k a b / 2 out of
-    place. Without damping this is at most (timestep / longest stable step)^2 of the energy with which the bodies meet,
-    put in as often as taken. The step that is advised keeps it within a quarter of ENERGY_GAIN, since touches add up.
-    Damped contacts are of first order, and the step is also short enough to bring what was gained to that quarter.
+    What appears falls at least in proportion to the step, and the step that is advised brings it to a quarter of
+    ENERGY_GAIN.
     """
-    sound = min(
-        0.5 * math.sqrt(ENERGY_GAIN) * stats["stable_timestep"], 0.25 * ENERGY_GAIN / gained * stats["timestep"]
-    )
-    return (
-        f"a touch inside a step puts in or takes up to {stats['share'] ** 2:.2%} of the energy it meets: damp the "
-        f"joints, or take timestep = {sound:.2g} s"
-    )
+    return f"take timestep = {0.25 * ENERGY_GAIN / gained * stats['timestep']:.2g} s"
 
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:

@@ -103,7 +103,8 @@ def _line(d: int, s: int) -> Fields:
         *_integer("own_first", "own_last"),  # the edges of the face of its own body
         *_vector(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
         *_number("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
-        *_number("depth"),  # overlap in the last step [m]
+        *_number("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
+        *_number("due"),  # what its spring is still to do for a touch in this step, see `touches` [kg]
         *_integer("past"),  # 1 for a line that was past the end of its face then
         *_vector(s, "dragged"),  # friction of the shear spring in the last step [N]
         *_number("widest"),  # largest gap so far [m]

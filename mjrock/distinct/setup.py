@@ -33,9 +33,9 @@ from .limit import longest_step
 from .memory import Memory, memory_of, recalled
 from .system import System
 
-SHARE_OF_A_WALL = 0.005
-"""Step that is taken for a wall, over the longest stable one [-]. A touch inside a step is met up to half a step late,
-which scatters |e| of a wall against a stop by some 0.5 % with 0.02 and by 0.1 % with 0.005."""
+SHARE_OF_A_WALL = 0.05
+"""Step that is taken for a wall, over the longest stable one [-]. The first three |e| of a wall against a stop are then
+within 0.04 %, and with 0.1 within 0.11 %."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ from .rows import Rows, kinds, rows
 ENERGY = np.dtype(
     [*((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")), ("ends", float, (2,))]
 )
-"""Energy at a sample, what friction has taken, what ground and supports have put in, and what lines of joints and of
-encounters have lost at the ends of faces by then [J]."""
+"""Energy at a sample or a look, what friction has taken, what ground and supports have put in, and what lines of joints
+and of encounters have lost at the ends of faces by then [J]."""
 
 
 class Supports(NamedTuple):
@@ -59,7 +59,9 @@ class Books(NamedTuple):
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
-        active: room for the numbers of the lines that stick rigidly, shape (m,).
+        active, touched: room for the numbers of the lines that stick rigidly, and of those that met or left their face
+            in the last step, shape (m,) each.
+        struck: what their springs did for that in this step [N s], likewise.
     """
 
     dashpots: Array
@@ -69,14 +71,24 @@ class Books(NamedTuple):
     ends: Array
     totals: Rows
     active: Integers
+    touched: Integers
+    struck: Array
 
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
         sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
         dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
-        active = np.zeros(len(system.lines), dtype=np.int64)
-        return cls(dashpots, ties, broken, dampers, ends, rows(kinds(len(system.axes)).total, 1), active)
+        active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
+        totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
+        return cls(dashpots, ties, broken, dampers, ends, totals, active, touched, struck)
+
+    def with_room(self, lines: int) -> Books:
+        """The books with room for so many lines."""
+        if lines <= len(self.active):
+            return self
+        active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
+        return self._replace(active=active, touched=touched, struck=np.zeros(lines))
 
     @property
     def size(self) -> int:
@@ -91,6 +103,7 @@ class Samples(NamedTuple):
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
         dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
     """
 
     pose: Array
@@ -100,23 +113,28 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
+    looks: Rows
 
     @classmethod
-    def room(cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False) -> Samples:
-        """Room for some samples, and for the accounts where there is a ledger."""
+    def room(
+        cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False, looks: int = 2
+    ) -> Samples:
+        """Room for some samples and looks, for a sample that is not kept, and for the accounts of a ledger."""
+        count += 1
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        return cls(pose, velocity, rows(ENERGY, count), *accounts)
+        return cls(pose, velocity, rows(ENERGY, count), *accounts, rows(ENERGY, looks))
 
     def taken(self, which: slice | Integers) -> Samples:
-        """Some of the samples."""
-        return Samples(*(part[which] for part in self))  # type: ignore[arg-type]
+        """Some of the samples, and all looks."""
+        return Samples(*(part[which] for part in self[:-1]), self.looks)  # type: ignore[arg-type]
 
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
-        for name in ("friction", "ground", "ends"):
-            self.energy[name] -= self.energy[name][0]
+        for table in (self.energy, self.looks):
+            for name in ("friction", "ground", "ends"):
+                table[name] -= table[name][0]
         for account in (self.dampers, self.ties, self.broken, self.dashpots):
             account -= account[0]
         return self

@@ -20,6 +20,7 @@ from ..geometry.vectors import (
     components,
     dot,
     increase,
+    moment,
     plus,
     put,
     scaled,
@@ -143,6 +144,14 @@ def strike_spin(body: Row, impulse: float, lever: Vector, spin: Vector) -> None:
     if len(lever) == 3:
         increase(body.momentum, scaled(impulse, lever))
     increase(body.spin, scaled(impulse, spin))
+
+
+@inlined
+def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
+    """Let an impulse act at an arm from the centroid of a body [N s]."""
+    lever = moment(arm, impulse)
+    increase(body.velocity, scaled(1 / body.mass, impulse))
+    strike_spin(body, 1.0, lever, spin_from_moment(body, lever))
 
 
 @inlined

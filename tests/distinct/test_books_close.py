@@ -120,15 +120,21 @@ def test_a_support_works_through_friction(in_space, k_s):
 
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize("sinks", [5.0, 500.0])
-def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, sinks):
-    """It is gone within a part of a step, in which the springs at rest do their work on it."""
-    masonry = cube_on_ground(in_space, k_n=1e9, friction=0.5, xi=0.05)
+@pytest.mark.parametrize("xi", [0.0, 0.05])
+def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, sinks, xi):
+    """It is gone within a part of a step, in which the springs at rest do their work on it, or on the dashpots."""
+    masonry = cube_on_ground(in_space, k_n=1e9, friction=0.5, xi=xi)
     history = ([0.0, 0.1], *([0.0, 0.0] for _ in range(1 + in_space)), [0.0, -0.1 * sinks])
     name = masonry.names[0]
-    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.1, supports={name: history}), ledger=True)
-    held = run.ledger.elastic[0]
+    case = mr.MasonryCase(masonry, 0.1, supports={name: history})
+    run = mr.solve_explicit(case, timestep=4e-5, ledger=True)  # the block falls by the square of the step meanwhile
+    held, taken = run.ledger.elastic[0], -run.ledger.ground[1:]
     assert held == pytest.approx(0.5 * (2000 * mr.GRAVITY) ** 2 / 1e9)
-    np.testing.assert_allclose(run.ledger.ground[1:], -held, rtol=1e-3)
+    if xi:  # the dashpots hold the springs back at once
+        assert 0 < taken.min() <= taken.max() < 0.3 * held
+    else:
+        np.testing.assert_allclose(taken, held, rtol=1e-3)
+    assert np.abs(run.energy_residual).max() < 1e-9 * held
     assert run.velocity[-1, 0, 2 if in_space else 1] == pytest.approx(-mr.GRAVITY * 0.1, rel=1e-2)
 
 

@@ -111,7 +111,7 @@ def test_energy_stays_without_damping_and_friction_is_booked():
     column = columns(3, k_n=2e9, xi=0.0, friction=0.8)
     run = solve(column, 1.0, mr.GroundMotion.sine(3.0, 0.8), ledger=True)
     scale = np.abs(run.ledger.ground).max()
-    assert np.abs(run.energy_residual).max() < 3e-3 * scale  # a touch is met up to half a step late
+    assert np.abs(run.energy_residual).max() < 1e-4 * scale
     assert all(np.abs(account).max() < 1e-9 * scale for account in run.ledger.dashpots.values())
 
 
@@ -214,11 +214,11 @@ def test_the_longest_step_is_the_limit_of_stability(blocks, monkeypatch):
     """Beyond the limit the motion blows up, and the run says so."""
     from mjrock.distinct import setup as module
 
-    column = columns(blocks, k_n=1e9, xi=0.3)
+    column = columns(blocks, k_n=1e9, xi=0.05)
     limit = solve(column, 0.01).stats["stable_timestep"]
     monkeypatch.setattr(module, "longest_step", lambda system: 2 * limit)
     with pytest.raises(RuntimeError, match=r"appeared from nowhere|breaks down"):
-        solve(column, 2.0, PULSE, timestep=1.6 * limit)
+        solve(column, 2.0, PULSE, timestep=1.8 * limit)
 
 
 def test_a_run_goes_on_where_another_ended():

@@ -35,6 +35,7 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     samples = Samples.room(count + 1, 2, books, ledger=True)
     advance(system, books, samples, Clock(0, h, 5, 0, 5 * count + 1, 5 * count, np.inf, 0.0, (0.0,) * len(system.axes)))
     mass = scene.bodies.mass[0]
+    samples = samples.taken(slice(-1))
     np.testing.assert_allclose(samples.velocity[:, :, 0].sum(axis=1), SPEED, atol=1e-9)  # momentum
     apart = samples.pose[:, 1, 0] - samples.pose[:, 0, 0]
     relative = samples.velocity[:, 1, 0] - samples.velocity[:, 0, 0]

@@ -1,0 +1,99 @@
+"""Touches: the forces of a contact line that has met its face, or that no longer presses on it, inside a step.
+
+The forces of a step are those at its poses, as if a line that presses at a pose had pressed since the middle of the
+step before and would press until the middle of the next one. A line with a spring k that meets its face at the time tau
+before the pose, h - tau into a step of length h, gets too much: k |rate| tau (h - tau) / 2 by its spring, and by its
+dashpot for the time h / 2 - tau. One that has left its face gets too much at the pose before, which the pose after takes
+back. Together with the velocities the springs then hold the energy that they held, but for the change of the rate in
+the step. The work that this makes is known when all forces have acted, and an impulse puts it right.
+
+With m = k tau (h - tau) / 2 [kg], below zero for a line that has met its face, the first impulse of the spring is
+-m rate. Over the step it lacks the work m rate (change of the rate) / 2. Without damping the energy of a bounce is
+kept to the fourth order of the step.
+"""
+
+from __future__ import annotations
+
+from ..compiled import inlined, jitable
+from ..problem.masonry.joint_law import normal_force
+from .rows import Row
+
+
+@inlined
+def was_open(line: Row) -> bool:
+    """Whether a line was open at the last pose and did no work there."""
+    return bool(line.depth == 0 and line.push == 0)
+
+
+@inlined
+def foreseen(line: Row, rate: float, push: float, lead: float) -> float:
+    """Rate of a line some steps on [m/s], changed as in the last step and as the force that changes it has grown."""
+    ahead: float = rate + lead * (rate - line.rate) * min(push / line.push, 2.0)
+    return ahead
+
+
+@inlined
+def time_closed(line: Row, gap: float, rate: float, h: float) -> float:
+    """Time in the last step for which a line that presses was closed [s]."""
+    met: float = gap / rate if line.depth == 0 and h * rate < gap else h
+    return met
+
+
+@jitable
+def touched_forces(line: Row, gap: float, rate: float, h: float) -> tuple[float, float]:
+    """Force of the spring and force along the normal [N] of a line that has begun or ceased to press in the last step.
+
+    Leaves what the spring is still `due`. A line whose gap has changed by more than it has moved, at an end of its
+    face, has not touched.
+    """
+    sprung, push = normal_force(line, gap, 0.0), normal_force(line, gap, rate)
+    if h == 0:
+        return sprung, push
+    if line.depth > 0:
+        return forces_of_leaving(line, gap, rate, h)
+    if h * rate < gap < 0:
+        since = gap / rate
+        late = 0.5 * (h - since) / h
+        line.due = -line.k * since * h * late
+        return (1 - late) * sprung, (1 - late) * sprung - (since / h + 0.5) * line.c * rate
+    return sprung, push
+
+
+@inlined
+def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[float, float]:
+    """`touched_forces` of a line that was closed at the last pose."""
+    sprung, push = normal_force(line, gap, 0.0), normal_force(line, gap, rate)
+    held = normal_force(line, -line.depth, line.rate)
+    if gap > 0:
+        gap = h * rate - line.depth
+        if gap <= 0:  # it has come to an end of its face
+            return sprung, push
+        since = line.depth / rate
+        mass = 0.5 * line.k * since * (h - since)
+        if held == 0:  # the dashpot has held the spring back, and takes what it held
+            return -2 * mass * rate / h, 0.0
+        sprung, line.due = -mass * rate / h, mass
+    pull = line.k * gap + line.c * rate  # the law, if it could pull
+    if held > 0 and pull > 0:
+        push = -0.5 * held * pull / (held + pull)
+    return sprung, push
+
+
+@inlined
+def due_impulse(line: Row, rate: float) -> float:
+    """Impulse that the spring of a line which has touched is due [N s], at the rate after all forces have acted."""
+    before = line.rate
+    share = before * before / max(before * (before + rate), 0.5 * before * before)
+    impulse: float = line.due * (rate - before) * share
+    return impulse
+
+
+@inlined
+def in_transit(line: Row, h: float) -> tuple[float, float]:
+    """Work for a touch in the last step that a sample counts as held by the spring, and what it counts as taken by the
+    dashpot, which the halves of the impulses after the pose will take [J]."""
+    by_spring = 0.5 * h * (line.push - line.pressed - line.k * line.depth) * line.rate
+    if line.push < 0:
+        work = 0.5 * h * line.push * line.rate
+        return work, by_spring - work
+    return by_spring, 0.0
