@@ -175,16 +175,17 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
 
 
 @jitable
-def clip(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
+def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
     """Write the places where a block lies over a face of another. Returns how many places there are then.
 
     Args:
         solids: the blocks where they are.
-        faces, blocks: the face, the one that lies over it, and their blocks.
+        face, blocks: the face, its block, and the other one.
         table: places, a row each: block of the face, other block, place, normal out of the face, gap [m] and share.
         count: how many places there are.
         room: for the corners of two faces, twice.
     """
+    faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
     corners = parted(room, lying_over(solids, faces[0], faces[1], room))
     if corners < 3:
         return count

@@ -240,7 +240,7 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
     taken, put_in = 0.0, 0.0
     for i in range(count):
         books.struck[i] = 0.0
-    for sweep in range(PASSES):
+    for _ in range(PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line, axes)

@@ -18,21 +18,25 @@ from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .finder import Finder, Found
-from .handover import Poses, places_of, take_over
-from .looking import Wear, held, wears
+from .handover import Places, Poses, in_pairs, places_of, take_over
+from .looking import Wear, held, nearest, wears
 from .pair_law import PairLaw, are_among, pair_number
 from .rows import POINT, Rows, joined, rows
 from .system import Books, System
 from .turning import quaternions, rotations
 
-LOOK = 5e-3
-"""Longest time between two looks [s]."""
+LOOK, SOONEST = 5e-3, 5e-4
+"""Longest and shortest time between two looks [s]."""
 FALL = 0.5 * GRAVITY * LOOK**2
 """What a block falls by from one look to the next [m]."""
 PASSED = 0.02
 """Way that a pair may make between two looks, over the size of the smaller block [-]."""
 STAYED = 2e-4
 """Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
+SURE = 2.0
+"""Way within which places are kept until the next look, over that which speeds alone make [-]."""
+BESIDE = 0.2
+"""Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
 without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
@@ -50,7 +54,7 @@ class Met:
         watched: blocks that are looked at, shape (blocks,).
         handed: whether the joints of each pair that has some are handed over, shape (p,).
         pair: number of the pair of each line of an encounter, shape (lines,).
-        slack: the overlap of each pair at its first find, which presses nothing [m].
+        slack: what presses nothing of the overlap of each line [m], shape (lines,).
         poses: where each block was when it was last taken to have moved.
         moves: how often it has, shape (blocks,).
         found: moves of both blocks when each line was found, shape (lines,).
@@ -59,7 +63,7 @@ class Met:
     watched: Flags
     handed: Flags
     pair: Integers
-    slack: dict[int, float]
+    slack: Array
     poses: Poses
     moves: Integers
     found: Integers
@@ -106,7 +110,7 @@ class Encounters:
     def _nothing_met(self) -> Met:
         none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(nobody, intact, none, {}, self.start, unmoved, none)
+        return Met(nobody, intact, none, np.zeros(0), self.start, unmoved, none)
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
@@ -158,7 +162,7 @@ class Encounters:
         met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
         stays = self._moves_of(met.pair) == met.found
         known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
-        found = self.finder.found(poses, ahead + FALL + NEAR * self.sizes, watched, known)
+        found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
         until, soon = self._until(found, velocity, about)
         system = self._renewed(system, books, poses, found.taken(soon), worn[wear.pairs], stays)
         return system, books.with_room(len(system.lines)), until
@@ -170,8 +174,9 @@ class Encounters:
         first, second = found.face, found.other
         size = np.minimum(self.sizes[first], self.sizes[second])
         speed = np.linalg.norm(velocity[first] - velocity[second], axis=1) + about[first] + about[second]
-        until = min(LOOK, float((np.maximum(PASSED * size, 0.5 * found.gap) / np.maximum(speed, 1e-9)).min()))
-        return until, found.gap < speed * until + 2 * FALL + NEAR * size
+        soonest = float((np.maximum(PASSED * size, 0.5 * found.gap) / np.maximum(speed, 1e-9)).min())
+        until = min(max(soonest, SOONEST), LOOK)
+        return until, found.gap < SURE * (speed * until + 2 * FALL + NEAR * size)
 
     def _renewed(self, system: System, books: Books, poses: Poses, found: Found, worn: Flags, stays: Flags) -> System:
         """The system with these places. Pairs that have not moved keep their lines.
@@ -189,11 +194,13 @@ class Encounters:
         of_gone = np.append(worn, ~stays)
         before, gone = held(system, of_gone), lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
-        new = self._lines(found, number, poses)
-        take_over(new, places_of(new, number, poses, self.free), found.gap, gone, old, poses)
+        gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])
+        slack = self._slack(found, number, old, gone_slack)
+        new = self._lines(found, number, slack, poses)
+        take_over(new, places_of(new, number, poses, self.free), found.gap + slack, gone, old, poses)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
-        met.pair = np.append(met.pair[stays], number)
+        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], slack)
         met.found = np.append(met.found[stays], self._moves_of(number))
         lines = joined(joints, others[stays], new)
         ways = system.ways
@@ -207,7 +214,7 @@ class Encounters:
         """Moves of both blocks of pairs."""
         return np.asarray(self.met.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
-    def _lines(self, found: Found, pair: Integers, poses: Poses) -> Rows:
+    def _lines(self, found: Found, pair: Integers, slack: Array, poses: Poses) -> Rows:
         """New lines at places that were found."""
         face, normal, block = found.face, found.normal, found.other
         point = self.body[block] < 0
@@ -216,7 +223,7 @@ class Encounters:
         half = 0.5 * found.gap[:, None] * normal
         held, at_centroid = self.body[face] < 0, poses.drawn + poses.moved
         at = poses.turned_back(block, found.place + half - at_centroid[block])
-        origin = found.place - half - self._slack(found, pair)[:, None] * normal
+        origin = found.place - half - slack[:, None] * normal
         origin = np.where(
             held[:, None], origin - poses.moved[face], poses.turned_back(face, origin - at_centroid[face])
         )
@@ -237,20 +244,26 @@ class Encounters:
         )
         return np.asarray(lines)
 
-    def _slack(self, found: Found, pair: Integers) -> Array:
-        """What presses nothing of the overlap of each place [m], shape (n,): what a pair without a joint had first, as
-        long as it has it."""
-        slack, kept = self.met.slack, np.zeros(len(pair))
-        first = (found.gap < 0) & ~are_among(pair, np.sort(self.met.pair)) & ~are_among(pair, self.law.jointed)
-        of = first | are_among(pair, np.array(sorted(slack), dtype=np.int64))
-        deepest: dict[int, float] = {}
-        for number, gap in zip(pair[of].tolist(), found.gap[of].tolist(), strict=True):
-            deepest[number] = max(deepest.get(number, 0.0), -gap)
-        deepest = {number: min(slack.get(number, deep), deep) for number, deep in deepest.items()}
-        kept[of] = [deepest[number] for number in pair[of].tolist()]
-        known = set(self.met.pair.tolist()) if slack else set()
-        self.met.slack = {n: s for n, s in slack.items() if n in known} | {n: s for n, s in deepest.items() if s > 0}
-        return kept
+    def _slack(self, found: Found, pair: Integers, old: Places, slack: Array) -> Array:
+        """What presses nothing of the overlap of each place [m], shape (n,).
+
+        It is the overlap of a place that no line was near, as long as it has it. So what a look has missed, or what
+        touched at rest without a joint, puts no energy in.
+
+        Args:
+            found, pair: the places, and the numbers of their pairs, shape (n,).
+            old, slack: lines that are gone, where they are, and what presses nothing of their overlap [m].
+        """
+        overlap = np.maximum(-found.gap, 0.0)
+        pairs, order, first = in_pairs(old.pair)
+        known = np.flatnonzero(are_among(pair, pairs) & (overlap > 0))
+        chosen = np.empty(len(known), dtype=np.int64)
+        nearest(np.searchsorted(pairs, pair[known]), found.place[known], first, old.at[order], chosen)
+        there = order[chosen]
+        size = np.minimum(self.sizes[found.face[known]], self.sizes[found.other[known]])
+        beside = np.linalg.norm(old.at[there] - found.place[known], axis=1) < BESIDE * size
+        overlap[known[beside]] = np.minimum(overlap[known[beside]], slack[there[beside]])
+        return overlap
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

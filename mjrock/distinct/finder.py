@@ -31,6 +31,9 @@ ACROSS = 1e-3
 """Sine of the angle of two edges below which there is no direction across both [-]."""
 FLUSH = -0.7
 """Cosine of the angle between the normals of two faces up to which they meet as faces [-]."""
+SOUGHT = 0.06
+"""How much deeper than along the best face two blocks may overlap along one that comes into question, over the outline
+of a face [-]: about a third of the width of a unit."""
 LEAD = 1e-6
 """By how much the other block may be less outside of a face, over how much longer its outline is than that of another
 face, for it to be taken [-]. The corners of the smaller one then lie over it."""
@@ -191,13 +194,58 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
         return count
     if other_face >= 0 and other_apart + LEAD * (extent(solids, other_face) - extent(solids, face)) > apart:
         face, blocks = other_face, (b, a)
+    if best < 0:
+        least = best - SOUGHT * min(extent(solids, face), extent(solids, other_face))
+        face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
+        over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
+        if dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:
+            way, across = across_edges(solids, a, b)
+            if across > EDGES * gap:
+                return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
+    return clip(solids, face, blocks, table, count, room)
+
+
+@jitable
+def shallowest(
+    solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Array, count: int, room: Array
+) -> tuple[int, tuple[int, int], float]:
+    """The face of two blocks that overlap along which their places are least deep, its block and the other one, and the
+    least gap of these places [m].
+
+    A corner of the whole face may lie deep below the plane of another one, far from where the two lie over each other.
+
+    Args:
+        solids: the blocks where they are.
+        face, blocks: the face that the other block is farthest outside of, its block and the other one.
+        least: how far the other block is outside of a face that comes into question [m].
+        table, count, room: for places that are not kept, see `clipping.clip`.
+    """
+    best, of_best = face, blocks
+    most = deepest(table, count, clip(solids, face, blocks, table, count, room))
+    for turn in range(2):
+        block, other = blocks if turn == 0 else (blocks[1], blocks[0])
+        for one in range(solids.face[block], solids.face[block + 1]):
+            if one != face and outside(solids, one, other) > least:
+                gap = deepest(table, count, clip(solids, one, (block, other), table, count, room))
+                if gap > most:
+                    best, of_best, most = one, (block, other), gap
+    return best, of_best, most
+
+
+@inlined
+def deepest(table: Array, first: int, last: int) -> float:
+    """The least gap of places [m]; of none and of those for which there is no room, minus infinity."""
+    least = math.inf
+    for i in range(first, min(last, len(table))):
+        least = min(least, table[i, 8])
+    return least if first < last <= len(table) else -math.inf
+
+
+@inlined
+def outside(solids: Solids, face: int, other: int) -> float:
+    """How far a block is outside of a face of another one [m], negative for an overlap."""
     normal = normal_of(solids, face)
-    over = face_towards(solids, blocks[1], scaled(-1.0, normal))
-    if best < 0 and dot(normal, normal_of(solids, over)) > FLUSH:
-        way, across = across_edges(solids, a, b)
-        if across > EDGES * best:
-            return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
-    return clip(solids, (face, over), blocks, table, count, room)
+    return -dot(normal, corner_of(solids, solids.first[face])) - farthest(solids, other, scaled(-1.0, normal))
 
 
 @inlined
@@ -225,8 +273,7 @@ def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[
     More than it reaches is far enough."""
     best, most = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
-        normal = normal_of(solids, face)
-        apart = -dot(normal, corner_of(solids, solids.first[face])) - farthest(solids, other, scaled(-1.0, normal))
+        apart = outside(solids, face, other)
         if apart > most:
             best, most = face, apart
             if most > reach:

@@ -85,6 +85,13 @@ def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Plac
     return Places(pair, body, face, held, at, normal)
 
 
+def in_pairs(pair: Integers) -> tuple[Integers, Integers, Integers]:
+    """The numbers of pairs that lines have, an order of the lines by pair, and where each pair begins and ends in it."""
+    order = np.argsort(pair, kind="stable")
+    pairs, first = np.unique(pair[order], return_index=True)
+    return pairs, order, np.append(first, len(order))
+
+
 def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, poses: Poses) -> None:
     """Let closed lines take over the friction, and the push of the last step, of those of their pair that are gone.
 
@@ -97,12 +104,11 @@ def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, pos
         poses: of all blocks.
     """
     closed = np.flatnonzero(gap < 0)
-    closed = closed[np.argsort(new.pair[closed], kind="stable")]
-    pairs, first = np.unique(new.pair[closed], return_index=True)
+    pairs, order, first = in_pairs(new.pair[closed])
+    closed = closed[order]
     source = np.flatnonzero(are_among(old.pair, pairs) & ((gone["push"] != 0) | (gone["depth"] > 0)))
     chosen = np.empty(len(source), dtype=np.int64)
-    own, first = np.searchsorted(pairs, old.pair[source]), np.append(first, len(closed))
-    nearest(own, old.at[source], first, new.at[closed], chosen)
+    nearest(np.searchsorted(pairs, old.pair[source]), old.at[source], first, new.at[closed], chosen)
     target = closed[chosen]
     for name in ("push", "pressed"):
         np.add.at(lines[name], target, gone[name][source])

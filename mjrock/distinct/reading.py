@@ -159,7 +159,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
 
 
 def lies_still(run: Run) -> bool:
-    """Whether blocks that have left their joints lie still: for the last 0.2 s none of them moved as `is_quiet` says."""
+    """Whether blocks that have left their joints lie still: for the last 0.2 s none moved as `is_quiet` says."""
     met = None if run.followed.memory is None else run.followed.memory.met
     if met is None or not met.handed.any():
         return False

@@ -123,12 +123,13 @@ class Samples(NamedTuple):
         count += 1
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
-        accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        return cls(pose, velocity, rows(ENERGY, count), *accounts, rows(ENERGY, looks))
+        dampers, ties, broken, dashpots = (np.zeros((count, len(account) if ledger else 0)) for account in kept)
+        energy, looked = rows(ENERGY, count), rows(ENERGY, looks)
+        return cls(pose, velocity, energy, dampers, ties, broken, dashpots, looked)
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""
-        return Samples(*(part[which] for part in self[:-1]), self.looks)  # type: ignore[arg-type]
+        return Samples._make(part[which] for part in (*self[:-1], self.energy))._replace(looks=self.looks)
 
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""

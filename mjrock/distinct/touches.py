@@ -3,9 +3,9 @@
 The forces of a step are those at its poses, as if a line that presses at a pose had pressed since the middle of the
 step before and would press until the middle of the next one. A line with a spring k that meets its face at the time tau
 before the pose, h - tau into a step of length h, gets too much: k |rate| tau (h - tau) / 2 by its spring, and by its
-dashpot for the time h / 2 - tau. One that has left its face gets too much at the pose before, which the pose after takes
-back. Together with the velocities the springs then hold the energy that they held, but for the change of the rate in
-the step. The work that this makes is known when all forces have acted, and an impulse puts it right.
+dashpot for the time h / 2 - tau. One that has left its face gets too much at the pose before, which the pose after
+takes back. Together with the velocities the springs then hold the energy that they held, but for the change of the rate
+in the step. The work that this makes is known when all forces have acted, and an impulse puts it right.
 
 With m = k tau (h - tau) / 2 [kg], below zero for a line that has met its face, the first impulse of the spring is
 -m rate. Over the step it lacks the work m rate (change of the rate) / 2. Without damping the energy of a bounce is
