@@ -37,6 +37,8 @@ SURE = 2.0
 """Way within which places are kept until the next look, over that which speeds alone make [-]."""
 BESIDE = 0.2
 """Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
+ALIKE = 0.7
+"""Cosine of the angle between the normals of two places that are the same [-]."""
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
 without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
@@ -262,6 +264,8 @@ class Encounters:
         there = order[chosen]
         size = np.minimum(self.sizes[found.face[known]], self.sizes[found.other[known]])
         beside = np.linalg.norm(old.at[there] - found.place[known], axis=1) < BESIDE * size
+        sense = np.where(found.other[known] > found.face[known], 1.0, -1.0)[:, None]
+        beside &= np.sum(sense * found.normal[known] * (old.sense * old.normal)[there], axis=1) > ALIKE
         overlap[known[beside]] = np.minimum(overlap[known[beside]], slack[there[beside]])
         return overlap
 
