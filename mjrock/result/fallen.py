@@ -105,7 +105,7 @@ def _pairs(masonry: Masonry) -> Integers:
 
 
 def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
-    """Which free blocks no joint that holds connects with a fixed block, shape (bodies,), from the pairs that have one."""
+    """Which free blocks no joint connects with a fixed block, shape (bodies,), from the pairs that a joint holds."""
     count = len(masonry.blocks)
     graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
     labels = connected_components(graph, directed=False)[1]
