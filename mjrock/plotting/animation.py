@@ -124,6 +124,7 @@ def animate(
     title: str = "",
     dpi: float = 100.0,
     camera: Sequence[float] | None = None,
+    limits: ArrayLike | None = None,
 ) -> Path:
     """Write the motion of a response as a moving picture.
 
@@ -142,6 +143,8 @@ def animate(
         dpi: resolution [1/inch], 20 to 600; the picture is 8 inches wide.
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
             None is (18, 35), from outside.
+        limits: lowest and highest coordinate that the picture shows along each axis [m], shape (2, 2), in space (3, 2);
+            None shows a wall or blocks, and what has gone no farther than one extent of them.
 
     Returns:
         The path that was written.
@@ -153,11 +156,11 @@ def animate(
     require_kind("response", response, Response)
     bodies: Bodies | Solids
     if response.in_space:
-        bodies = Solids.of(response, require_within("magnify", magnify, 0.01, 1e4), camera)
+        bodies = Solids.of(response, require_within("magnify", magnify, 0.01, 1e4), camera, limits)
     elif camera is not None:
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
-        bodies = Bodies.of(response, magnify)
+        bodies = Bodies.of(response, magnify, limits)
     histories: list[Drawing] = []
     if isinstance(case := response.case, Case):
         if case.shaken:
@@ -181,13 +184,14 @@ def animate_bodies(
     magnify: float = 1.0,
     title: str = "",
     dpi: float = 100.0,
+    limits: ArrayLike | None = None,
 ) -> Path:
     """Write the motion of any rigid bodies in their plane as a moving picture.
 
     The bodies and their motion `t`, `outlines`, `rests`, `poses` and `fixed` are those of
     `mjrock.plotting.bodies.Bodies`. All else, the path that is returned and the errors are those of `animate`.
     """
-    bodies = Bodies(t, outlines, rests, poses, magnify, fixed)  # type: ignore[arg-type]
+    bodies = Bodies(t, outlines, rests, poses, magnify, fixed, limits=limits)  # type: ignore[arg-type]
     return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
 
 
@@ -305,9 +309,14 @@ def _standing(ax: Axes, bodies: Bodies | Solids, case: Case | MasonryCase | None
         return [solids(ax, bodies), ties_in_view(ax, case, bodies)]
     updates = [blocks(ax, bodies)]
     if isinstance(case, Case):
-        return [*updates, surroundings(ax, case, bodies)]
-    frame_view(ax, bodies)
-    return updates if case is None else [*updates, ties_of_masonry(ax, case, bodies)]
+        updates.append(surroundings(ax, case, bodies))
+    else:
+        frame_view(ax, bodies)
+        if case is not None:
+            updates.append(ties_of_masonry(ax, case, bodies))
+    if bodies.limits is not None:
+        ax.set(xlim=bodies.limits[0], ylim=bodies.limits[1])
+    return updates
 
 
 def _marker(ax: Axes, times: Array) -> Update:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import laden
@@ -40,6 +41,21 @@ def ends_of(points: Array) -> tuple[Array, Array]:
     """The lowest and the highest x and z of points [m], shape (..., 2)."""
     flat = points.reshape(-1, 2)
     return flat.min(axis=0), flat.max(axis=0)
+
+
+def required_limits(limits: ArrayLike | None, axes: str) -> Array | None:
+    """The lowest and the highest coordinate of a picture along each axis [m], shape (d, 2), or None.
+
+    Raises:
+        TypeError, ValueError: unless each axis has a lower and a higher limit.
+    """
+    if limits is None:
+        return None
+    checked = require_array("limits", limits, (len(axes), 2))
+    for name, (a, b) in zip(axes, checked.tolist(), strict=True):
+        if not a < b:
+            raise ValueError(f"limits along {name} = {a:g} to {b:g} m are not a lower and a higher one")
+    return checked
 
 
 def window(rest: Ends, moving: Ends, fixed: Ends) -> Ends:
@@ -82,6 +98,7 @@ class Bodies:
         magnify: factor on the displacement of every point [-], 0.01 to 10000; 1 is true to scale.
         fixed: outlines of fixed bodies, in place [m].
         shifts: displacement of each fixed body that is moved, by its number among them [m], shape (n, 2) each.
+        limits: lowest and highest x, and lowest and highest z, of the picture [m]; None shows what moves, see `extent`.
 
     Raises:
         TypeError, ValueError: for arrays that do not fit together, or a factor outside its range.
@@ -94,6 +111,7 @@ class Bodies:
     magnify: float = 1.0
     fixed: tuple[Array, ...] = ()
     shifts: Mapping[int, Array] = field(default_factory=dict)
+    limits: Array | None = None
 
     def __post_init__(self) -> None:
         times = require_row("t", self.t, "time [s]")
@@ -103,19 +121,20 @@ class Bodies:
         count = len(self.outlines)
         keep(
             self,
+            limits=required_limits(self.limits, "xz"),
             magnify=require_within("magnify", self.magnify, 0.01, 1e4),
             rests=require_array("rests", self.rests, (count, 2)),
             poses=require_array("poses", self.poses, (len(times), count, 3)),
         )
 
     @classmethod
-    def of(cls, response: Response, magnify: float = 1.0) -> Bodies:
+    def of(cls, response: Response, magnify: float = 1.0, limits: ArrayLike | None = None) -> Bodies:
         """The bodies of a response: the wall, or the blocks of masonry that are not fixed."""
         require_kind("response", response, Response)
         case: Any = response.case
         if isinstance(case, Case):
             rests = np.array([[case.wall.centroid_offset, case.wall.centroid_height]])
-            return cls(response.t, (case.wall.outline,), rests, response.pose, magnify)
+            return cls(response.t, (case.wall.outline,), rests, response.pose, magnify, limits=limits)  # type: ignore[arg-type]
         if response.in_space:
             case.masonry.require_plane("Bodies")
         blocks, free = case.masonry.blocks, list(case.masonry.free)
@@ -129,6 +148,7 @@ class Bodies:
             magnify,
             tuple(blocks[i].corners for i in fixed),
             {fixed.index(case.masonry.names.index(s.block)): s.at(response.t) for s in case.supports},
+            limits,  # type: ignore[arg-type]
         )
 
     def at(self, times: Array) -> Bodies:
@@ -168,8 +188,10 @@ class Bodies:
         """The lowest and the highest x and z that any corner reaches in the picture [m], shape (2,) each.
 
         What moves farther than one extent of the bodies at rest, or falls by a quarter of it below all of them, is
-        outside. Fixed bodies are shown up to a quarter beyond those that move.
+        outside. Fixed bodies are shown up to a quarter beyond those that move. Given limits come first.
         """
+        if self.limits is not None:
+            return self.limits[:, 0], self.limits[:, 1]
         if not self.outlines:
             corners = np.concatenate(self.fixed)
             return corners.min(axis=0), corners.max(axis=0)

@@ -14,7 +14,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_kind, require_within
 from ..result.response import Response
-from .bodies import ends_of, require_masonry, window
+from .bodies import ends_of, require_masonry, required_limits, window
 from .solids import Solids
 from .view import fill, solids
 
@@ -35,6 +35,7 @@ def blocks(
     magnified: float = 1.0,
     joints: bool = True,
     camera: Sequence[float] | None = None,
+    limits: ArrayLike | None = None,
 ) -> Axes:
     """The blocks of masonry to scale, fixed ones in grey, where they rest or at a pose.
 
@@ -49,6 +50,8 @@ def blocks(
         joints: whether to draw the joints as lines, in the plane and where no pose is given.
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
             None is (18, 35), from outside.
+        limits: lowest and highest coordinate that the picture shows along each axis [m], shape (2, 2), in space (3, 2);
+            None shows the blocks, but for what has gone farther than one extent of the masonry.
 
     Raises:
         ValueError: for a pose of another shape, a value outside its range, or axes of two dimensions for blocks in
@@ -67,7 +70,8 @@ def blocks(
     bodies = len(masonry.free), len(rest)
     at = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
     if masonry.in_space:
-        solids(ax, Solids(masonry, time, at[None], magnified, camera, supports=supports), animated=False)(0)
+        bodies_in_space = Solids(masonry, time, at[None], magnified, camera, supports=supports, limits=limits)  # type: ignore[arg-type]
+        solids(ax, bodies_in_space, animated=False)(0)
         fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
         return ax
     shifts = {support.block: magnified * support.at(time)[0] for support in supports}
@@ -82,18 +86,18 @@ def blocks(
         ax.add_patch(Patch(corners, closed=True, facecolor=colour, edgecolor="0.25", linewidth=0.4 * width))
     for joint in masonry.plane_joints if joints and pose is None else ():
         ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=width, solid_capstyle="butt")
-    _view(ax, masonry, drawn[False], drawn[True])
+    _view(ax, masonry, drawn[False], drawn[True], required_limits(limits, "xz"))
     return ax
 
 
-def _view(ax: Axes, masonry: Masonry, moving: list[Array], fixed: list[Array]) -> None:
+def _view(ax: Axes, masonry: Masonry, moving: list[Array], fixed: list[Array], limits: Array | None) -> None:
     """Limits and labels, true to scale, and how many blocks lie outside the picture."""
     rest = np.concatenate([masonry.blocks[i].corners for i in masonry.free] or fixed)
     placed = [ends_of(np.concatenate(some)) if some else ends_of(rest) for some in (moving, fixed)]
     low, high = window(ends_of(rest), *placed)
     sides = high - low
     room = 0.05 * sides.max() + np.maximum(0.0, 0.5 * (0.3 * sides.max() - sides))  # labels need some width
-    low, high = low - room, high + room
+    low, high = (low - room, high + room) if limits is None else limits.T
     ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     ax.locator_params(axis="both", nbins="auto" if sides.max() < 2 * sides.min() else 4)
     outside = sum(bool((corners.max(axis=0) < low).any() or (corners.min(axis=0) > high).any()) for corners in moving)

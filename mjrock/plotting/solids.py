@@ -9,6 +9,7 @@ from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..geometry.frames import SPACE, frames_of
 from ..problem.masonry.effects import laden
@@ -18,7 +19,7 @@ from ..problem.masonry.support import Support
 from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.response import Response
-from .bodies import interpolated
+from .bodies import interpolated, required_limits
 
 TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9a80")
 """Colours of blocks, which take turns so that neighbours are told apart."""
@@ -46,6 +47,7 @@ class Solids:
         camera: elevation and azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360; None is (18, 35).
         effects: of the case. The pose of a block with added masses is that of their common centroid.
         supports: fixed blocks that are moved.
+        limits: lowest and highest x, y and z of the picture [m], three pairs; None shows the blocks, see `extent`.
 
     Raises:
         ValueError: for poses of another shape, or a value outside its range.
@@ -58,6 +60,7 @@ class Solids:
     camera: Sequence[float] | None = None
     effects: tuple[Effect, ...] = ()
     supports: tuple[Support, ...] = ()
+    limits: Array | None = None
 
     def __post_init__(self) -> None:
         elevation, azimuth = require_array("camera", (18.0, 35.0) if self.camera is None else self.camera, (2,))
@@ -65,15 +68,22 @@ class Solids:
         keep(
             self,
             camera=(elevation, require_within("azimuth of the camera", azimuth, -360.0, 360.0, "degrees")),
+            limits=required_limits(self.limits, "xyz"),
             magnify=require_within("magnify", self.magnify, 0.0, 1e6),
             poses=require_array("poses", self.poses, (len(self.t), len(self.masonry.free), SPACE.nq)),
         )
 
     @classmethod
-    def of(cls, response: Response, magnify: float = 1.0, camera: Sequence[float] | None = None) -> Solids:
+    def of(
+        cls,
+        response: Response,
+        magnify: float = 1.0,
+        camera: Sequence[float] | None = None,
+        limits: ArrayLike | None = None,
+    ) -> Solids:
         """The blocks of a response in space."""
         case = response.case
-        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects, case.supports)
+        return cls(case.masonry, response.t, response.pose, magnify, camera, case.effects, case.supports, limits)  # type: ignore[arg-type]
 
     def at(self, times: Array) -> Solids:
         """The same blocks at other times, their poses interpolated linearly."""
@@ -173,8 +183,10 @@ class Solids:
     def extent(self) -> tuple[Array, Array]:
         """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (3,) each.
 
-        What goes farther than one extent of the blocks at rest is outside.
+        What goes farther than one extent of the blocks at rest is outside. Given limits come first.
         """
+        if self.limits is not None:
+            return self.limits[:, 0], self.limits[:, 1]
         rest = self.facets.corners + self.rests[self.facets.body, None]
         low, high = rest.min(axis=(0, 1)), rest.max(axis=(0, 1))
         room = float((high - low).max())

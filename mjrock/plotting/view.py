@@ -64,10 +64,11 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """
     space = in_three(ax)
     low, high = bodies.extent()
-    around = 0.15 * float((high - low).max()) * np.array([1.0, 1.0, 0.0])  # ground
-    low, high = low - around, high + around
+    if bodies.limits is None:
+        around = 0.15 * float((high - low).max()) * np.array([1.0, 1.0, 0.0])  # ground
+        low, high = low - around, high + around
     level = _ground(space, bodies, (low, high))
-    if level is not None:
+    if level is not None and bodies.limits is None:
         low[2] = level
     _frame(space, (low, high), bodies)
     tints = np.array([to_rgb(colour) for colour in bodies.colours])

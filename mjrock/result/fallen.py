@@ -36,13 +36,13 @@ def fallen_blocks(masonry: Masonry, t: Array, parted: Flags, tilt: Array, drop: 
     """
     heights = np.array([np.ptp(masonry.blocks[block].corners[:, -1]) for block in masonry.free])
     toppled, low = tilt > TOPPLED, drop > DROPPED * heights
-    down, since = np.ones(len(masonry.free), dtype=bool), np.full(len(masonry.free), np.inf)
+    pairs, down, since = _pairs(masonry), np.ones(len(masonry.free), dtype=bool), np.full(len(masonry.free), np.inf)
     for n in reversed(range(len(t))):
         down &= toppled[n] | low[n]
         if not down.any():
             break
         if n == len(t) - 1 or (parted[n] != parted[n + 1]).any():
-            loose = _cut_off(masonry, parted[n])
+            loose = _cut_off(masonry, pairs[~parted[n]])
         down &= toppled[n] | loose
         since[down] = t[n]
     return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
@@ -58,9 +58,10 @@ def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
         masonry, t: as of `fallen_blocks`.
         off: whether one block of each joint has slid off the other then, shape (n, joints).
     """
-    off, since = np.logical_or.accumulate(off, axis=0), np.full(len(masonry.free), np.inf)
+    pairs, off = _pairs(masonry), np.logical_or.accumulate(off, axis=0)
+    since = np.full(len(masonry.free), np.inf)
     for n in np.flatnonzero(np.diff(off.sum(axis=1), prepend=0)):
-        loose = _cut_off(masonry, off[n])
+        loose = _cut_off(masonry, pairs[~off[n]])
         since[loose] = np.minimum(since[loose], t[n])
     return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
 
@@ -103,9 +104,9 @@ def _pairs(masonry: Masonry) -> Integers:
     return np.array([(joint.below, joint.above) for joint in masonry.joints])
 
 
-def _cut_off(masonry: Masonry, parted: Flags) -> Flags:
-    """Which free blocks no joint that has not parted connects with a fixed block, shape (bodies,)."""
-    pairs, count = _pairs(masonry)[~parted], len(masonry.blocks)
+def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
+    """Which free blocks no joint connects with a fixed block, shape (bodies,), from the pairs that a joint holds."""
+    count = len(masonry.blocks)
     graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
     labels = connected_components(graph, directed=False)[1]
     standing = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}

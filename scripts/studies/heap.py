@@ -32,12 +32,12 @@ def heap(length: float, height: float, duration: float) -> mr.Response:
 def drawn(answer: mr.Response) -> Figure:
     """The wall at some times of its fall, seen from the ground."""
     masonry = answer.case.masonry
-    ground = np.concatenate([block.corners for block in masonry.blocks if block.fixed])
+    length, height = np.concatenate([masonry.blocks[i].corners for i in masonry.free]).max(axis=0)
+    limits = [(-0.5 * length, 1.5 * length), (-0.5, height + 0.4)]
     figure = Figure(figsize=(11, 2.6), layout="constrained")
     for ax, row in zip(figure.subplots(1, FRAMES), np.linspace(0, len(answer.t) - 1, FRAMES).astype(int), strict=True):
-        plotting.blocks(ax, masonry, answer.pose[row], joints=False)
-        ax.set(title=f"{answer.t[row]:.1f} s", xlabel="x [m]", xlim=(ground[:, 0].min(), ground[:, 0].max()))
-        ax.set_ylim(-0.5, masonry.centroids[:, 1].max() + 0.5)
+        plotting.blocks(ax, masonry, answer.pose[row], joints=False, limits=limits)
+        ax.set(title=f"{answer.t[row]:.1f} s", xlabel="x [m]")
     figure.axes[0].set_ylabel("z [m]")
     return figure
 

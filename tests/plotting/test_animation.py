@@ -180,6 +180,30 @@ def test_what_has_fallen_far_and_wide_ground_do_not_shrink_the_picture():
     np.testing.assert_allclose(bodies.extent(), [[-0.5, -1.0], [4.5, 1.0]], atol=1e-12)
 
 
+def test_a_tie_is_drawn_to_the_block_that_its_anchor_moves_with():
+    """A jack that a support draws back by 0.3 m, and a block that a pose brings forth by 0.1 m, drawn twice as far."""
+
+    def square(left, **options):
+        return mr.Polygon([(left, 0), (left + 1, 0), (left + 1, 1), (left, 1)], **options)
+
+    ground = mr.Polygon([(-9, -1), (9, -1), (9, 0), (-9, 0)], fixed=True)
+    masonry = mr.Masonry([ground, square(-4, fixed=True, name="jack"), square(0), square(3)])
+    far, near = (
+        mr.Tie(0.5, 1e6, length=3.0, block=2, anchor_block=1),
+        mr.Tie(0.5, 1e6, length=2.0, block=3, anchor_block=2),
+    )
+    case = mr.MasonryCase(masonry, 1.0, effects=(far, near), supports={"jack": ([0, 1], [0, -0.3], [0, 0])})
+    poses = np.zeros((2, 2, 3))
+    poses[1, 0, 0] = 0.1
+    motion = SampledMotion(poses, np.zeros_like(poses), np.zeros(2))
+    response = dataclasses.replace(theory(), t=np.array([0.0, 1.0]), case=case, motion=motion)
+    figure, update = animation.scene(Bodies.of(response, 2.0), [], case)
+    marks = [line for line in figure.axes[0].lines if line.get_marker() == "s"]
+    for frame, places in enumerate([(-3.0, 1.0), (-3.6, 1.2)]):
+        update(frame)
+        np.testing.assert_allclose([mark.get_data()[0][0] for mark in marks], places, atol=1e-12)
+
+
 @pytest.mark.parametrize("mass", [0.0, 500.0])
 def test_blocks_of_masonry_are_drawn_where_they_are(mass):
     """Blocks, one of them fixed, the upper one with a mass on it, which a pose counts from the common centroid."""

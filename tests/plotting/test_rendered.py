@@ -12,6 +12,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
+from mjrock.plotting.masonry import BRICK
 from mjrock.plotting.section import GROUND, STONE
 from mjrock.plotting.solids import Solids
 
@@ -99,3 +100,66 @@ def test_masonry_at_the_end_of_a_run_is_drawn_on_its_supports():
     slab, block = (patch.get_xy() for patch in ax.patches)
     assert slab[:, 1].min() == pytest.approx(0.3)
     assert block[:, 1].min() == pytest.approx(slab[:, 1].max(), abs=1e-3)
+
+
+def lying(in_space):
+    """A bar of 0.2 x 1.6 m that has fallen to the right on the ground that the builders make, which is 6.6 m wide."""
+    bar = (0.2, 0.5, 1.6)
+    masonry = mr.Masonry.box(bar, k_n=1e8) if in_space else mr.Masonry.stack([mr.Block(0.1, 0.8, length=0.5)], 1e8)
+    rate, t = 5.0, np.linspace(0.0, 1.2, 13)
+    velocity = [(0.8 * rate, 0, 0, 0, rate, 0)] if in_space else [(0.8 * rate, 0, rate)]
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 1.2, velocity=velocity), output_step=float(t[1]))
+    assert run.tilt[-1, 0] == pytest.approx(np.pi / 2, abs=0.1)
+    return run
+
+
+def covered(figure, ax, colour):
+    """Share of an Axes that a colour covers."""
+    return area_of(figure, ax, colour) / (np.ptp(ax.get_xlim()) * np.ptp(ax.get_ylim()))
+
+
+def test_wide_ground_leaves_a_block_that_lies_on_it_large():
+    """The picture follows the bar as it stands and as it lies, and not the ground to its ends."""
+    run = lying(in_space=False)
+    figure, update = animation.scene(Bodies.of(run).at(run.t[[0, -1]]), [], run.case)
+    for frame in (0, 1):
+        update(frame)
+        assert covered(figure, figure.axes[0], STONE) > 0.03
+    still = Figure(figsize=(4, 4))
+    ax = plotting.blocks(still.subplots(), run)
+    assert covered(still, ax, BRICK) > 0.06
+
+
+def test_wide_ground_in_space_leaves_a_block_that_lies_on_it_large():
+    run = lying(in_space=True)
+    figure, update = animation.scene(Solids.of(run).at(run.t[[0, -1]]), [], run.case)
+    ax = figure.axes[0]
+    assert max(np.ptp(getattr(ax, f"get_{name}lim")()) for name in "xyz") < 4.0
+    for frame in (0, 1):
+        update(frame)
+        for artist in ax.get_children():
+            artist.set_animated(False)
+        pixels = rendered(figure).astype(int)
+        bricks = (pixels[..., 0] - pixels[..., 2] > 30) & (pixels[..., 0] > 80)
+        assert bricks.mean() > 0.01
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_limits_of_a_picture_are_kept(in_space, tmp_path):
+    run = lying(in_space)
+    limits = [(-1.0, 5.0), (-0.5, 2.0)]
+    if in_space:
+        limits.insert(1, (-2.0, 1.0))
+    of = (Solids if in_space else Bodies).of
+    still = Figure().subplots(subplot_kw={"projection": "3d"} if in_space else None)
+    for ax in (
+        animation.scene(of(run, limits=limits), [], run.case)[0].axes[0],
+        plotting.blocks(still, run, limits=limits),
+    ):
+        shown = [getattr(ax, f"get_{name}lim")() for name in ("xyz" if in_space else "xy")]
+        np.testing.assert_allclose(shown, limits)
+    assert plotting.animate(run, tmp_path / "one.gif", fps=2, dpi=40, limits=limits).exists()
+    with pytest.raises(ValueError, match="limits along z = 2 to 1 m are not a lower and a higher one"):
+        plotting.animate(run, tmp_path / "two.gif", limits=[*limits[:-1], (2.0, 1.0)])
+    with pytest.raises(ValueError, match="limits has the shape"):
+        plotting.blocks(still, run, limits=[(0.0, 1.0)])

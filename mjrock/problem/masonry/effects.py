@@ -94,8 +94,7 @@ def _require_on(name: str, point: tuple[float, ...], block: Polygon | Polyhedron
     if isinstance(block, Polyhedron):
         corners, normals = block.corners[[face[0] for face in block.faces]], block.normals
     else:
-        ways = np.roll(block.corners, -1, axis=0) - block.corners
-        corners, normals = block.corners, np.column_stack([ways[:, 1], -ways[:, 0]]) / np.hypot(*ways.T)[:, None]
+        corners, normals = block.corners, block.normals
     outside = float(((point - corners) * normals).sum(axis=1).max())
     if outside > BESIDE:
         raise ValueError(f"{name} = {point} m lies {outside:.3g} m outside the block; the valid range is on it")

@@ -137,16 +137,18 @@ def _between(
         c, d = q[other], q[(other + 1) % len(q)]
         way = (b - a) / np.hypot(*(b - a))
         first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
-        low, high = max(0.0, first), min(float((b - a) @ way), last)
+        long = float((b - a) @ way)
+        low, high = max(0.0, first), min(long, last)
         if high - low <= SHORTEST * tolerance:
             continue
         rise = (c - d) @ n / (last - first)
         apart = np.array([(d - a) @ n + rise * (s - first) for s in (low, high)])
         if np.abs(apart).max() > tolerance:
             continue
-        ends = [a + s * way + 0.5 * gap * n for s, gap in zip((low, high), apart, strict=True)]
+        corners = (d, -0.5) if first > 0 else (a, 0.5), (c, -0.5) if last < long else (b, 0.5)  # without rounding
+        ends = [corner + share * gap * n for (corner, share), gap in zip(corners, apart, strict=True)]
         # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
-        travel = (float((b - a) @ way - first), float(last))
+        travel = (long - float(first), float(last))
         upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
         below, above = (i, j) if upwards > 0 else (j, i)
         if blocks[above].fixed:
