@@ -247,9 +247,7 @@ def press_lines(
 
 
 @jitable
-def settle_touches(
-    system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]
-) -> tuple[float, float]:
+def settle_touches(system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]) -> tuple[float, float]:
     """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
 
     Returns what the halves of these impulses before the pose have taken, which a sample counts as held by the springs,
@@ -258,7 +256,7 @@ def settle_touches(
     taken, put_in = 0.0, 0.0
     for i in range(count):
         books.struck[i] = 0.0
-    for sweep in range(PASSES):
+    for _ in range(PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line, axes)

@@ -114,7 +114,9 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
     """
     system, encounters, stop, memory = setup.system, setup.encounters, stepping.last + 1, setup.memory
-    clock = Clock(0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look)
+    clock = Clock(
+        0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
+    )
     clock = clock._replace(lead=LEAD if stepping.h <= SHORT * setup.limit else 0.0)
     look = 0
     if memory is not None:

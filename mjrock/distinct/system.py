@@ -80,7 +80,17 @@ class Books(NamedTuple):
         sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
         dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines) + further, dtype=np.int64) for _ in range(2))
-        return cls(dashpots, ties, broken, dampers, ends, rows(kinds(len(system.axes)).total, 1), active, touched, np.zeros(len(active)))
+        return cls(
+            dashpots,
+            ties,
+            broken,
+            dampers,
+            ends,
+            rows(kinds(len(system.axes)).total, 1),
+            active,
+            touched,
+            np.zeros(len(active)),
+        )
 
     @property
     def size(self) -> int:
@@ -94,18 +104,18 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
-        dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
         looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
+        dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
     """
 
     pose: Array
     velocity: Array
     energy: Rows
+    looks: Rows
     dampers: Array
     ties: Array
     broken: Array
     dashpots: Array
-    looks: Rows
 
     @classmethod
     def room(
@@ -116,11 +126,12 @@ class Samples(NamedTuple):
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        return cls(pose, velocity, rows(ENERGY, count), *accounts, rows(ENERGY, looks))
+        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""
-        return Samples(*(part[which] for part in self[:-1]), self.looks)  # type: ignore[arg-type]
+        kept = {name: part[which] for name, part in self._asdict().items() if name != "looks"}
+        return self._replace(**kept)
 
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
