@@ -43,7 +43,7 @@ TOOLS = (
     *("filters", "meeting", "others"),
 )
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
-STEPS = ("contact", "faces", "friction", "links", "loop", "turning")
+STEPS = ("contact", "faces", "friction", "links", "loop", "touches", "turning")
 """Modules of the explicit steps, whose tests are their own."""
 OWN = {
     **{
