@@ -62,6 +62,7 @@ OWN = {
     "scene/masses.py": ("scene_in_space",),
     "geometry/poses.py": ("scene_in_space",),
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
+    "distinct/touches.py": ("touches_inside_a_step", "books_close"),
     "distinct/links.py": ("breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
     "distinct/looking.py": ("encounters", "encounters_in_space"),

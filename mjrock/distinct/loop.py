@@ -192,21 +192,23 @@ def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes:
 
     Angular momenta give way to spins in the axes of the bodies. `before` is the length of the last step [s]. The
     kinetic energy is that which the steps conserve: half the product of velocity and momentum before and after the
-    pose. It is less than that of the mean velocity, and below zero where a stiff contact turns a motion round."""
+    pose, at a start after it and as far before it. It is less than that of the mean velocity, and below zero where a
+    stiff contact turns a motion round."""
     kinetic, potential, share, d = 0.0, 0.0, 0.5 if before > 0 else 0.0, len(axes)
     for b in range(len(bodies)):
         body, velocity = bodies[b], samples.velocity[row, b]
         linear, momentum = components(velocity, axes), spin_components(velocity[d:], axes)
-        linear = plus(linear, scaled(share, minus(components(body.velocity, axes), linear)))
-        after = momentum_of(body, axes)
-        momentum = plus(momentum, scaled(share, minus(after, momentum)))
-        to_come = in_body(body, minus(after, momentum))
-        change, momentum = minus(components(body.velocity, axes), linear), in_body(body, momentum)
+        faster, turned = minus(components(body.velocity, axes), linear), minus(momentum_of(body, axes), momentum)
+        linear, faster = plus(linear, scaled(share, faster)), scaled(1 - share, faster)
+        momentum, turned = (
+            in_body(body, plus(momentum, scaled(share, turned))),
+            in_body(body, scaled(1 - share, turned)),
+        )
         spin = apply_inverse_inertia(body, momentum)
         put(velocity, linear)
         put(velocity[d:], spin)
-        kinetic += 0.5 * body.mass * (dot(linear, linear) - dot(change, change))
-        kinetic += 0.5 * (dot(momentum, spin) - dot(to_come, apply_inverse_inertia(body, to_come)))
+        kinetic += 0.5 * body.mass * (dot(linear, linear) - dot(faster, faster))
+        kinetic += 0.5 * (dot(momentum, spin) - dot(turned, apply_inverse_inertia(body, turned)))
         potential += GRAVITY * body.mass * body.place[d - 1]
     samples.energy[row].kinetic = kinetic
     samples.energy[row].potential += potential
@@ -259,8 +261,6 @@ def make_steps(
         if accounted:
             note_slips(system, books.active, sticking, axes)
         kick_bodies(system.bodies, kick, axes)
-        if before == 0:
-            keep_velocity(system.bodies, samples, kept, before, axes)
         stick(system, books.active, sticking, kick, axes)
         taken, put_in = settle_touches(system, books, touched, kick, axes)
         samples.energy[kept].elastic += taken
@@ -270,7 +270,7 @@ def make_steps(
             if before > 0:  # halves that belong to the time before the pose
                 samples.energy[kept].friction += rubbed
                 samples.energy[kept].ground += put_in
-        if (sampled or looked) and before > 0:
+        if sampled or looked:
             keep_velocity(system.bodies, samples, kept, before, axes)
         if looked:
             keep_energy(samples, kept, -(-n // clock.look))

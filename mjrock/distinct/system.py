@@ -102,18 +102,18 @@ class Samples(NamedTuple):
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
-        dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
         looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
+        dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
     """
 
     pose: Array
     velocity: Array
     energy: Rows
+    looks: Rows
     dampers: Array
     ties: Array
     broken: Array
     dashpots: Array
-    looks: Rows
 
     @classmethod
     def room(
@@ -123,13 +123,13 @@ class Samples(NamedTuple):
         count += 1
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
-        dampers, ties, broken, dashpots = (np.zeros((count, len(account) if ledger else 0)) for account in kept)
-        energy, looked = rows(ENERGY, count), rows(ENERGY, looks)
-        return cls(pose, velocity, energy, dampers, ties, broken, dashpots, looked)
+        accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
+        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""
-        return Samples._make(part[which] for part in (*self[:-1], self.energy))._replace(looks=self.looks)
+        kept = {name: part[which] for name, part in self._asdict().items() if name != "looks"}
+        return self._replace(**kept)
 
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""

@@ -1,15 +1,13 @@
 """Touches: the forces of a contact line that has met its face, or that no longer presses on it, inside a step.
 
-The forces of a step are those at its poses, as if a line that presses at a pose had pressed since the middle of the
-step before and would press until the middle of the next one. A line with a spring k that meets its face at the time tau
-before the pose, h - tau into a step of length h, gets too much: k |rate| tau (h - tau) / 2 by its spring, and by its
-dashpot for the time h / 2 - tau. One that has left its face gets too much at the pose before, which the pose after
-takes back. Together with the velocities the springs then hold the energy that they held, but for the change of the rate
-in the step. The work that this makes is known when all forces have acted, and an impulse puts it right.
+The force at a pose acts from the middle of the step before to the middle of the next one. A line with a spring k that
+meets its face inside a step of length h, tau before the pose, would get too much: k |rate| tau (h - tau) / 2 from its
+spring, and from its dashpot the force for the time h / 2 - tau. One that leaves its face inside a step has got too much
+at the pose before, and the pose after takes it back, with the friction that belongs to it.
 
-With m = k tau (h - tau) / 2 [kg], below zero for a line that has met its face, the first impulse of the spring is
--m rate. Over the step it lacks the work m rate (change of the rate) / 2. Without damping the energy of a bounce is
-kept to the fourth order of the step.
+With m = k tau (h - tau) / 2 [kg], negative for a line that has met its face, the spring is corrected by the impulse
+-m rate. The rate changes in the step, so that the work m rate (change of the rate) / 2 is still missing, known when
+all forces have acted, and one more impulse does it. The springs then give back the energy that they took.
 """
 
 from __future__ import annotations

@@ -127,7 +127,7 @@ def test_blocks_that_strike_in_flight_keep_their_momentum(in_space):
     velocity = np.zeros((2, d))
     up = 2 if in_space else 1
     velocity[1, up], velocity[1, -1] = -2.0, 0.3
-    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.1), start=(at, velocity), ledger=True)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.05), start=(at, velocity), ledger=True)
     momentum = run.velocity.sum(axis=1)[:, up] + 2 * G * run.t
     assert run.velocity[-1, 0, up] < -1.5  # it was struck
     np.testing.assert_allclose(momentum, momentum[0], rtol=1e-12)
