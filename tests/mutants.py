@@ -45,6 +45,8 @@ TOOLS = (
 """Modules that give the contacts of any MuJoCo model, whose tests are their own."""
 STEPS = ("contact", "faces", "friction", "links", "loop", "turning")
 """Modules of the explicit steps, whose tests are their own."""
+FINDING = ("clipping", "finder", "handover", "looking", "overlap", "pair_law", "solids")
+"""Modules that find where blocks meet."""
 OWN = {
     **{
         f"anymodel/{name}.py": ("solref", "pair", "pairing", "inspection", "standing", "rest_of_the_model")
@@ -65,7 +67,7 @@ OWN = {
     "distinct/touches.py": ("touches_inside_a_step", "books_close"),
     "distinct/links.py": ("breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
-    "distinct/looking.py": ("encounters", "encounters_in_space"),
+    **{f"distinct/{name}.py": ("encounters", "encounters_in_space") for name in FINDING},
     "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),

@@ -88,7 +88,7 @@ class Encounters:
         self.drawn = np.array(masonry.centroids, dtype=float)
         self.sizes = np.array([block.size for block in blocks])
         self.finder = Finder(blocks, self.drawn)
-        self.law = PairLaw.of(masonry, system.lines, joint)
+        self.law = PairLaw.of_joints(masonry, system.lines, joint)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
@@ -146,7 +146,7 @@ class Encounters:
         about[self.free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[self.free]
         return velocity, about
 
-    def look(self, system: System, books: Books) -> tuple[System, Books, float]:
+    def look_on(self, system: System, books: Books) -> tuple[System, Books, float]:
         """The system with the lines of the encounters that may happen until the next look, its books with room for
         them, and the time until then [s]."""
         met, wear = self.met, self.wear
@@ -166,7 +166,7 @@ class Encounters:
         known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
         found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
         until, soon = self._until(found, velocity, about)
-        system = self._renewed(system, books, poses, found.taken(soon), worn[wear.pairs], stays)
+        system = self._renewed(system, books, poses, found.only(soon), worn[wear.pairs], stays)
         return system, books.with_room(len(system.lines)), until
 
     def _until(self, found: Found, velocity: Array, about: Array) -> tuple[float, Flags]:
@@ -199,7 +199,7 @@ class Encounters:
         gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])
         slack = self._slack(found, number, old, gone_slack)
         new = self._lines(found, number, slack, poses)
-        take_over(new, places_of(new, number, poses, self.free), found.gap + slack, gone, old, poses)
+        take_over(new, places_of(new, number, poses, self.free), gone, old, poses)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], slack)

@@ -59,7 +59,7 @@ class Found(NamedTuple):
     gap: Array
     share: Array
 
-    def taken(self, which: Flags | Integers) -> Found:
+    def only(self, which: Flags | Integers) -> Found:
         """Some of the places."""
         return Found._make(part[which] for part in self)
 
@@ -99,7 +99,7 @@ class Finder:
         self._half = float(np.median([block.size for block in blocks]))  # of the length of a prism
         self._fixed = np.array([block.fixed for block in blocks])
         centroids = np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn
-        self.solids = Solids.of(solids_of(blocks, self._half), centroids)
+        self.solids = Solids.about(solids_of(blocks, self._half), centroids)
         most = int(np.diff(self.solids.first).max())
         self._table, self._room = np.empty((256, 10)), np.empty((4 * most + 4, 3))
 
@@ -134,7 +134,7 @@ class Finder:
 
     def _of_the_plane(self, found: Found) -> Found:
         """The places at one end of the prisms."""
-        kept = found.taken(found.place[:, 1] > 0.5 * self._half)
+        kept = found.only(found.place[:, 1] > 0.5 * self._half)
         normal = kept.normal[:, ::2] / np.hypot(*kept.normal[:, ::2].T)[:, None]
         return kept._replace(place=kept.place[:, ::2], normal=normal, share=2 * kept.share)
 

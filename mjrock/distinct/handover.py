@@ -86,30 +86,27 @@ def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Plac
 
 
 def in_pairs(pair: Integers) -> tuple[Integers, Integers, Integers]:
-    """The numbers of pairs that lines have, an order of the lines by pair, and where each pair begins and ends in it."""
+    """Numbers of the pairs of lines, an order of the lines by pair, and where each pair begins and ends in it."""
     order = np.argsort(pair, kind="stable")
     pairs, first = np.unique(pair[order], return_index=True)
     return pairs, order, np.append(first, len(order))
 
 
-def take_over(lines: Rows, new: Places, gap: Array, gone: Rows, old: Places, poses: Poses) -> None:
-    """Let closed lines take over the friction, and the push of the last step, of those of their pair that are gone.
+def take_over(lines: Rows, new: Places, gone: Rows, old: Places, poses: Poses) -> None:
+    """Let lines take over the friction, and the push of the last step, of those of their pair that are gone.
 
     Each line that is gone gives all that it has to the nearest one, so that the forces of a pair stay.
 
     Args:
         lines, new: the lines, and where they are.
-        gap: of the lines [m], shape (n,).
         gone, old: those that are gone, and where they are.
         poses: of all blocks.
     """
-    closed = np.flatnonzero(gap < 0)
-    pairs, order, first = in_pairs(new.pair[closed])
-    closed = closed[order]
+    pairs, order, first = in_pairs(new.pair)
     source = np.flatnonzero(are_among(old.pair, pairs) & ((gone["push"] != 0) | (gone["depth"] > 0)))
     chosen = np.empty(len(source), dtype=np.int64)
-    nearest(np.searchsorted(pairs, old.pair[source]), old.at[source], first, new.at[closed], chosen)
-    target = closed[chosen]
+    nearest(np.searchsorted(pairs, old.pair[source]), old.at[source], first, new.at[order], chosen)
+    target = order[chosen]
     for name in ("push", "pressed"):
         np.add.at(lines[name], target, gone[name][source])
     np.maximum.at(lines["depth"], target, gone["depth"][source])

@@ -46,7 +46,7 @@ class PairLaw(NamedTuple):
     of_block: tuple[Array, Array]
 
     @classmethod
-    def of(cls, masonry: Masonry, lines: Rows, joint: Integers) -> PairLaw:
+    def of_joints(cls, masonry: Masonry, lines: Rows, joint: Integers) -> PairLaw:
         """The law of masonry, from the lines of its joints and the number of the joint of each."""
         blocks, joints = len(masonry.blocks), len(masonry.joints)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T

@@ -37,7 +37,7 @@ class Solids(NamedTuple):
     first: Integers
 
     @classmethod
-    def of(cls, blocks: Sequence[Polyhedron], centroids: Array) -> Solids:
+    def about(cls, blocks: Sequence[Polyhedron], centroids: Array) -> Solids:
         """Blocks about their centroids [m], shape (blocks, 3)."""
         corner = _begins(block.corners for block in blocks)
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
@@ -55,13 +55,13 @@ class Solids(NamedTuple):
     def moved(self, place: Array, change: Array) -> Solids:
         """The blocks at centroids [m], shape (blocks, 3), turned from where they are by rotations less 1."""
 
-        def turned(vectors: Array, first: Integers) -> tuple[Array, Integers]:
+        def along(vectors: Array, first: Integers) -> tuple[Array, Integers]:
             block = np.repeat(np.arange(len(place)), np.diff(first))
             return vectors + np.einsum("nij,nj->ni", change[block], vectors), block
 
-        corners, block = turned(self.corners, self.corner)
-        normals, _ = turned(self.normals, self.face)
-        ways, _ = turned(self.ways, self.way)
+        corners, block = along(self.corners, self.corner)
+        normals, _ = along(self.normals, self.face)
+        ways, _ = along(self.ways, self.way)
         return self._replace(corners=corners + place[block], normals=normals, ways=ways)
 
 

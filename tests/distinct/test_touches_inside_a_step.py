@@ -219,8 +219,8 @@ def test_without_a_ledger_nothing_is_said_of_it():
     assert mr.solve_explicit(SPUN, timestep=0.04, output_step=0.04).ledger is None
 
 
-def test_energy_that_ends_of_faces_put_in_has_an_account_and_warns():
-    """Blocks of a dome that spin slide past the ends of their faces and are met again, already inside each other."""
+def test_energy_that_ends_of_faces_put_in_has_an_account_and_warns(monkeypatch):
+    """Blocks of a dome that spin leave their joints, and meet again without energy that was not there."""
     dome = mr.Masonry.dome(0.18, 0.03, lunes=4, hoops=1, oculus=0.3, k_n=6e7, friction=0.9)
     velocity = [
         (0.3, 0.2, 0.2, -0.6, -3.1, 1.8),
@@ -229,10 +229,10 @@ def test_energy_that_ends_of_faces_put_in_has_an_account_and_warns():
         (0.2, -0.4, 0.0, -1.4, -5.8, -3.9),
     ]
     case = mr.MasonryCase(dome, 0.1, velocity=velocity)
-    with pytest.warns(
-        UserWarning, match=r"contacts at ends of faces put in \S+ J, \d+\.\d% of the energy there was"
-    ) as said:
-        run = mr.solve_explicit(case, timestep=2e-5, ledger=True)
-    assert said[0].filename == __file__
-    assert run.ledger.ends["joints"].min() < -0.01 * run.ledger.kinetic.max()
+    run = mr.solve_explicit(case, timestep=2e-5, ledger=True)
+    assert min(run.ledger.ends["joints"].min(), run.ledger.ends["encounters"].min()) > -0.01 * run.ledger.kinetic.max()
     assert np.abs(run.energy_residual).max() < 1e-3 * run.ledger.largest
+    monkeypatch.setattr(reading, "OPEN", -1.0)
+    with pytest.warns(UserWarning, match=r"contacts at ends of faces put in \S+ J, -?\d+\.\d% of the energy there") as said:
+        mr.solve_explicit(case, timestep=2e-5)
+    assert said[0].filename == __file__
