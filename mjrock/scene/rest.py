@@ -1,0 +1,271 @@
+"""Bodies at rest: a pose and friction within its cones in which the springs of contacts and ties carry the weight.
+
+Contacts push only. Along the face each has a spring with a slider that slips where the spring would pass the friction.
+Where many slip, friction accumulates from pose to pose as it does in the explicit steps. The search is Newton's method.
+Keeping the shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all.
+The share of the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is
+missing than before.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, diags_array, vstack
+from scipy.sparse.linalg import splu
+
+from ..geometry.kinematics import Forces, Places, gaps
+from ..geometry.poses import moved, turned
+from ..linear import is_definite, sprung
+from ..problem.masonry.joint_law import Law, resting, shear_limit
+from ..quantities import GRAVITY, Array, Flags
+from .potential import Potential
+
+EXACT = 1e-9
+"""Force that may be missing at rest, over the weight of the heaviest body [-]."""
+ROUNDING = 16 * np.finfo(float).eps
+"""Rounding of the length of a tie, over that length [-]."""
+LEANING = 1e-6
+"""Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
+TURNED = 0.5
+"""Rotation beyond which a body no longer stands [rad]."""
+FLAT = 1e-12
+"""Negative stiffness that is put down to rounding, over the largest [-]."""
+LOOSE, LEAST_LOOSE = 1e-9, 1e-12
+"""Stiffness that is lent to every motion in the search, over the largest: at the start, and the least of it [-]."""
+SLIPPING, RAISED = 1e-2, 4.0
+"""Least share of its shear stiffness that a contact that slips lends along its slip, and by how much it is raised each
+time that more force is missing than before [-]."""
+ROUNDED, SMALLEST_PART = 1e-13, 1e-6
+"""Rounding of the energy, over itself or over the weight of a body times a metre [-], and the smallest part of a step
+of Newton's method that is tried."""
+ENDED = 0.5
+"""Force that is missing, over that of the pose before, above which a pose that is near enough ends the search [-].
+Faces that touch without force are then apart by less than the resolution of the coordinates."""
+
+
+class Search(NamedTuple):
+    """A search for rest.
+
+    Args:
+        shear: shear stiffness of the contacts over their normal stiffness [-].
+        poses: how many are tried at most.
+        limited: whether friction has its limit. Without one, friction holds whatever touches.
+        accumulates: whether sliders stay where they have slipped to from pose to pose.
+    """
+
+    shear: float
+    poses: int
+    limited: bool = True
+    accumulates: bool = False
+
+
+SEARCHES = (
+    Search(1e3, 60, limited=False),
+    Search(1e3, 80),
+    Search(1.0, 150, accumulates=True),
+    Search(0.1, 300, accumulates=True),
+)
+"""Searches in turn, until one with limits ends. The first, nearly rigid, finds where the others start. Contacts are softer
+along their faces in the last ones, as stiff ones slip more on the way."""
+
+
+class UnsettledError(ValueError):
+    """No pose of rest was found; `pose` is the last one that was tried, shape (n, nq)."""
+
+    def __init__(self, pose: Array) -> None:
+        super().__init__(
+            "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and "
+            "forces. The valid range are contacts that are stiffer, or loads and thrusts whose line of action with the "
+            "weight runs nearer to the middle of the base"
+        )
+        self.pose = pose
+
+
+class Sliders(NamedTuple):
+    """Springs of the contacts along their faces, which slip where they would pass the friction.
+
+    Args:
+        stiffness: of the springs [N/m], shape (m,).
+        limit: friction that each contact can have, negative for one that is open or smooth [N], shape (m,).
+        place: how far each slider has moved [m], shape (m, ways): one way in the plane, two in space.
+    """
+
+    stiffness: Array
+    limit: Array
+    place: Array
+
+
+class Grips(NamedTuple):
+    """Friction of the points at a pose, in the axes of their faces, see `Potential.slip_rates`.
+
+    Args:
+        rates: of the slips for unit velocities, one matrix for each way, shape (m, n nv).
+        drag: friction on the bodies of the points [N], shape (m, ways).
+        stiffness: of the chord where a point slips [N/m], shape (m,).
+        slips: whether a point slips, shape (m,).
+        slider: how far the slider of each point has moved [m], shape (m, ways).
+    """
+
+    rates: tuple[csr_array, ...]
+    drag: Array
+    stiffness: Array
+    slips: Flags
+    slider: Array
+
+
+def settled(potential: Potential, friction: Array) -> tuple[Array, Array]:
+    """The pose in which the springs of contacts and ties carry weight and forces, and the friction there.
+
+    Where nothing holds a direction, the bodies stay where they are.
+
+    Args:
+        potential: of the scene.
+        friction: coefficient of friction of each contact [-], shape (m,).
+
+    Returns:
+        The pose, shape (n, nq), and the friction on the bodies of the points along the ways of `Potential.slip_rates`
+        [N], shape (m, ways).
+
+    Raises:
+        UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
+    """
+    freedom, start = potential.structure.places.freedom, None
+    for search in SEARCHES:
+        try:
+            pose, grips = searched(potential, friction, search, start)
+        except UnsettledError as error:
+            unsettled = error
+            continue
+        if not search.limited:
+            start = pose
+        elif stands(potential, grips, pose):
+            return pose.reshape(-1, freedom.nq), grips.drag
+        else:
+            raise UnsettledError(pose.reshape(-1, freedom.nq))
+    raise unsettled
+
+
+def searched(potential: Potential, friction: Array, search: Search, start: Array | None) -> tuple[Array, Grips]:
+    """The pose of rest, shape (n nq,), and the friction there, by one of the searches.
+
+    It starts from a pose, or with None from the undeformed one.
+
+    Raises:
+        UnsettledError: if there is none within its number of poses.
+    """
+    k, masses, freedom = potential.springs, potential.structure.masses, potential.structure.places.freedom
+    size = np.sqrt(masses / np.repeat(masses[:: freedom.nv], freedom.nv))  # compares moments with forces
+    scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
+    m, pose = len(friction), potential.unmoved if start is None else start
+    openings, slipped = potential.openings(pose), np.zeros((m, freedom.translations - 1))
+    closed = touching(potential, pose) if start is None else openings < 0
+    for tried in range(search.poses):
+        rates, push = potential.rates(pose), resting(k, openings)[0]
+        most = shear_limit(Law(friction=friction), push[:m]) if search.limited else np.inf
+        limit = np.where(closed[:m] & (friction > 0), most, -np.inf)
+        sliders = Sliders(search.shear * k[:m], limit, slipped)
+        grips = grips_at(potential, pose, sliders)
+        held = sum(rate.T @ drag for rate, drag in zip(grips.rates, grips.drag.T, strict=True))
+        missing = (potential.load(pose) + rates.T @ push + held) / size
+        left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
+        ends = left > ENDED * last or tried == search.poses - 1
+        if ends and np.abs(missing).max() < tolerance(potential):
+            return pose, grips
+        if left < last:
+            loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
+        else:
+            loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
+        last = left
+        stiffness = sprung(rates, np.where(closed, k, LEANING * k)) + shear_stiffness(grips, share)
+        scaled = scales @ stiffness @ scales
+        lent = np.full(len(size), loose * float(scaled.diagonal().max()))
+        motion = splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
+        pose = lowering(potential, pose, motion, sliders)
+        openings = potential.openings(pose)
+        closed = openings < 0
+        if not turned(pose, freedom).max() < TURNED:
+            break
+    raise UnsettledError(pose.reshape(-1, freedom.nq))
+
+
+def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
+    """The pose after a motion, or after a part of it that does not raise the energy, see `energy_with`."""
+    freedom, part, energy = potential.structure.places.freedom, 1.0, energy_with(sliders, potential, pose)
+    highest = energy + ROUNDED * max(heaviest(potential), abs(energy))
+    while part > SMALLEST_PART and energy_with(sliders, potential, moved(pose, part * motion, freedom)) > highest:
+        part *= 0.5
+    return moved(pose, part * motion, freedom)
+
+
+def energy_with(sliders: Sliders, potential: Potential, pose: Array) -> float:
+    """Energy at a pose, with that of the sliders and the work that slipping further takes at a constant limit [J].
+
+    The forces that are missing at a pose are those along which it falls.
+    """
+    stretch = np.linalg.norm(potential.slips(pose) - sliders.place, axis=1)
+    elastic = np.minimum(stretch, np.maximum(sliders.limit, 0.0) / sliders.stiffness)
+    return potential.energy(pose) + float((sliders.stiffness * elastic * (stretch - 0.5 * elastic)).sum())
+
+
+def grips_at(potential: Potential, pose: Array, sliders: Sliders) -> Grips:
+    """Friction at a pose of shape (n nq,)."""
+    stretch = potential.slips(pose) - sliders.place
+    held = sliders.stiffness * np.linalg.norm(stretch, axis=1)
+    slips = held > sliders.limit
+    stays = np.where(slips, np.maximum(sliders.limit, 0.0) / np.where(held > 0, held, 1.0), 1.0)
+    stiffness, slider = stays * sliders.stiffness, sliders.place + (1 - stays)[:, None] * stretch
+    return Grips(potential.slip_rates(pose), -stiffness[:, None] * stretch, stiffness, slips, slider)
+
+
+def shear_stiffness(grips: Grips, share: float) -> csr_array:
+    """Stiffness of the points along their faces, shape (n nv, n nv). Along its slip a point has a share of it."""
+    slips = grips.slips & (grips.stiffness > 0)
+    ways = (grips.drag[slips] / np.linalg.norm(grips.drag[slips], axis=1)[:, None]).T
+    along = sum(diags_array(way) @ rates[slips] for way, rates in zip(ways, grips.rates, strict=True))
+    less = (share - 1) * grips.stiffness[slips]
+    springs = np.concatenate([*(grips.stiffness for _ in grips.rates), less])
+    return csr_array(sprung(csr_array(vstack([*grips.rates, along])), springs))
+
+
+def stands(potential: Potential, grips: Grips, pose: Array) -> bool:
+    """Whether no motion takes energy from a pose at rest, of shape (n nq,), while its friction holds."""
+    hessian, none = potential.hessian(pose), csr_array((0, len(potential.structure.masses)))
+    return is_definite(csr_array(hessian + shear_stiffness(grips, 1.0)), none, FLAT * float(abs(hessian).max()))
+
+
+def touching(potential: Potential, pose: Array) -> Flags:
+    """What is closed at the start of a search, shape (m + t,): all contacts, and the ties that are taut."""
+    contacts = np.arange(len(potential.springs)) < len(potential.structure.k)
+    closed: Flags = contacts | (potential.openings(pose) < 0)
+    return closed
+
+
+def heaviest(potential: Potential) -> float:
+    """Weight of the heaviest body [N]."""
+    freedom = potential.structure.places.freedom
+    return GRAVITY * float(potential.structure.masses[:: freedom.nv].max())
+
+
+def tolerance(potential: Potential) -> float:
+    """Force that may be missing at rest [N]."""
+    ties = potential.structure.ties
+    return max(EXACT * heaviest(potential), ROUNDING * float((ties.k * ties.reach).max(initial=0)))
+
+
+def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:
+    """A pose lowered until the springs of level ground carry the weight of all bodies, shape (n, nq).
+
+    The bodies keep their rotations and their horizontal positions.
+    """
+    freedom, up = places.freedom, places.freedom.translations - 1
+    level = (places.face_body < 0) & (places.normal[:, up] > 1 - 1e-12)
+    depth, k = -gaps(places, np.array(pose, dtype=float).reshape(1, -1))[0][level], springs[level]
+    order = np.argsort(-depth, kind="stable")  # the deepest points are loaded first
+    depth, k = depth[order], k[order]
+    # sum k_i max(0, depth_i - z) = m g + what presses down, for the points down to the i-th
+    carries = GRAVITY * masses[up :: freedom.nv].sum() - forces.force[:, up].sum()
+    levels = (np.cumsum(k * depth) - carries) / np.cumsum(k)
+    z = levels[np.flatnonzero(levels >= np.append(depth[1:], -np.inf))[0]]
+    return pose + z * (np.arange(freedom.nq) == up)
