@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 
 from ..geometry.kinematics import Forces, Places, gaps
 from ..geometry.poses import moved, turned
-from ..linear import is_definite, sprung
+from ..linear import lowest_mode, sprung
 from ..problem.masonry.joint_law import Law, resting, shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .potential import Potential
@@ -40,6 +40,9 @@ time that more force is missing than before [-]."""
 ROUNDED, SMALLEST_PART = 1e-13, 1e-6
 """Rounding of the energy, over itself or over the weight of a body times a metre [-], and the smallest part of a step
 of Newton's method that is tried."""
+PUSHES, PUSH = 4, 1e-2
+"""Most pushes off poses at which the bodies balance and do not stand, and the first motion of one, over the deepest
+penetration [-]."""
 ENDED = 0.5
 """Force that is missing, over that of the pose before, above which a pose that is near enough ends the search [-].
 Faces that touch without force are then apart by less than the resolution of the coordinates."""
@@ -114,6 +117,11 @@ class Grips(NamedTuple):
     slips: Flags
     slider: Array
 
+    @property
+    def held(self) -> Array:
+        """Generalised force of the friction, shape (n nv,)."""
+        return np.sum([rates.T @ drag for rates, drag in zip(self.rates, self.drag.T, strict=True)], axis=0)
+
 
 def settled(potential: Potential, friction: Array) -> tuple[Array, Array]:
     """The pose in which the springs of contacts and ties carry weight and forces, and the friction there.
@@ -140,10 +148,13 @@ def settled(potential: Potential, friction: Array) -> tuple[Array, Array]:
             continue
         if not search.limited:
             start = pose
-        elif stands(potential, grips, pose):
-            return pose.reshape(-1, freedom.nq), grips.drag
-        else:
-            raise UnsettledError(pose.reshape(-1, freedom.nq))
+            continue
+        for _ in range(PUSHES):
+            way = falling_way(potential, grips, pose)
+            if way is None:
+                return pose.reshape(-1, freedom.nq), grips.drag
+            pose, grips = searched(potential, friction, search, let_go(potential, grips, pose, way))
+        raise UnsettledError(pose.reshape(-1, freedom.nq))
     raise unsettled
 
 
@@ -167,8 +178,7 @@ def searched(potential: Potential, friction: Array, search: Search, start: Array
         limit = np.where(closed[:m] & (friction > 0), most, -np.inf)
         sliders = Sliders(search.shear * k[:m], limit, slipped)
         grips = grips_at(potential, pose, sliders)
-        held = sum(rate.T @ drag for rate, drag in zip(grips.rates, grips.drag.T, strict=True))
-        missing = (potential.load(pose) + rates.T @ push + held) / size
+        missing = (potential.load(pose) + rates.T @ push + grips.held) / size
         left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
         ends = left > ENDED * last or tried == search.poses - 1
         if ends and np.abs(missing).max() < tolerance(potential):
@@ -229,10 +239,29 @@ def shear_stiffness(grips: Grips, share: float) -> csr_array:
     return csr_array(sprung(csr_array(vstack([*grips.rates, along])), springs))
 
 
-def stands(potential: Potential, grips: Grips, pose: Array) -> bool:
-    """Whether no motion takes energy from a pose at rest, of shape (n nq,), while its friction holds."""
-    hessian, none = potential.hessian(pose), csr_array((0, len(potential.structure.masses)))
-    return is_definite(csr_array(hessian + shear_stiffness(grips, 1.0)), none, FLAT * float(abs(hessian).max()))
+def falling_way(potential: Potential, grips: Grips, pose: Array) -> Array | None:
+    """The motion that takes the most energy from a pose at rest while its friction holds, or None where it stands.
+
+    What touches without force resists nothing: a motion the other way opens it.
+    """
+    presses, bent = potential.pushes(pose) > tolerance(potential), potential.curvature(pose)
+    stiffness = potential.stiffness(pose, np.where(presses, potential.springs, 0.0))
+    most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
+    lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(grips, 1.0) + bent), most)
+    return way if lowest < -FLAT * float(abs(stiffness).max()) else None
+
+
+def let_go(potential: Potential, grips: Grips, pose: Array, way: Array) -> Array:
+    """The pose to which bodies fall along a way from a pose at which they balance, while its friction holds."""
+    freedom, far = potential.structure.places.freedom, PUSH * float(potential.pressed(pose).max()) / np.abs(way).max()
+    held, stiffness = way @ grips.held, way @ (shear_stiffness(grips, 1.0) @ way)
+
+    def energy(far: float) -> float:
+        return potential.energy(moved(pose, far * way, freedom)) - far * held + 0.5 * far * far * stiffness
+
+    while energy(2 * far) < energy(far) and far * np.abs(way).max() < TURNED:
+        far *= 2
+    return moved(pose, far * way, freedom)
 
 
 def touching(potential: Potential, pose: Array) -> Flags:
