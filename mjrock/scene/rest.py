@@ -20,6 +20,7 @@ from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
 from ..problem.masonry.joint_law import Law, resting, shear_limit
 from ..quantities import GRAVITY, Array, Flags
+from .parts import ContactPoints
 from .potential import Potential
 
 EXACT = 1e-9
@@ -54,7 +55,8 @@ class Search(NamedTuple):
     Args:
         shear: shear stiffness of the contacts over their normal stiffness [-].
         poses: how many are tried at most.
-        limited: whether friction has its limit. Without one, friction holds whatever touches.
+        limited: whether friction has its limit. Without one it holds the mean slip of the points of a joint that touch:
+            points that were all held would lock its rotation.
         accumulates: whether sliders stay where they have slipped to from pose to pose.
     """
 
@@ -72,6 +74,10 @@ SEARCHES = (
 )
 """Searches in turn, until one with limits ends. The first, nearly rigid, finds where the others start. Contacts are softer
 along their faces in the last ones, as stiff ones slip more on the way."""
+
+
+HELD = Search(1e6, 100, limited=False)
+"""The search where friction holds without a limit, which slips by no more than rounding."""
 
 
 class UnsettledError(ValueError):
@@ -93,11 +99,13 @@ class Sliders(NamedTuple):
         stiffness: of the springs [N/m], shape (m,).
         limit: friction that each contact can have, negative for one that is open or smooth [N], shape (m,).
         place: how far each slider has moved [m], shape (m, ways): one way in the plane, two in space.
+        shares: what each spring feels of the slip of every point [-], shape (m, m).
     """
 
     stiffness: Array
     limit: Array
     place: Array
+    shares: csr_array
 
 
 class Grips(NamedTuple):
@@ -123,14 +131,13 @@ class Grips(NamedTuple):
         return np.sum([rates.T @ drag for rates, drag in zip(self.rates, self.drag.T, strict=True)], axis=0)
 
 
-def settled(potential: Potential, friction: Array) -> tuple[Array, Array]:
+def settled(potential: Potential, contacts: ContactPoints) -> tuple[Array, Array]:
     """The pose in which the springs of contacts and ties carry weight and forces, and the friction there.
 
     Where nothing holds a direction, the bodies stay where they are.
 
     Args:
-        potential: of the scene.
-        friction: coefficient of friction of each contact [-], shape (m,).
+        potential, contacts: of the scene.
 
     Returns:
         The pose, shape (n, nq), and the friction on the bodies of the points along the ways of `Potential.slip_rates`
@@ -139,26 +146,46 @@ def settled(potential: Potential, friction: Array) -> tuple[Array, Array]:
     Raises:
         UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
     """
-    freedom, start = potential.structure.places.freedom, None
+    start = None
     for search in SEARCHES:
         try:
-            pose, grips = searched(potential, friction, search, start)
+            pose, grips = searched(potential, contacts, search, start)
         except UnsettledError as error:
             unsettled = error
             continue
-        if not search.limited:
-            start = pose
-            continue
-        for _ in range(PUSHES):
-            way = falling_way(potential, grips, pose)
-            if way is None:
-                return pose.reshape(-1, freedom.nq), grips.drag
-            pose, grips = searched(potential, friction, search, let_go(potential, grips, pose, way))
-        raise UnsettledError(pose.reshape(-1, freedom.nq))
+        if search.limited:
+            pose, grips = left_falling(potential, contacts, search, (pose, grips))
+            return pose.reshape(-1, potential.structure.places.freedom.nq), grips.drag
+        start = pose
     raise unsettled
 
 
-def searched(potential: Potential, friction: Array, search: Search, start: Array | None) -> tuple[Array, Grips]:
+def held(potential: Potential, contacts: ContactPoints) -> Array:
+    """The pose of rest of bodies that friction holds without a limit, shape (n, nq), see `settled`."""
+    pose, _ = left_falling(potential, contacts, HELD, searched(potential, contacts, HELD, None))
+    return pose.reshape(-1, potential.structure.places.freedom.nq)
+
+
+def left_falling(
+    potential: Potential, contacts: ContactPoints, search: Search, found: tuple[Array, Grips]
+) -> tuple[Array, Grips]:
+    """The pose of rest to which bodies fall from one that was found, which is the same where they stand there.
+
+    Raises:
+        UnsettledError: if they stand nowhere near it.
+    """
+    for _ in range(PUSHES):
+        pose, grips = found
+        way = falling_way(potential, grips, pose)
+        if way is None:
+            return found
+        found = searched(potential, contacts, search, let_go(potential, grips, pose, way))
+    raise UnsettledError(found[0].reshape(-1, potential.structure.places.freedom.nq))
+
+
+def searched(
+    potential: Potential, contacts: ContactPoints, search: Search, start: Array | None
+) -> tuple[Array, Grips]:
     """The pose of rest, shape (n nq,), and the friction there, by one of the searches.
 
     It starts from a pose, or with None from the undeformed one.
@@ -169,14 +196,12 @@ def searched(potential: Potential, friction: Array, search: Search, start: Array
     k, masses, freedom = potential.springs, potential.structure.masses, potential.structure.places.freedom
     size = np.sqrt(masses / np.repeat(masses[:: freedom.nv], freedom.nv))  # compares moments with forces
     scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
-    m, pose = len(friction), potential.unmoved if start is None else start
+    m, pose = len(contacts.k), potential.unmoved if start is None else start
     openings, slipped = potential.openings(pose), np.zeros((m, freedom.translations - 1))
     closed = touching(potential, pose) if start is None else openings < 0
     for tried in range(search.poses):
         rates, push = potential.rates(pose), resting(k, openings)[0]
-        most = shear_limit(Law(friction=friction), push[:m]) if search.limited else np.inf
-        limit = np.where(closed[:m] & (friction > 0), most, -np.inf)
-        sliders = Sliders(search.shear * k[:m], limit, slipped)
+        sliders = sliders_at(contacts, search, np.where(closed, push, -1.0)[:m], slipped)
         grips = grips_at(potential, pose, sliders)
         missing = (potential.load(pose) + rates.T @ push + grips.held) / size
         left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
@@ -200,6 +225,16 @@ def searched(potential: Potential, friction: Array, search: Search, start: Array
     raise UnsettledError(pose.reshape(-1, freedom.nq))
 
 
+def sliders_at(contacts: ContactPoints, search: Search, push: Array, slipped: Array) -> Sliders:
+    """Sliders at places [m], shape (m, ways), under forces of the contacts, negative where one is open [N], (m,)."""
+    rubs, m = (push >= 0) & (contacts.friction > 0), len(push)
+    limit = np.where(rubs, shear_limit(Law(friction=contacts.friction), push) if search.limited else np.inf, -np.inf)
+    joint = np.arange(m) if search.limited else contacts.joint
+    points = csr_array((rubs.astype(float), (joint, np.arange(m))))
+    means = diags_array(1 / np.maximum(points.sum(axis=1), 1.0)) @ points
+    return Sliders(search.shear * contacts.k, limit, slipped, csr_array(points.T @ means))
+
+
 def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
     """The pose after a motion, or after a part of it that does not raise the energy, see `energy_with`."""
     freedom, part, energy = potential.structure.places.freedom, 1.0, energy_with(sliders, potential, pose)
@@ -214,19 +249,20 @@ def energy_with(sliders: Sliders, potential: Potential, pose: Array) -> float:
 
     The forces that are missing at a pose are those along which it falls.
     """
-    stretch = np.linalg.norm(potential.slips(pose) - sliders.place, axis=1)
+    stretch = np.linalg.norm(sliders.shares @ potential.slips(pose) - sliders.place, axis=1)
     elastic = np.minimum(stretch, np.maximum(sliders.limit, 0.0) / sliders.stiffness)
     return potential.energy(pose) + float((sliders.stiffness * elastic * (stretch - 0.5 * elastic)).sum())
 
 
 def grips_at(potential: Potential, pose: Array, sliders: Sliders) -> Grips:
     """Friction at a pose of shape (n nq,)."""
-    stretch = potential.slips(pose) - sliders.place
+    stretch = sliders.shares @ potential.slips(pose) - sliders.place
     held = sliders.stiffness * np.linalg.norm(stretch, axis=1)
     slips = held > sliders.limit
     stays = np.where(slips, np.maximum(sliders.limit, 0.0) / np.where(held > 0, held, 1.0), 1.0)
     stiffness, slider = stays * sliders.stiffness, sliders.place + (1 - stays)[:, None] * stretch
-    return Grips(potential.slip_rates(pose), -stiffness[:, None] * stretch, stiffness, slips, slider)
+    rates = tuple(csr_array(sliders.shares @ rates) for rates in potential.slip_rates(pose))
+    return Grips(rates, -stiffness[:, None] * stretch, stiffness, slips, slider)
 
 
 def shear_stiffness(grips: Grips, share: float) -> csr_array:

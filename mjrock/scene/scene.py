@@ -145,7 +145,7 @@ class Scene:
     @cached_property
     def found(self) -> tuple[Array, Array]:
         """The pose of rest that was searched for, and the friction that holds the bodies there, see `rest.settled`."""
-        return settled(self.potential, self.contacts.friction)
+        return settled(self.potential, self.contacts)
 
     @cached_property
     def bears(self) -> Array:
