@@ -21,6 +21,7 @@ from .rows import Rows, joined, kinds, rows
 from .system import Supports, System
 from .turning import start_turning
 
+
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     """The system of a scene, undeformed. Faces of masonry end where they end, those of a wall do not."""
     d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)

@@ -11,7 +11,7 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
-from ..quantities import ON_ITS_FACE, Array
+from ..quantities import ON_ITS_FACE
 from ..result.response import State
 from ..scene.course import Course
 from ..scene.explicit_step import SHARE

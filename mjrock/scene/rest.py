@@ -72,12 +72,12 @@ SEARCHES = (
     Search(1.0, 150, accumulates=True),
     Search(0.1, 300, accumulates=True),
 )
-"""Searches in turn, until one with limits ends. The first, nearly rigid, finds where the others start. Contacts are softer
-along their faces in the last ones, as stiff ones slip more on the way."""
+"""Searches in turn, until one with limits ends. The first, nearly rigid, finds where the others start. Contacts
+are softer along their faces in the last ones, as stiff ones slip more on the way."""
 
 
-HELD = Search(1e6, 100, limited=False)
-"""The search where friction holds without a limit, which slips by no more than rounding."""
+HELD = Search(1e4, 100, limited=False)
+"""The search for what friction holds without a limit. With 1e6, rounding of the slip is more than may be missing."""
 
 
 class UnsettledError(ValueError):
@@ -183,9 +183,7 @@ def left_falling(
     raise UnsettledError(found[0].reshape(-1, potential.structure.places.freedom.nq))
 
 
-def searched(
-    potential: Potential, contacts: ContactPoints, search: Search, start: Array | None
-) -> tuple[Array, Grips]:
+def searched(potential: Potential, contacts: ContactPoints, search: Search, start: Array | None) -> tuple[Array, Grips]:
     """The pose of rest, shape (n nq,), and the friction there, by one of the searches.
 
     It starts from a pose, or with None from the undeformed one.

@@ -12,9 +12,9 @@ from mjrock.geometry.frames import PLANE, frames_of, swung
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
-from mjrock.scene.rest import settled
 from mjrock.scene.of_case import course_of, scene_of
 from mjrock.scene.parts import Links
+from mjrock.scene.rest import settled
 from scripts.shared.paper import K_N
 
 
