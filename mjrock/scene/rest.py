@@ -58,22 +58,25 @@ class Search(NamedTuple):
         limited: whether friction has its limit. Without one it holds the mean slip of the points of a joint that touch:
             points that were all held would lock its rotation.
         accumulates: whether sliders stay where they have slipped to from pose to pose.
+        resumes: whether it starts where the one without a limit has ended, or from the undeformed pose.
     """
 
     shear: float
     poses: int
     limited: bool = True
     accumulates: bool = False
+    resumes: bool = False
 
 
 SEARCHES = (
-    Search(1e3, 60, limited=False),
-    Search(1e3, 80),
+    Search(1e3, 20),
+    Search(1e3, 20, limited=False),
+    Search(1e3, 80, resumes=True),
     Search(1.0, 150, accumulates=True),
     Search(0.1, 300, accumulates=True),
 )
-"""Searches in turn, until one with limits ends. The first, nearly rigid, finds where the others start. Contacts
-are softer along their faces in the last ones, as stiff ones slip more on the way."""
+"""Searches in turn, until one with limits ends. The first ones are nearly rigid along the faces. Contacts are softer
+there in the last ones, as stiff ones slip more on the way."""
 
 
 HELD = Search(1e4, 100, limited=False)
@@ -148,8 +151,10 @@ def settled(potential: Potential, contacts: ContactPoints) -> tuple[Array, Array
     """
     start = None
     for search in SEARCHES:
+        if search.resumes and start is None:
+            continue
         try:
-            pose, grips = searched(potential, contacts, search, start)
+            pose, grips = searched(potential, contacts, search, start if search.resumes else None)
         except UnsettledError as error:
             unsettled = error
             continue
