@@ -38,9 +38,10 @@ LOOSE, LEAST_LOOSE = 1e-9, 1e-12
 SLIPPING, RAISED = 1e-2, 4.0
 """Least share of its shear stiffness that a contact that slips lends along its slip, and by how much it is raised each
 time that more force is missing than before [-]."""
-ROUNDED, SMALLEST_PART = 1e-13, 1e-6
-"""Rounding of the energy, over itself or over the weight of a body times a metre [-], and the smallest part of a step
-of Newton's method that is tried."""
+ROUNDED, RAISES, SMALLEST_PART = 1e-13, 1e-6, 1e-6
+"""Rounding of the energy, over the weight of a body times a metre [-]; by how much a step of Newton's method may raise
+the energy, over itself, as friction acts halfway between point and face where slip is that of the point [-]; and the
+smallest part of a step that is tried."""
 PUSHES, PUSH = 4, 1e-2
 """Most pushes off poses at which the bodies balance and do not stand, and the first motion of one, over the deepest
 penetration [-]."""
@@ -241,7 +242,7 @@ def sliders_at(contacts: ContactPoints, search: Search, push: Array, slipped: Ar
 def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
     """The pose after a motion, or after a part of it that does not raise the energy, see `energy_with`."""
     freedom, part, energy = potential.structure.places.freedom, 1.0, energy_with(sliders, potential, pose)
-    highest = energy + ROUNDED * max(heaviest(potential), abs(energy))
+    highest = energy + max(ROUNDED * heaviest(potential), RAISES * abs(energy))
     while part > SMALLEST_PART and energy_with(sliders, potential, moved(pose, part * motion, freedom)) > highest:
         part *= 0.5
     return moved(pose, part * motion, freedom)
