@@ -1,7 +1,7 @@
-"""Linear algebra of structures: balance, stability and frequencies of bodies on springs, some motions of them held.
+"""Linear algebra of structures: stability and frequencies of bodies on springs, some motions of them held.
 
-Matrices are sparse. Structures of few unknowns are solved in full, by least squares, null spaces and eigenvalues, which
-need no care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
+Matrices are sparse. Structures of few unknowns are solved in full, by null spaces and eigenvalues, which need no
+care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
 
 Motions are held by rows `grip` of rates that are zero. They may depend on one another.
 """
@@ -84,10 +84,8 @@ def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
     return csr_array(sums)
 
 
-def sprung(rates: csr_array | Array, springs: Array) -> csr_array | Array:
-    """Stiffness of springs [N/m] whose rates are these, of the same kind as they are."""
-    if isinstance(rates, np.ndarray):
-        return (rates.T * springs) @ rates
+def sprung(rates: csr_array, springs: Array) -> csr_array:
+    """Stiffness of springs [N/m] whose rates are these."""
     return csr_array(rates.T @ diags_array(springs) @ rates)
 
 
@@ -103,7 +101,10 @@ class _Balance:
         self.factors = _factors(near)
 
     def __call__(self, force: Array) -> tuple[Array, Array]:
-        """As `balance`: what the solution of the near matrix leaves is balanced in turn."""
+        """The motion u in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
+
+        What the solution of the near matrix leaves is balanced in turn.
+        """
         n, held = self.grip.shape[1], self.grip.shape[0]
         left, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
         motion, holding = np.zeros(n), np.zeros(held)
