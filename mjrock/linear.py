@@ -1,7 +1,7 @@
-"""Linear algebra of structures: balance, stability and frequencies of bodies on springs, some motions of them held.
+"""Linear algebra of structures: stability and frequencies of bodies on springs, some motions of them held.
 
-Matrices are sparse. Structures of few unknowns are solved in full, by least squares, null spaces and eigenvalues, which
-need no care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
+Matrices are sparse. Structures of few unknowns are solved in full, by null spaces and eigenvalues, which need no
+care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
 
 Motions are held by rows `grip` of rates that are zero. They may depend on one another.
 """
@@ -21,15 +21,11 @@ FEW = 300
 """Most unknowns that are solved in full."""
 DEPENDENT = 1e-9
 """Singular value of held motions below which they depend on one another, over the largest [-]."""
-LOOSE = 1e-9
-"""Stiffness that is lent to every unknown while a large structure is balanced, over that of the stiffest [-]."""
 YIELDING = 1e-6
 """Compliance that is lent to every held motion while a large structure is balanced, over that of its stiffest unknown
 [-]. The unknowns that it moves may have no spring, as those along a course whose head joints are open."""
 REFINED, REFINEMENTS = 1e-13, 8
 """Error at which a balance is exact, over what is balanced [-], and most refinements of it."""
-HOLD = 1e3
-"""Stiffness with which motions are held in the test of a large structure, over its largest one [-]."""
 SHIFT = 1e-9
 """Square of a frequency by which those of a large structure are shifted, over that of the highest [-]. Motions that
 nothing resists are then no exception."""
@@ -88,30 +84,9 @@ def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
     return csr_array(sums)
 
 
-def fitting(rates: csr_array) -> csr_array | Array:
-    """Rates as they are, or as an array where there are few unknowns."""
-    return rates.toarray() if rates.shape[1] <= FEW else rates
-
-
-def sprung(rates: csr_array | Array, springs: Array) -> csr_array | Array:
-    """Stiffness of springs [N/m] whose rates are these, of the same kind as they are."""
-    if isinstance(rates, np.ndarray):
-        return (rates.T * springs) @ rates
+def sprung(rates: csr_array, springs: Array) -> csr_array:
+    """Stiffness of springs [N/m] whose rates are these."""
     return csr_array(rates.T @ diags_array(springs) @ rates)
-
-
-def balance(stiffness: csr_array | Array, grip: csr_array, force: Array) -> tuple[Array, Array]:
-    """The motion in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
-
-    Of few unknowns it is the shortest motion where that is not the only one, and the nearest where there is none.
-    """
-    n, held = stiffness.shape[0], grip.shape[0]
-    if not isinstance(stiffness, np.ndarray):
-        return _Balance(stiffness, grip, LOOSE)(force)
-    rows = grip.toarray()
-    matrix = np.block([[stiffness, rows.T], [rows, np.zeros((held, held))]])
-    solution = np.linalg.lstsq(matrix, np.append(force, np.zeros(held)), rcond=1e-14)[0]
-    return solution[:n], solution[n:]
 
 
 class _Balance:
@@ -126,7 +101,10 @@ class _Balance:
         self.factors = _factors(near)
 
     def __call__(self, force: Array) -> tuple[Array, Array]:
-        """As `balance`: what the solution of the near matrix leaves is balanced in turn."""
+        """The motion u in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
+
+        What the solution of the near matrix leaves is balanced in turn.
+        """
         n, held = self.grip.shape[1], self.grip.shape[0]
         left, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
         motion, holding = np.zeros(n), np.zeros(held)
@@ -145,23 +123,15 @@ def _factors(matrix: csc_array) -> Any:
     return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
-def is_definite(matrix: csr_array, grip: csr_array, flat: float) -> bool:
-    """Whether a symmetric matrix has no eigenvalue up to -flat along the motions that grip leaves."""
+def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
+    """The lowest eigenvalue of a symmetric matrix, none of which is below -most, and its unit vector."""
     n = matrix.shape[0]
     if n <= FEW:
-        free = null_space(grip.toarray(), rcond=DEPENDENT) if grip.shape[0] else np.eye(n)
-        return not free.size or float(np.linalg.eigvalsh(free.T @ (matrix @ free))[0]) > -flat
-    stiff = HOLD * float(np.abs(matrix.diagonal()).max())
-    return _is_positive(csc_array(matrix + stiff * (grip.T @ grip) + flat * eye_array(n)))
-
-
-def _is_positive(matrix: csc_array) -> bool:
-    """Whether a symmetric matrix is positive definite: all pivots are positive, and none had to be avoided."""
-    try:
-        factors = _factors(matrix)
-    except RuntimeError:  # a pivot of zero
-        return False
-    return bool((factors.perm_r == factors.perm_c).all() and (factors.U.diagonal() > 0).all())
+        values, modes = np.linalg.eigh(matrix.toarray())
+    else:
+        start = np.random.default_rng(0).random(n)
+        values, modes = eigsh(csc_array(matrix), 1, sigma=-2 * most, which="LM", tol=SEARCHED, v0=start)
+    return float(values[0]), modes[:, 0]
 
 
 def loose(rows: csr_array) -> Array:

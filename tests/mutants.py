@@ -31,9 +31,8 @@ MARKS = b"\n@compiled\n", b"\n@jitable\n", b"\n@inlined\n"
 OTHERS = (
     "engine/solref.py",
     "engine/run.py",
-    "scene/equilibrium.py",
     "scene/masonry.py",
-    "scene/rest_in_space.py",
+    "scene/rest.py",
     "result/history.py",
     "reference/equations.py",
 )
@@ -58,8 +57,7 @@ OWN = {
     "geometry/vectors.py": ("frames", "kinematics"),
     "scene/dampers.py": ("damper",),
     "scene/masonry.py": ("masonry_statics", "masonry_effects", "masonry_motion"),
-    "scene/equilibrium.py": ("potential", "masonry_statics", "masonry_effects"),
-    "scene/rest_in_space.py": ("rest_in_space", "scene_in_space"),
+    "scene/rest.py": ("potential", "masonry_statics", "masonry_effects", "rest_in_space", "scene_in_space"),
     "scene/potential.py": ("potential", "kinematics", "masonry_statics", "scene_in_space"),
     "scene/masses.py": ("scene_in_space",),
     "geometry/poses.py": ("scene_in_space",),

@@ -47,6 +47,15 @@ def course(scene, velocity=None, duration=1.0, motion=None, *, pose=None, vertic
     return Course(pose, velocity, duration, motion, vertical)
 
 
+def unbalanced(scene):
+    """Forces that are missing at rest, with those of friction, shape (n nv,), and friction over its limit [N]."""
+    potential, (pose, drag) = scene.potential, scene.found
+    pose = pose.ravel()
+    held = sum(rates.T @ along for rates, along in zip(potential.slip_rates(pose), drag.T, strict=True))
+    limit = scene.contacts.friction * scene.contacts.k * scene.bears
+    return held - potential.gradient(pose), np.linalg.norm(drag, axis=1) - limit
+
+
 def two_blocks(k_n=5e8, friction=0.7, xi=0.049, *, width=0.6, height=2.1):
     """Two equal blocks one on the other, 1 m long, of 2000 kg/m3, with two lines a joint.
 

@@ -6,26 +6,20 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.sparse.linalg import lsmr
 
 from ..geometry.vectors import tangents
-from ..problem.masonry.joint_law import resting, shear_limit
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..problem.wall.effect import LinkLaw
-from ..quantities import GRAVITY, Array
+from ..quantities import Array
 from ..scene.ground import Ground
 from ..scene.parts import Links
 from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
-from .limit import line_rates, ways_of
 from .rows import Rows, joined, kinds, rows
 from .system import Supports, System
 from .turning import start_turning
-
-ENOUGH = 1e-9
-"""Tolerance of the search for the friction at rest, relative [-]."""
 
 
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
@@ -140,28 +134,6 @@ def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
     tables = ("bodies", "lines", "edges", "ways", "ties", "dampers", "forces")
     return system._replace(**{name: getattr(system, name).copy() for name in tables})
-
-
-def friction_at_rest(system: System, pose: Array) -> Array:
-    """The friction that carries masonry of the plane at a pose of rest, the smallest forces that do [N], shape (m, 1).
-
-    A structure such as an arch needs friction to stand. Without it, its shear springs would first have to give way.
-    """
-    bodies, lines = system.bodies, system.lines
-    normal, along = (line_rates(lines, way, len(bodies)) for way in ways_of(lines))
-    push, _ = resting(np.ascontiguousarray(lines["k"]), normal @ pose.ravel())
-    force = normal.T @ push
-    force[1::3] -= GRAVITY * bodies["mass"]
-    for row in system.forces:
-        place = 3 * int(row["body"])
-        force[place : place + 2] += row["between"]
-        force[place + 2] += row["at"][1] * row["between"][0] - row["at"][0] * row["between"][1]
-    limit, drag = shear_limit(lines, push), np.zeros((len(lines), 1))
-    rubs = limit > 0
-    if rubs.any():
-        needed = lsmr(along[rubs].T, -force, atol=ENOUGH, btol=ENOUGH, maxiter=5000)[0]
-        drag[rubs, 0] = np.clip(needed, -limit[rubs], limit[rubs])
-    return drag
 
 
 def take_grips(lines: Rows, drag: Array) -> None:

@@ -12,22 +12,14 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
-from ..quantities import ON_ITS_FACE, Array
+from ..quantities import ON_ITS_FACE
 from ..result.response import State
 from ..scene.course import Course
-from ..scene.equilibrium import UnsettledError
 from ..scene.explicit_step import SHARE
-from ..scene.masonry import (
-    drawn_masonry,
-    masonry_course,
-    require_carried,
-    require_standing,
-    standing_masonry,
-    unsettled,
-)
+from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
-from .assembly import copied, friction_at_rest, moved_by, started, system_of, take_grips
+from .assembly import copied, moved_by, started, system_of, take_grips
 from .encounters import Encounters
 from .limit import longest_step
 from .memory import Memory, memory_of, recalled
@@ -122,25 +114,10 @@ def standing(
         drawn = drawn_masonry(masonry, effects)
         system = system_of(drawn, masonry)
         return drawn, system, Encounters(masonry, system, drawn.contacts.joint)
-    if not masonry.in_space:
-        require_standing(masonry, effects)
+    require_standing(masonry, effects)
     scene = standing_masonry(masonry, effects)
     system = system_of(scene, masonry)
-    pose, drag = rest_in_space(scene, masonry, effects) if masonry.in_space else rest_in_plane(scene, system)
+    pose, drag = scene.found
     take_grips(system.lines, drag)
     started(system, pose)
     return scene, system, Encounters(masonry, system, scene.contacts.joint)
-
-
-def rest_in_plane(scene: Scene, system: System) -> tuple[Array, Array]:
-    """The pose of rest of masonry in the plane, and the friction that holds it there."""
-    return scene.at_rest, friction_at_rest(system, scene.at_rest)
-
-
-def rest_in_space(scene: Scene, masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array]:
-    """The pose of rest of masonry in space, and the friction that holds it there."""
-    try:
-        return scene.rest_in_space
-    except UnsettledError as error:
-        require_carried(masonry, effects)
-        raise unsettled(masonry, error.pose) from None

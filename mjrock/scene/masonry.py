@@ -20,8 +20,8 @@ from ..quantities import Array, Integers, named, require_kind
 from .attachments import attachments
 from .checks import GROUND
 from .course import Course
-from .equilibrium import UnsettledError
 from .parts import Bodies, ContactPoints, Limits
+from .rest import UnsettledError
 from .scene import Scene
 
 GONE = 0.1
@@ -56,10 +56,10 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
 
     What only ties keep from falling is left to the search for equilibrium.
     """
-    require_carried(masonry, effects)
     try:
         _ = standing_masonry(masonry, effects).at_rest
     except UnsettledError as error:
+        require_carried(masonry, effects)
         raise unsettled(masonry, error.pose) from None
 
 

@@ -81,9 +81,9 @@ class Potential:
         return tuple(entries(values, bodies, len(masses)) for values in rates)
 
     def slips(self, pose: Array) -> Array:
-        """How far each point of space has moved along its face from rest, see `slip_rates` [m], shape (m, 2)."""
+        """How far each point has moved along its face from rest, see `slip_rates` [m], shape (m, ways)."""
         places = self.structure.places
-        slips = np.empty((len(places.body), 2))
+        slips = np.empty((len(places.body), places.freedom.translations - 1))
         _slips(places, frames_of(pose, places.freedom), slips)
         return slips
 
@@ -218,11 +218,12 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
         axes, body, face = places.axes, places.body[i], places.face_body[i]
         at = vector(places.at, i, axes)
         apart = displaced(place(frames, body, axes), frames, body, at)
-        first, second = ways_along(places, i, frames, axes)
+        ways = ways_along(places, i, frames, axes)
         if face >= 0:
             at = plus(vector(places.face_at, i, axes), vector(places.between, i, axes))
             apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
-        slips[i, 0], slips[i, 1] = dot(first, apart), dot(second, apart)
+        for way in range(len(ways)):
+            slips[i, way] = dot(ways[way], apart)
 
 
 @compiled

@@ -18,18 +18,17 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry.frames import SPACE, Freedom, frames_of
+from ..geometry.frames import Freedom, frames_of
 from ..geometry.kinematics import Forces, Places, Ties, gaps
 from ..geometry.links import ends
 from ..quantities import Array, Integers, frozen
 from .checks import require_on
 from .dampers import Dampers
-from .equilibrium import lowered, settled
 from .frequencies import highest_frequency, rocking_frequency, tie_frequency
 from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, Limits, Links
 from .potential import Potential
-from .rest_in_space import settled_in_space
+from .rest import lowered, settled
 from .structure import Structure, energies
 
 RADIUS = 1e-6
@@ -141,14 +140,12 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, nq)."""
-        if self.settled is not None:
-            return self.settled
-        return self.rest_in_space[0] if self.freedom == SPACE else settled(self.potential, self.contacts.friction)
+        return self.found[0] if self.settled is None else self.settled
 
     @cached_property
-    def rest_in_space(self) -> tuple[Array, Array]:
-        """Pose of bodies of space at rest, shape (n, 7), and the friction that holds them there, shape (m, 2) [N]."""
-        return settled_in_space(self.potential, self.contacts.friction)
+    def found(self) -> tuple[Array, Array]:
+        """The pose of rest that was searched for, and the friction that holds the bodies there, see `rest.settled`."""
+        return settled(self.potential, self.contacts)
 
     @cached_property
     def bears(self) -> Array:

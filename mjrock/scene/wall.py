@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,6 +17,7 @@ from .attachments import attachments
 from .checks import GROUND
 from .course import Course
 from .parts import Bodies, ContactPoints
+from .rest import held
 from .scene import Scene
 
 
@@ -108,7 +110,7 @@ def standing_wall(
 
     links, forces = attachments(effects, np.zeros(1, dtype=np.int64), place, centroid[None])
     even = wall.centroid_offset == 0 and not (links.bearing.names or forces.names)
-    return Scene(
+    scene = Scene(
         Bodies(
             ("wall",), np.array([wall.mass]), np.array([wall.inertia]), centroid[None], (wall.outline,), wall.length
         ),
@@ -131,6 +133,10 @@ def standing_wall(
         title=_title(wall, stop_top),
         facts=facts,
     )
+    if even:
+        return scene
+    on_base = replace(scene.contacts, friction=np.where(scene.contacts.joint == 0, friction, 0.0))
+    return replace(scene, settled=held(scene.potential, on_base))
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

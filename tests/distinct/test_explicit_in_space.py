@@ -164,7 +164,9 @@ def test_the_plane_inside_space_a_block_slides_over_an_edge_and_a_support_moves(
     run, spatial = both(plane, 0.9, supports=moved, motion=steady(-5.0, 1.0))
     assert run.pose[-1, 0, 0] > 0.5
     assert abs(run.theta[-1, 0]) > 0.05  # it turns over the edge
-    assert dict(spatial.fallen) == pytest.approx(dict(run.fallen), abs=0.01)  # prisms are larger and looked at otherwise
+    assert dict(spatial.fallen) == pytest.approx(
+        dict(run.fallen), abs=0.01
+    )  # prisms are larger and looked at otherwise
     assert list(run.fallen) == ["block_1"]
     count = int(0.6 / 1e-3)
     np.testing.assert_allclose(angles(spatial)[:count], run.theta[:count], atol=1e-9)

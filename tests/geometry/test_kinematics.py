@@ -12,9 +12,9 @@ from mjrock.geometry.frames import PLANE, frames_of, swung
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
-from mjrock.scene.equilibrium import settled
 from mjrock.scene.of_case import course_of, scene_of
 from mjrock.scene.parts import Links
+from mjrock.scene.rest import settled
 from scripts.shared.paper import K_N
 
 
@@ -242,7 +242,7 @@ def test_the_highest_frequency_is_the_closed_form(wall, contacts, side_stop):
 
 def test_a_scene_settles_under_its_weight(wall, contacts):
     scene = mr.wall_scene(mr.Case(wall, 0.0, 1.0), contacts)
-    np.testing.assert_allclose(settled(scene.potential, scene.contacts.friction), scene.at_rest, atol=1e-15)
+    np.testing.assert_allclose(settled(scene.potential, scene.contacts)[0], scene.at_rest, atol=1e-15)
     np.testing.assert_allclose(scene.bears, wall.weight / scene.contacts.k[:2].sum() * np.array([1, 1, 0, 0]))
     blocks = two_blocks()
     force = -blocks.contacts.k * np.minimum(gaps(blocks.places, blocks.at_rest.reshape(1, -1))[0], 0)

@@ -172,3 +172,12 @@ def test_links_by_what_they_have():
     assert links.bearing.names == ("spring", "both")
     assert links.damped.names == ("both", "dashpot", "neither")
     np.testing.assert_array_equal(links.damped.c, [50.0, 50.0, 0.0])
+
+
+def test_a_wall_beside_a_stop_with_friction_rests_on_its_base(wall):
+    """Its base holds it, and a side that it has left does not: it turns about the middle of its base."""
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.05, side_friction=0.4)
+    scene = wall_scene(mr.Case(wall, 0.0, 1.0, effects=(mr.AddedMass(500.0, 4.0, 0.1),)), contacts)
+    x, _, theta = scene.at_rest[0]
+    assert theta > 1e-5
+    assert x == pytest.approx(math.sin(theta) * scene.bodies.rest[0, 1], abs=1e-8)

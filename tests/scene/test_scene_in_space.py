@@ -16,7 +16,7 @@ from mjrock.geometry.poses import angles, at_rest, coordinate_rates, from_rates,
 from mjrock.quantities import GRAVITY
 from mjrock.scene.masses import coupling, products_of
 from mjrock.scene.parts import ConstantForces, Links
-from mjrock.scene.rest_in_space import settled_in_space
+from mjrock.scene.rest import settled
 
 SKEW = Rotation.from_euler("xyz", (0.4, -0.3, 0.7)).as_matrix()
 
@@ -135,7 +135,7 @@ class TestPotential:
 class TestRest:
     def test_friction_within_its_cones_holds_what_springs_do_not(self):
         scene = pulled()
-        pose, drag = settled_in_space(scene.potential, scene.contacts.friction)
+        pose, drag = settled(scene.potential, scene.contacts)
         left = scene.potential.gradient(pose.ravel())
         assert np.linalg.norm(left) > 100.0
         held = sum(
