@@ -198,7 +198,7 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
         least = best - SOUGHT * min(extent(solids, face), extent(solids, other_face))
         face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
-        if dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:
+        if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:
             way, across = across_edges(solids, a, b)
             if across > EDGES * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count

@@ -1,0 +1,143 @@
+"""Blocks that have left their joints meet others wherever they are: overlap, momentum and who stands on whom."""
+
+import numpy as np
+import pytest
+from everyday import among
+from masonry_blocks import GROUND, box
+
+import mjrock as mr
+from mjrock.distinct.finder import Finder
+from mjrock.distinct.handover import Poses
+
+BOX = mr.Polyhedron.box
+STILL = (0,) * 6
+
+
+def found(blocks, moved, turn):
+    """Places of two blocks in space, the second displaced [m] and turned by a quaternion."""
+    drawn = np.array([block.centroid for block in blocks])
+    w, x, y, z = turn
+    matrix = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    poses = Poses(
+        drawn,
+        np.array([(0.0, 0.0, 0.0), moved]),
+        np.array([(1.0, 0, 0, 0), turn]),
+        np.array([0 * np.eye(3), matrix - np.eye(3)]),
+    )
+    return Finder(blocks, drawn).found(poses, np.full(2, 5e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
+
+
+def about(axis, angle):
+    return (np.cos(angle / 2), *(np.sin(angle / 2) * np.eye(3)[axis]))
+
+
+CUBES = BOX((0.2, 0.2, 0.2), (0, 0, 0.1)), BOX((0.2, 0.2, 0.2), (0, 0, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("moved", "turn", "places"),
+    [((0, 0, 0), about(2, 0.1), 8), ((0.013, 0.023, 0), about(2, 0.0), 4), ((0.013, 0.023, 0), about(2, 0.1), 4)],
+)
+@pytest.mark.parametrize("gap", [-1e-4, 1e-3])
+def test_faces_that_lie_on_each_other(moved, turn, places, gap):
+    """The octagon of two squares that are turned, and the rectangle of two that are displaced."""
+    meeting = found(CUBES, np.add(moved, (0, 0, gap)), turn)
+    assert len(meeting.gap) == places
+    np.testing.assert_allclose(meeting.gap, gap, atol=1e-12)
+    np.testing.assert_allclose(np.abs(meeting.normal), [[0, 0, 1]] * places, atol=1e-12)
+    assert meeting.share.sum() == pytest.approx(1.0)
+    np.testing.assert_allclose(meeting.place[:, 2], 0.2 + 0.5 * gap, atol=1e-12)
+
+
+def test_beams_whose_edges_cross_meet_in_one_place():
+    beams = BOX((2, 0.2, 0.2)), BOX((0.2, 2, 0.2), (0, 0, 0.2))
+    along, across = about(0, np.pi / 4), about(1, np.pi / 4)
+    first = mr.Polyhedron(
+        [(x, *(0.1 * np.sqrt(2) * np.array(c))) for x in (-1, 1) for c in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+    )
+    meeting = found((first, beams[1]), (0, 0, 0.2 * np.sqrt(2) - 0.2 - 1e-3), across)
+    assert along[0] == across[0]
+    assert len(meeting.gap) == 1
+    np.testing.assert_allclose(meeting.gap, -1e-3, atol=1e-12)
+    np.testing.assert_allclose(meeting.place, [[0, 0, 0.1 * np.sqrt(2) - 5e-4]], atol=1e-9)
+    np.testing.assert_allclose(np.abs(meeting.normal), [[0, 0, 1]], atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", among(range(40), 0, 17, 33))
+def test_a_drum_that_hops_lands_on_the_drum_or_beside_it(seed):
+    """With any yaw, spin and offset. Beyond the width of the joint it used to fall through the drum."""
+    rng = np.random.default_rng(seed)
+    column = mr.Masonry.column(0.2, 0.4, 2, k_n=1e9, friction=0.6, xi=0.3)
+    thrown = (*rng.uniform(-0.09, 0.09, 2), rng.uniform(1.9, 2.8), *rng.uniform(-0.2, 0.2, 2), rng.uniform(-0.6, 0.6))
+    run = mr.solve_explicit(mr.MasonryCase(column, 1.6, velocity=[STILL, thrown]), ledger=True, output_step=2e-3)
+    assert run.stats["overlap"] < 0.01
+    assert np.abs(run.energy_residual).max() < 1e-3 * run.ledger.kinetic.max()
+    assert min(run.ledger.ends["encounters"].min(), 0.0) > -0.01 * run.ledger.kinetic.max()
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_neighbours_with_a_gap_meet_and_keep_their_momentum(in_space):
+    """Two blocks, 2 mm apart, on smooth ground, one of which moves."""
+    blocks = [GROUND, box(-1.001, -0.001, 0, 1), box(0.001, 1.001, 0, 1)]
+    speed = np.array([[2.0, 0, 0], [0.0, 0, 0]])
+    if in_space:
+        blocks, speed = [mr.Polyhedron.prism(block) for block in blocks], np.pad(speed, ((0, 0), (0, 3)))
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.0, xi=0.05)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.3, velocity=speed))
+    assert run.stats["overlap"] < 0.01
+    np.testing.assert_allclose(run.velocity[:, :, 0].sum(axis=1), 2.0, rtol=1e-12)
+    assert run.velocity[-1, 1, 0] > 1.5
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_cap_that_hops_lands_on_its_fixed_pier(in_space):
+    blocks = [GROUND, box(-0.25, 0.25, 0, 1, fixed=True, name="pier"), box(-0.6, 0.6, 1, 1.2, name="cap")]
+    velocity = (0, np.sqrt(2 * mr.GRAVITY * 0.6), 0)
+    if in_space:
+        blocks, velocity = [mr.Polyhedron.prism(block) for block in blocks], (0, 0, velocity[1], 0, 0, 0)
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.6, xi=0.3)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 2.0, velocity=[velocity]))
+    assert run.pose[:, 0, 2 if in_space else 1].max() == pytest.approx(0.6, rel=0.05)
+    assert run.pose[-1, 0, 2 if in_space else 1] == pytest.approx(0.0, abs=1e-3)
+    assert run.stats["overlap"] < 0.01
+    assert not run.fallen
+
+
+def test_a_beam_that_is_thrown_over_a_sill_stays_above_it():
+    """Its edges cross those of the sill, and no corner of either lies in the other."""
+    sill, pier = BOX((0.2, 3, 1.0), (0.8, 0, 0.5), fixed=True), BOX((0.2, 0.2, 1.0), (-0.6, 0, 0.5), fixed=True)
+    ground, beam = (
+        BOX((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground"),
+        BOX((1.8, 0.1, 0.1), (-0.6, 0, 1.05), name="beam"),
+    )
+    masonry = mr.Masonry([ground, sill, pier, beam], k_n=1e9, friction=0.5, xi=0.3)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 1.2, velocity=[(0.8, 0, 1.5, 0.3, 0.2, 0.4)]), output_step=2e-3)
+    assert run.stats["overlap"] < 0.01
+
+
+@pytest.mark.parametrize("step", [1.5, 10.0])
+@pytest.mark.parametrize(("beyond", "falls"), [(-0.02, False), (0.02, True)])
+def test_a_block_tips_where_its_weight_passes_the_edge_of_any_step(step, beyond, falls):
+    """It slides by friction alone, half its width and 20 mm less or more."""
+    blocks = [GROUND, mr.Polygon([(-step, 0), (0, 0), (0, 1), (-step, 1)], fixed=True), box(-1.0, 0.0, 1, 1.5)]
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.2, xi=0.2)
+    speed = np.sqrt(2 * 0.2 * mr.GRAVITY * (0.5 + beyond))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 3.0, velocity=[(speed, 0, 0)]), output_step=5e-3)
+    assert bool(run.fallen) == falls
+
+
+def test_a_heap_comes_to_rest():
+    """Blocks thrown on each other lie still: kinetic energy falls to rounding, and nothing creeps."""
+    blocks = [GROUND, *(box(-0.2 + 0.03 * i, 0.2 + 0.03 * i, 0.3 * i, 0.3 + 0.3 * i) for i in range(4))]
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.6, xi=0.3)
+    velocity = [(0.0, 0, 0), (0.5, 1.0, 0.5), (-0.5, 2.0, -1.0), (1.0, 3.0, 2.0)]
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 8.0, velocity=velocity), ledger=True, output_step=0.01)
+    assert run.stats["overlap"] < 0.01
+    assert run.ledger.kinetic[-1] < 1e-9
+    assert np.abs(run.pose[-1] - run.pose[600]).max() < 1e-5
