@@ -2,8 +2,8 @@
 
 Two blocks are apart by what the best of all directions parts them by: a normal of a face, or one across an edge of
 each (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). Where that is a face the places come from `clipping`, and
-where it is two edges there is one place. MuJoCo finds such contacts too, but of two faces that are nearly flush it gives
-four places at most, and not always the deepest. The finder decides neither the law of a contact nor the motion.
+where it is two edges there is one place. MuJoCo finds such contacts too, but of two faces that are nearly flush it
+gives four places at most, and not always the deepest. The finder decides neither the law of a contact nor the motion.
 """
 
 from __future__ import annotations
