@@ -113,6 +113,16 @@ def parted(polygon: Array, count: int) -> int:
     return left
 
 
+@jitable
+def area_of(polygon: Array, count: int) -> float:
+    """Area of a polygon [m2]."""
+    first, area = vector(polygon, 0, SPACE.axes), 0.0
+    for i in range(1, count - 1):
+        one, next_one = vector(polygon, i, SPACE.axes), vector(polygon, i + 1, SPACE.axes)
+        area += 0.5 * length_of(spun(minus(one, first), minus(next_one, first)))
+    return area
+
+
 @inlined
 def distance_from(at: Vector, a: Vector, along: Vector) -> float:
     """Distance of a place from the line through another one [m]."""
@@ -181,7 +191,8 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
     Args:
         solids: the blocks where they are.
         face, blocks: the face, its block, and the other one.
-        table: places, a row each: block of the face, other block, place, normal out of the face, gap [m] and share.
+        table: places, a row each: block of the face, other block, place, normal out of the face, gap [m], share, and the
+            area of the part [m2].
         count: how many places there are.
         room: for the corners of two faces, twice.
     """
@@ -189,6 +200,7 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
     corners = parted(room, lying_over(solids, faces[0], faces[1], room))
     if corners < 3:
         return count
+    area = area_of(room, corners)
     for i in range(corners):
         at = vector(room, i, SPACE.axes)
         before = minus(at, vector(room, i - 1 if i else corners - 1, SPACE.axes))
@@ -197,6 +209,6 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
         if share > SAME:
             if count < len(table):
                 meet(solids, faces, blocks, at, table, count)
-                table[count, 9] = share
+                table[count, 9], table[count, 10] = share, area
             count += 1
     return count

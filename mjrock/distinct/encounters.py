@@ -242,7 +242,7 @@ class Encounters:
             between=self.drawn[block] + at - rest - origin,
             normal=np.where((held & ~point)[:, None], normal, poses.turned_back(np.where(point, block, face), normal)),
             margin=np.inf,
-            **self.law.of_places(pair, found.share, self.count),
+            **self.law.of_places(pair, found.share, found.area, self.count),
         )
         return np.asarray(lines)
 

@@ -49,6 +49,7 @@ class Found(NamedTuple):
         normal: unit vector out of the face, shape (n, d).
         gap: between the surfaces, negative for an overlap [m], shape (n,).
         share: of what the pair has, shape (n,).
+        area: of the part of a face that lies over the other [m2], in the plane its length [m], zero for edges, (n,).
     """
 
     face: Integers
@@ -57,6 +58,7 @@ class Found(NamedTuple):
     normal: Array
     gap: Array
     share: Array
+    area: Array
 
     def only(self, which: Flags | Integers) -> Found:
         """Some of the places."""
@@ -100,7 +102,7 @@ class Finder:
         centroids = np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn
         self.solids = Solids.about(solids_of(blocks, self._half), centroids)
         most = int(np.diff(self.solids.first).max())
-        self._table, self._room = np.empty((256, 10)), np.empty((4 * most + 4, 3))
+        self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 3))
 
     def found(self, poses: Poses, reach: Array, watched: Flags, skipped: Integers) -> Found:
         """Where pairs of blocks of which one is watched are nearer than the sum of what they reach.
@@ -117,10 +119,10 @@ class Finder:
         axis = int(np.ptp(low, axis=0).argmax())
         near = Near(low, high, np.argsort(low[:, axis]), axis, reach, watched, self._fixed, skipped)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
-            self._table = np.empty((2 * count, 10))
+            self._table = np.empty((2 * count, 11))
         table = self._table[:count]
         face, other = table[:, :2].astype(np.int64).T
-        found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9)))
+        found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9, 10)))
         return self._of_the_plane(found) if self.flat else found
 
     def posed(self, poses: Poses) -> Solids:
@@ -135,7 +137,9 @@ class Finder:
         """The places at one end of the prisms."""
         kept = found.only(found.place[:, 1] > 0.5 * self._half)
         normal = kept.normal[:, ::2] / np.hypot(*kept.normal[:, ::2].T)[:, None]
-        return kept._replace(place=kept.place[:, ::2], normal=normal, share=2 * kept.share)
+        return kept._replace(
+            place=kept.place[:, ::2], normal=normal, share=2 * kept.share, area=kept.area / (2 * self._half)
+        )
 
 
 @jitable
@@ -320,5 +324,5 @@ def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: f
         other, way = edge_towards(solids, blocks[1], scaled(-1.0, normal))
         share = dot(spun(minus(start, other), along), normal) / dot(spun(way, along), normal)
         write_place(table, count, blocks, plus(other, scaled(share, way)), normal, apart)
-        table[count, 9] = OF_EDGES
+        table[count, 9], table[count, 10] = OF_EDGES, 0.0
     return count + 1

@@ -2,7 +2,8 @@
 
 Two blocks that had a joint keep its stiffness, dashpot and friction, shared among the places where they touch. Two that
 had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more, since a
-block of a wall has joints on two sides.
+block of a wall has joints on two sides. Where faces lie over each other by less than a tenth of the area of such a
+joint, the pair has less in proportion. So blocks that only touch along their edges bear nothing.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from .rows import Rows
 
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
+WHOLE = 0.1
+"""Part of the area of a joint over which two faces have all that a pair has [-]."""
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -37,7 +40,8 @@ class PairLaw(NamedTuple):
 
     Args:
         jointed: numbers of the pairs that have a joint, increasing, shape (p,).
-        of_pair: columns of `SHARED` of these pairs, shape (p, 4), and their friction, shape (p,).
+        of_pair: columns of `SHARED` and area [m2], in the plane length [m], of these pairs, shape (p, 5), and their
+            friction, shape (p,).
         of_block: likewise of each block as a pair without a joint takes it.
     """
 
@@ -50,7 +54,9 @@ class PairLaw(NamedTuple):
         """The law of masonry, from the lines of its joints and the number of the joint of each."""
         blocks, joints = len(masonry.blocks), len(masonry.joints)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
-        sums, friction = np.column_stack([_sums(joint, lines[name], joints) for name in SHARED]), np.zeros(joints)
+        areas = np.array([getattr(each, "area", each.width) for each in masonry.joints])
+        sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
+        friction = np.zeros(joints)
         friction[joint] = lines["friction"]
         jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
         in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
@@ -58,15 +64,17 @@ class PairLaw(NamedTuple):
         np.minimum.at(least, of, friction)
         return cls(jointed, (in_pairs, least), _of_blocks(np.append(below, above), sums, friction, blocks))
 
-    def of_places(self, pair: Integers, share: Array, blocks: int) -> dict[str, Array]:
-        """Columns of lines at places of pairs, from the share that each place has of its pair, shape (n,)."""
+    def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
+        """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
+        face that lies over the other [m2], zero for edges, shape (n,) each."""
         first, second = np.divmod(pair, blocks)
         softer = np.where(self.of_block[0][first, 0] <= self.of_block[0][second, 0], first, second)
         shared, friction = self.of_block[0][softer], np.minimum(self.of_block[1][first], self.of_block[1][second])
         had = are_among(pair, self.jointed)
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
-        return {**dict(zip(SHARED, share * shared.T, strict=True)), "friction": friction}
+        share = share * np.where(area > 0, np.minimum(area / (WHOLE * shared[:, -1]), 1.0), 1.0)
+        return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
 
 
 def _sums(of: Integers, values: Array, count: int) -> Array:
