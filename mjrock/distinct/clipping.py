@@ -191,8 +191,8 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
     Args:
         solids: the blocks where they are.
         face, blocks: the face, its block, and the other one.
-        table: places, a row each: block of the face, other block, place, normal out of the face, gap [m], share, and the
-            area of the part [m2].
+        table: places, a row each: block of the face, other block, place, normal out of the face, gap [m], share, and
+            the area of the part [m2].
         count: how many places there are.
         room: for the corners of two faces, twice.
     """

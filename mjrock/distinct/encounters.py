@@ -197,9 +197,11 @@ class Encounters:
         before, gone = held(system, of_gone), lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
         gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])
-        slack = self._slack(found, number, old, gone_slack)
-        new = self._lines(found, number, slack, poses)
-        take_over(new, places_of(new, number, poses, self.free), gone, old, poses)
+        law = self.law.of_places(number, found.share, found.area, self.count)
+        slack = self._slack(found, number, old, gone_slack, gone["k"], law["k"])
+        new = self._lines(found, law, slack, poses)
+        pressed = np.maximum(-found.gap - slack, 0.0)
+        take_over(new, places_of(new, number, poses, self.free), pressed, gone, old, poses)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], slack)
@@ -216,7 +218,7 @@ class Encounters:
         """Moves of both blocks of pairs."""
         return np.asarray(self.met.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
-    def _lines(self, found: Found, pair: Integers, slack: Array, poses: Poses) -> Rows:
+    def _lines(self, found: Found, law: dict[str, Array], slack: Array, poses: Poses) -> Rows:
         """New lines at places that were found."""
         face, normal, block = found.face, found.normal, found.other
         point = self.body[block] < 0
@@ -232,7 +234,7 @@ class Encounters:
         rest = np.where(held[:, None], 0.0, self.drawn[face])
         lines = rows(
             self.kind,
-            len(pair),
+            len(found.gap),
             body=self.body[block],
             face=np.where(point, POINT, self.body[face]),
             support=self.support[face],
@@ -242,19 +244,23 @@ class Encounters:
             between=self.drawn[block] + at - rest - origin,
             normal=np.where((held & ~point)[:, None], normal, poses.turned_back(np.where(point, block, face), normal)),
             margin=np.inf,
-            **self.law.of_places(pair, found.share, found.area, self.count),
+            **law,
         )
         return np.asarray(lines)
 
-    def _slack(self, found: Found, pair: Integers, old: Places, slack: Array) -> Array:
+    def _slack(
+        self, found: Found, pair: Integers, old: Places, slack: Array, stiffness: Array, stiffer: Array
+    ) -> Array:
         """What presses nothing of the overlap of each place [m], shape (n,).
 
         It is the overlap of a place that no line was near, as long as it has it. So what a look has missed, or what
-        touched at rest without a joint, puts no energy in.
+        touched at rest without a joint, puts no energy in. Where a place is stiffer than the line before it, it starts
+        with the same force.
 
         Args:
             found, pair: the places, and the numbers of their pairs, shape (n,).
             old, slack: lines that are gone, where they are, and what presses nothing of their overlap [m].
+            stiffness, stiffer: of the lines that are gone, and of the places [N/m].
         """
         overlap = np.maximum(-found.gap, 0.0)
         pairs, order, first = in_pairs(old.pair)
@@ -266,7 +272,9 @@ class Encounters:
         beside = np.linalg.norm(old.at[there] - found.place[known], axis=1) < BESIDE * size
         sense = np.where(found.other[known] > found.face[known], 1.0, -1.0)[:, None]
         beside &= np.sum(sense * found.normal[known] * (old.sense * old.normal)[there], axis=1) > ALIKE
-        overlap[known[beside]] = np.minimum(overlap[known[beside]], slack[there[beside]])
+        known, there = known[beside], there[beside]
+        pressed = overlap[known] - np.minimum(overlap[known], slack[there])
+        overlap[known] -= pressed * np.minimum(stiffness[there] / np.maximum(stiffer[known], 1e-300), 1.0)
         return overlap
 
 

@@ -92,13 +92,14 @@ def in_pairs(pair: Integers) -> tuple[Integers, Integers, Integers]:
     return pairs, order, np.append(first, len(order))
 
 
-def take_over(lines: Rows, new: Places, gone: Rows, old: Places, poses: Poses) -> None:
+def take_over(lines: Rows, new: Places, overlap: Array, gone: Rows, old: Places, poses: Poses) -> None:
     """Let lines take over the friction, and the push of the last step, of those of their pair that are gone.
 
     Each line that is gone gives all that it has to the nearest one, so that the forces of a pair stay.
 
     Args:
         lines, new: the lines, and where they are.
+        overlap: what presses of each line [m], shape (n,). Springs along the face hold no more than friction allows.
         gone, old: those that are gone, and where they are.
         poses: of all blocks.
     """
@@ -120,6 +121,10 @@ def take_over(lines: Rows, new: Places, gone: Rows, old: Places, poses: Poses) -
             sprung = np.isfinite(lines["k_s"][target])
             along[sprung] *= (gone["k_s"][source][sprung] / lines["k_s"][target][sprung])[:, None]
         np.add.at(lines[name], target, along)
+    sprung = np.flatnonzero(np.isfinite(lines["k_s"]))
+    most = lines["friction"][sprung] * lines["k"][sprung] * overlap[sprung] / lines["k_s"][sprung]
+    stretch = np.linalg.norm(lines["grip"][sprung], axis=1)
+    lines["grip"][sprung] *= np.minimum(most / np.maximum(stretch, 1e-300), 1.0)[:, None]
 
 
 def _some(places: Places, which: Integers) -> Places:

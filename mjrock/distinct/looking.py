@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compiled import compiled, jitable
 from ..geometry.vectors import components, dot, minus, plus, spin_components, vector
-from ..problem.masonry.joint_law import stored, stored_along
+from ..problem.masonry.joint_law import stored
 from ..quantities import Array, Flags, Integers
 from .contact import meeting
 from .rows import Rows
@@ -99,7 +99,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
 
 @compiled
 def held(system: System, which: Flags) -> float:
-    """Energy in the springs of some of the lines [J], shape of the answers (lines,)."""
+    """Energy in the springs along the normal of some of the lines [J]. What shear springs lose, friction takes."""
     return held_by_lines(system, which, system.axes)
 
 
@@ -111,9 +111,6 @@ def held_by_lines(system: System, which: Flags, axes: tuple[int, ...]) -> float:
         if which[p]:
             line = system.lines[p]
             energy += stored(line, meeting(system, line, axes).gap)
-            if line.k_s < math.inf:
-                grip = spin_components(line.grip, axes)
-                energy += stored_along(line, dot(grip, grip))
     return energy
 
 
