@@ -5,8 +5,8 @@ face a spring with a slider acts, or the line sticks rigidly, see `friction`.
 
 A line beyond the outline of its face has moved past an end of it. The nearest place of the outline then presses on the
 face of the block that carries the line, and past the outline of that face too nothing is left of the contact. Nor is
-anything left of it once the two faces are turned away from each other. A line of a
-place that was found where blocks are has no end.
+anything left of it once the two faces are turned away from each other. A line of a place that was found where blocks
+are has no end.
 """
 
 from __future__ import annotations
@@ -42,8 +42,6 @@ OPEN = 1.0
 """Gap of a line that has left its face [m]."""
 TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
-
-
 PASSES = 3
 """Passes over the lines that touched in a step, which change the rates of each other."""
 

@@ -9,11 +9,9 @@ import numpy as np
 from ..compiled import inlined, jitable
 from ..geometry.vectors import Vector, components, dot, minus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints
-from ..problem.masonry.joints_in_space import Face, faces_of
+from ..problem.masonry.joints_in_space import Face
 from ..problem.masonry.lines import edge_ends
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.polygon import Polygon
-from ..problem.masonry.polyhedron import Polyhedron
 from ..quantities import Array
 from .rows import Rows, kinds, rows
 
@@ -32,17 +30,6 @@ class Outline(NamedTuple):
     corners: Array
     normal: Array
     ways: Array
-
-
-def outlines_of(block: Polygon | Polyhedron) -> list[Outline]:
-    """The faces of a block, which are the edges of a polygon."""
-    if isinstance(block, Polyhedron):
-        return [_polygonal(face) for face in faces_of(block)]
-    ends = np.stack([block.corners, np.roll(block.corners, -1, axis=0)], axis=1)
-    ways = ends[:, 1] - ends[:, 0]
-    ways /= np.hypot(*ways.T)[:, None]
-    normals = np.column_stack([ways[:, 1], -ways[:, 0]])
-    return [Outline(*face) for face in zip(ends, normals, np.stack([-ways, ways], axis=1), strict=True)]
 
 
 def outlines_of_joints(masonry: Masonry) -> list[tuple[Outline, Outline]]:
@@ -65,15 +52,13 @@ def _polygonal(face: Face) -> Outline:
     return Outline(face.corners, face.normal, ways / np.linalg.norm(ways, axis=1)[:, None])
 
 
-def edges_of(face: Outline, origin: Array, met: Outline | None = None) -> Rows:
+def edges_of(face: Outline, origin: Array, met: Outline) -> Rows:
     """The edges of a face, which is taken to be longer by `OVERHANG` at either end, from a point of its block [m].
 
     A joint is made by this face and another that is `met`.
     """
     places = (face.corners - origin) @ face.ways.T  # (corners, edges)
-    extent = np.ptp(places, axis=0)
-    if met is not None:
-        extent = np.minimum(extent, np.ptp(met.corners @ face.ways.T, axis=0))
+    extent = np.minimum(np.ptp(places, axis=0), np.ptp(met.corners @ face.ways.T, axis=0))
     reach, band = places.max(axis=0) + OVERHANG * extent, OVERHANG * (1 + 2 * OVERHANG) * extent
     edge = kinds(len(origin)).edge
     return rows(edge, len(face.ways), way=face.ways, reach=reach, band=band)

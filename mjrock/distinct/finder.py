@@ -100,7 +100,9 @@ class Finder:
         self._half = float(np.median([block.size for block in blocks]))  # of the length of a prism
         self._fixed = np.array([block.fixed for block in blocks])
         centroids = np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn
-        self.solids = Solids.about(solids_of(blocks, self._half), centroids)
+        solids = solids_of(blocks, self._half)
+        self.volumes = np.array([solid.volume for solid in solids])
+        self.solids = Solids.about(solids, centroids)
         most = int(np.diff(self.solids.first).max())
         self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 3))
 

@@ -54,15 +54,14 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
         found = encounters.finder.found(there, np.zeros(encounters.count), every, np.zeros(0, dtype=np.int64))
         pairs, of = np.unique(pair_number(found.face, found.other, encounters.count), return_inverse=True)
         blocks = np.array(np.divmod(pairs, encounters.count))
-        depth = np.bincount(of, weights=found.share * np.maximum(-found.gap, 0.0)) / encounters.sizes[blocks].min(
-            axis=0
-        )
+        deep = np.bincount(of, weights=found.share * np.maximum(-found.gap, 0.0))
+        depth = deep / encounters.sizes[blocks].min(axis=0)
         here = {(float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST] if depth[j] > 0}
         deepest = set(heapq.nlargest(DEEPEST, deepest | here)) | {each for each in deepest | here if each[1] == 0}
     worst, at_start, said = 0.0, 0.0, ""
     for _, i, a, b in deepest:
         solids = encounters.finder.posed(poses[i])
-        share = common_volume(solids, a, b) / min(common_volume(solids, a, a), common_volume(solids, b, b))
+        share = common_volume(solids, a, b) / float(encounters.finder.volumes[[a, b]].min())
         at_start = max(at_start, share if i == 0 else 0.0)
         if share > worst:
             names = case.masonry.names
