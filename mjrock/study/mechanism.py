@@ -202,7 +202,8 @@ def _reached(case: Case, rotation: Array, d: Array) -> tuple[dict[str, float], d
     fine = np.linspace(rotation[0], rotation[-1], 20_001)
     yielding: dict[str, float] = {}
     breaking: dict[str, float] = {}
-    for name, pull in zip(case.springs, case.resisting, strict=True):
+    ties = [name for name, tie in case.springs.items() if tie.law.holds]
+    for name, pull in zip(ties, case.pulls, strict=True):
         elongation = pulled(pull, fine, 1.0)[0]
         for at, further in ((yielding, 0.0), (breaking, pull.ultimate)):
             beyond = np.flatnonzero(elongation > pull.strength / pull.stiffness + further)
