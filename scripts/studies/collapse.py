@@ -67,7 +67,7 @@ class Found(NamedTuple):
     took: float
 
 
-def motions(run: Run) -> dict[str, mr.GroundMotion]:
+def motions(run: Run) -> dict[str, Any]:
     """The motions of a run: a sine, a record in the plane, or three components."""
     factor = run.strength * (1 + TINY * float(np.random.default_rng(run.seed).standard_normal()) * (run.seed > 0))
     if run.name.startswith("wall"):
