@@ -8,7 +8,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.engine import loop
-from mjrock.theory import forced
+from mjrock.theory import arcs
 
 SCRIPT = """
 import hashlib, os, signal, sys, threading, time, warnings
@@ -66,7 +66,7 @@ def test_compiled_loops_return_plain_tuples():
     mr.simulate(case, contacts)
     mr.simulate(case, contacts, 1e-3)
     mr.solve_analytical(case, mr.Restitution.from_geometry(wall))
-    for compiled in (loop.fitted_loop, loop.fixed_loop, forced.forced_loop):
+    for compiled in (loop.fitted_loop, loop.fixed_loop, arcs.rocking_loop):
         assert compiled.nopython_signatures
         for signature in compiled.nopython_signatures:
             parts = [signature.return_type, *signature.return_type]

@@ -133,16 +133,16 @@ def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
 
     def stamps():
         compiled._imports.cache_clear()
-        names = ("engine/loop.py", "theory/forced.py", "distinct/loop.py")
+        names = ("engine/loop.py", "theory/arcs.py", "distinct/loop.py")
         return {name: compiled.stamp(copy / name) for name in names}
 
     assert edited("distinct/loop.py") == {"distinct/loop.py"}
     assert edited("distinct/contact.py") == {"distinct/loop.py"}
-    assert edited("theory/forced.py") == {"theory/forced.py"}
+    assert edited("theory/arcs.py") == {"theory/arcs.py"}
     assert edited("engine/loop.py") == {"engine/loop.py"}
     assert edited("engine/pace.py") == {"engine/loop.py"}
     assert "engine/loop.py" in edited("geometry/frames.py")  # which it reaches by others
-    assert edited("compiled.py") == {"engine/loop.py", "theory/forced.py", "distinct/loop.py"}
+    assert edited("compiled.py") == {"engine/loop.py", "theory/arcs.py", "distinct/loop.py"}
     assert edited("distinct/encounters.py") <= {"distinct/loop.py"}
 
 
