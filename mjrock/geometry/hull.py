@@ -115,6 +115,12 @@ def area_vector(ring: Array) -> Array:
     return summed
 
 
+def unlike_ways(ways: Array) -> Array:
+    """Unit vectors, shape (n, 3), those that are parallel once."""
+    apart = np.abs(ways @ ways.T) < 1 - 1e-12
+    return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
+
+
 def bulk_of(corners: Array, faces: tuple[tuple[int, ...], ...]) -> Bulk:
     """Volume, centroid and second moments of a closed body of plane faces.
 

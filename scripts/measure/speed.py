@@ -7,12 +7,14 @@ tasks, one call of this version after one of the other, so that a machine that i
 from __future__ import annotations
 
 import io
+import math
 import os
 import statistics
 import subprocess
 import sys
 import tarfile
 import tempfile
+import time
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -59,6 +61,21 @@ def another_wall() -> mr.Response:
 
 another_wall.count = 0  # type: ignore[attr-defined]
 
+
+def set_up(blocks: int) -> float:
+    """Processor seconds from nothing to the first explicit step of a wall in running bond; NaN in a version without."""
+    if not hasattr(mr, "solve_explicit"):
+        return math.nan
+    set_up.count += 1  # type: ignore[attr-defined]
+    rows, density = round((blocks / 2) ** 0.5), 2000.0 + set_up.count  # type: ignore[attr-defined]
+    begun = time.process_time()
+    wall = mr.Masonry.running_bond(0.5 * round(blocks / rows), 0.25 * rows, (0.5, 0.25), density=density, k_s=1e10)
+    answer = mr.solve_explicit(mr.MasonryCase(wall, 1e-6), output_step=1e-6)
+    return time.process_time() - begun - float(answer.stats["stepping_processor_time"])
+
+
+set_up.count = 0  # type: ignore[attr-defined]
+
 ONE_SIDED = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0)
 TWO_SIDED = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 6.0, side_stop=False)
 UNDER_RECORD = mr.Case(FIGURE_3, 0.0, 12.0, motion=MOTION)
@@ -67,6 +84,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "two-sided, 6 s, fitted steps": lambda: mr.simulate(TWO_SIDED, CONTACTS),
     "one-sided, a new wall each time": another_wall,
     "10 s record, MuJoCo, fitted steps": lambda: mr.simulate(UNDER_RECORD, CONTACTS),
+    "one-sided, 3 s, rocking theory": lambda: mr.solve_analytical(ONE_SIDED, E_THEORY),
+    "two-sided, 6 s, rocking theory": lambda: mr.solve_analytical(TWO_SIDED, E_THEORY),
     "10 s record, rocking theory": lambda: mr.solve_analytical(UNDER_RECORD, E_THEORY),
     "10 s record, rocking theory, output_step 0.05 s": lambda: mr.solve_analytical(
         UNDER_RECORD, E_THEORY, output_step=0.05
@@ -74,6 +93,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "one-sided, 3 s, fixed step 0.1 ms": lambda: mr.simulate(ONE_SIDED, CONTACTS, 1e-4),
 }
 CAMPAIGNS = {"campaign, rocking theory, a wall": "analytical", "campaign, MuJoCo, a wall": "MuJoCo"}
+SET_UPS = {f"set-up of {count} blocks, explicit steps": count for count in (50, 1000, 2000, 4000)}
+"""Processor time of each; the first one warms up, and is the only one of the quick mode."""
 SIZES = {"analytical": (2000, 100), "MuJoCo": (160, 8)}
 """Walls of a campaign, in full and in the quick mode."""
 
@@ -83,7 +104,10 @@ def serve() -> None:
     warnings.simplefilter("ignore", UserWarning)
     for line in sys.stdin:
         name, size = line.rstrip("\n").split("\t")
-        seconds = campaign(int(size), CAMPAIGNS[name]) if name in CAMPAIGNS else cli.seconds(CALLS[name])
+        if name in SET_UPS:
+            seconds = set_up(SET_UPS[name])
+        else:
+            seconds = campaign(int(size), CAMPAIGNS[name]) if name in CAMPAIGNS else cli.seconds(CALLS[name])
         print(f"{seconds!r}", flush=True)
 
 
@@ -172,6 +196,9 @@ def main(argv: Sequence[str] | None = None) -> None:
                     for version in versions:
                         version.seconds(task)
                 found = [[version.seconds(task, size) for version in versions] for _ in range(count)]
+                row(task, *map(list, zip(*found, strict=True)))
+            for task in list(SET_UPS)[: 1 if args.quick else None]:
+                found = [[version.seconds(task) for version in versions] for _ in range(1 if args.quick else 2)]
                 row(task, *map(list, zip(*found, strict=True)))
             fresh = range(1 if args.quick else 7)
             imports = [[version.run(IMPORT.format("mjrock")) for version in versions] for _ in fresh]
