@@ -16,6 +16,7 @@ import numpy as np
 import mjrock as mr
 
 warnings.simplefilter("ignore")
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests run in the background
 wall = mr.Block.from_size(0.6, 4.2)
 e = mr.Restitution.from_geometry(wall)
 contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.012)

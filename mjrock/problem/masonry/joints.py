@@ -90,14 +90,14 @@ class Edges(NamedTuple):
     Args:
         start, end: corners [m], shape (edges, 2) each.
         normal: unit normals out of the blocks, shape (edges, 2).
-        first, count: where those of each block begin, and how many there are, shape (blocks,) each.
+        first, number: where those of each block begin, and how many there are, shape (blocks,) each.
     """
 
     start: Array
     end: Array
     normal: Array
     first: Integers
-    count: Integers
+    number: Integers
 
     @classmethod
     def of(cls, blocks: Sequence[Polygon]) -> Edges:
@@ -117,7 +117,7 @@ class Edges(NamedTuple):
         Returns:
             The number of the pair, of the edge of the first block and of that of the second, shape (n,) each.
         """
-        counts = self.count[pairs]
+        counts = self.number[pairs]
         sizes = counts.prod(axis=1)
         pair = np.repeat(np.arange(len(pairs)), sizes)
         edge, other = np.divmod(np.arange(len(pair)) - np.repeat(np.cumsum(sizes) - sizes, sizes), counts[pair, 1])
@@ -128,7 +128,7 @@ class Edges(NamedTuple):
         _, edge, other = self.paired(pairs)
         behind = _dot(self.start[edge] - self.start[other], self.normal[edge])
         deepest = np.maximum.reduceat(behind, np.flatnonzero(np.diff(edge, prepend=-1)))
-        counts = self.count[pairs[:, 0]]
+        counts = self.number[pairs[:, 0]]
         return np.asarray(np.minimum.reduceat(deepest, np.cumsum(counts) - counts))
 
 
@@ -159,7 +159,8 @@ def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint,
     for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)):
         depth = np.minimum(edges.sunk(some), edges.sunk(some[:, ::-1]))
         for worst in np.flatnonzero(depth > tolerance)[:1]:
-            require_apart(*(names[i] for i in some[worst]), float(depth[worst]), tolerance)
+            i, j = some[worst].tolist()
+            require_apart(names[i], names[j], float(depth[worst]), tolerance)
         joints += _joints(blocks, edges, meetings(edges, some, tolerance), names, tolerance)
     return tuple(joints)
 
@@ -196,7 +197,7 @@ def _joints(
     along = met.ends[:, 1] - met.ends[:, 0]
     back = np.where(turned, -1.0, 1.0) * _cross(along, n) < 0
     ends = np.where(back[:, None, None], met.ends[:, ::-1], met.ends)
-    counts = edges.count[pairs[:, 1]]
+    counts = edges.number[pairs[:, 1]]
     joint = np.repeat(np.arange(len(pairs)), counts)
     corner = np.arange(len(joint)) + np.repeat(edges.first[pairs[:, 1]] - np.cumsum(counts) + counts, counts)
     away = np.hypot(*(edges.start[corner, None] - ends[joint]).transpose(2, 0, 1))
