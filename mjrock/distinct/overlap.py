@@ -6,8 +6,7 @@ import heapq
 import warnings
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import ConvexHull, HalfspaceIntersection
+import scipy
 
 from ..problem.masonry.case import MasonryCase
 from ..quantities import Array
@@ -87,10 +86,10 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
     normals = solids.normals[faces]
     reach = np.sum(normals * solids.corners[solids.outline[solids.first[faces]]], axis=1)
     # the deepest point inside: as far as can be from every face
-    inside = linprog(
+    inside = scipy.optimize.linprog(
         [0.0, 0.0, 0.0, -1.0], A_ub=np.column_stack([normals, np.ones(len(faces))]), b_ub=reach, bounds=(None, None)
     )
     if not inside.success or inside.x[3] < ROUNDING:
         return 0.0
-    corners = HalfspaceIntersection(np.column_stack([normals, -reach]), inside.x[:3]).intersections
-    return float(ConvexHull(corners).volume)
+    corners = scipy.spatial.HalfspaceIntersection(np.column_stack([normals, -reach]), inside.x[:3]).intersections
+    return float(scipy.spatial.ConvexHull(corners).volume)

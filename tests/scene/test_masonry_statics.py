@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 from everyday import slow
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 from scenes import unbalanced
 
 import mjrock as mr
-from mjrock.problem.masonry import polyhedron, statics
+from mjrock.problem.masonry import polyhedron
 from mjrock.problem.masonry.effects import applied
 from mjrock.problem.masonry.statics import falling, friction_lacking
 from mjrock.scene.masonry import require_standing, standing_masonry
@@ -185,7 +186,7 @@ def test_what_is_found_at_rest_stands_without_a_linear_programme(monkeypatch):
     def refused(*_):
         raise AssertionError
 
-    monkeypatch.setattr(statics, "linprog", refused)
+    monkeypatch.setattr(scipy.optimize, "linprog", refused)
     monkeypatch.setattr(polyhedron, "hull_of", refused)
     for masonry in (mr.Masonry.running_bond(2.0, 1.0, (0.5, 0.25), k_s=1e10), mr.Masonry.arch(5.0, 0.8, k_s=1e10)):
         assert mr.solve_explicit(mr.MasonryCase(masonry, 1e-3)).stats["steps"] > 1

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.spatial import cKDTree
 
 from ...geometry.hull import Bulk, Hull, bulk_of, hull_of, unlike_ways
 from ...quantities import Array, frozen, keep, require_array, require_flag, require_kind, require_within
@@ -179,7 +179,7 @@ def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull,
     extent = float(np.ptp(points, axis=0).max())
     if not extent > 1e-3:
         raise ValueError(f"vertices extend over {extent:.3g} m; the valid range begins at 0.001 m")
-    if pairs := cKDTree(points).query_pairs(max(1e-9 * extent, 1e-7)):
+    if pairs := scipy.spatial.cKDTree(points).query_pairs(max(1e-9 * extent, 1e-7)):
         i, j = min(pairs)
         raise ValueError(f"vertices {i} and {j} coincide at {points[i].tolist()} m")
     try:
