@@ -176,8 +176,8 @@ def compiled(function: Function) -> Function:
     arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
     numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
 
-    Products and sums are not fused (numba's `fastmath={"contract"}`), which would make explicit steps 13 to 17 % faster.
-    Where processors fuse, each in its own way, last digits would differ between them, and masonry that slides or falls
+    Products and sums are not fused (numba's `fastmath={"contract"}`), although explicit steps would be 13 to 17 %
+    faster. Last digits would then differ between processors that fuse and others, and masonry that slides or falls
     makes of last digits another motion: what one machine has found another could not repeat.
     """
     numba = _numba()
