@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from .problem.wall.damper import Damper
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
     from .problem.wall.friction_damper import FrictionDamper
-    from .problem.wall.section import Opening
+    from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
@@ -91,21 +91,21 @@ if TYPE_CHECKING:
 __all__ = [
     "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
     "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts",
-    "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility", "FrictionDamper", "Grid", "GroundMotion",
-    "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load", "ManyContactParameters",
-    "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType", "MeasuredContact",
-    "MechanismCheck", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan", "Polygon",
-    "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum",
-    "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie",
-    "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier",
-    "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset",
-    "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness",
-    "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry",
-    "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio",
-    "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact",
-    "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity",
-    "simulate", "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "wall_mjcf", "wall_scene",
-    "wall_stiffness",
+    "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid",
+    "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load",
+    "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType",
+    "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan",
+    "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum", "Restitution", "RigidImpact",
+    "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store",
+    "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum",
+    "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for",
+    "crushed_inset", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
+    "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
+    "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of",
+    "overturning_intensity", "paired_ratio", "pushover", "records_in", "reference_frequency", "report",
+    "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",
+    "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical", "solve_compliant", "solve_explicit",
+    "stiffness_range", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import require_path, require_row, shown
+from ...quantities import require_kind, require_path, require_row, shown
 from .code_spectrum import CodeSpectrum, FloorSpectrum
 from .motion import GroundMotion
 from .spectrum import scaled_to_spectrum
@@ -89,6 +89,10 @@ def scaled_together(
     Raises:
         TypeError, ValueError: for a value outside its range, or a motion at rest.
     """
+    if not isinstance(motions, Sequence) or not motions:
+        raise TypeError(f"motions = {shown(motions)} is not a sequence of at least one GroundMotion")
+    for i, motion in enumerate(motions):
+        require_kind(f"motions[{i}]", motion, GroundMotion)
     horizontal = motions[:2]
     alone = [scaled_to_spectrum(motion, periods, target, damping) for motion in horizontal]
     factors = [made.peak / motion.peak for made, motion in zip(alone, horizontal, strict=True)]
