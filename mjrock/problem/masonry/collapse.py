@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import linprog
 from scipy.sparse import hstack
 
 from ...quantities import Array, named, require_kind, require_reals, require_within, shown
@@ -71,7 +71,9 @@ def collapse_multiplier(masonry: Masonry, direction: float | ArrayLike = 1, *, a
     raised = (sideways.ravel() / total / sizes)[:, None]
     prices = np.zeros(pressed.shape[1] + 1)
     prices[-1] = -1.0
-    answer = linprog(prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry))
+    answer = scipy.optimize.linprog(
+        prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry)
+    )
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return Collapse(math.inf, push, (), np.zeros_like(sideways))  # unbounded
     if answer.status != 0:
