@@ -18,7 +18,7 @@ from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
 from .overlap import checked_overlap
-from .reading import Run, response_of
+from .reading import Run, response_of, with_forces
 from .setup import carried_on, setup_of
 from .system import Books, Samples
 
@@ -30,6 +30,7 @@ def solve_explicit(
     *,
     output_step: float | None = None,
     ledger: bool = False,
+    forces: bool = False,
     start: State | None = None,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, by explicit steps.
@@ -50,6 +51,7 @@ def solve_explicit(
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.
         ledger: whether to account for every part of the energy. A residual above 1 % of the largest part warns.
+        forces: whether to keep `forces` and `reactions` at every sample, see `Forces`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. The end of
             explicit steps of the same structure carries on to rounding, histories of supports from wherever they have
             ended. It does not go with ties that yield.
@@ -66,6 +68,7 @@ def solve_explicit(
     watch = Stopwatch()
     require_case(case, contacts)
     require_flag("ledger", ledger)
+    require_flag("forces", forces)
     if timestep is not None:
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
@@ -80,6 +83,8 @@ def solve_explicit(
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
     looks = len(steps.looks(steps.last + 1))
     samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
+    if forces:
+        samples = with_forces(samples, case)
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)
