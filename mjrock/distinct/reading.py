@@ -15,10 +15,10 @@ from ..geometry.poses import tilts
 from ..problem.damping.contacts import Contacts, Uplift
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, Array, Integers, named, require_size
+from ..quantities import GRAVITY, Array, Integers, named
 from ..result.ending import ending, masonry_ending
 from ..result.fallen import below_everything, fallen_blocks, sunk_ground
-from ..result.forces import Forces, Gathered, JointFrames, forces_of
+from ..result.forces import Forces, Gathered, JointFrames, forces_of, require_room
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion
@@ -111,11 +111,9 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def with_forces(samples: Samples, case: Case | MasonryCase) -> Samples:
     """Samples with room for the forces of a case."""
+    require_room(case, len(samples.pose))
     frames = JointFrames.of(case)
-    of = len(frames.names), len(frames.blocks), len(case.links)
-    width = samples.loads.shape[2] + len(of)
-    require_size("the forces of this answer", len(samples.pose) * width * sum(of), "raise output_step, or leave them out")
-    return samples.with_forces(*of)
+    return samples.with_forces(len(frames.names), len(frames.blocks), len(case.links))
 
 
 def kept_forces(run: Run, kept: Integers) -> Forces | None:

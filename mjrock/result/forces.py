@@ -14,7 +14,7 @@ from ..problem.masonry.effects import laden
 from ..problem.masonry.joints_in_space import SpaceJoint
 from ..problem.masonry.lines import free_numbers
 from ..problem.wall.case import Case
-from ..quantities import Array, Integers
+from ..quantities import Array, Integers, require_size
 from .ties import across
 
 ANCHORS = "anchors"
@@ -203,3 +203,10 @@ def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str,
             anchor = case.masonry.names[link.anchor_block]
         force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
         reactions[anchor] = reactions.get(anchor, 0.0) + force
+
+
+def require_room(case: Case | MasonryCase, samples: float) -> None:
+    """Raise a ValueError if the forces of a case at so many samples do not fit into memory."""
+    frames = JointFrames.of(case)
+    numbers = (1 + len(frames.names)) * (1 + 3 * (frames.middle.shape[1] - 1)) + len(case.links)
+    require_size("the forces of this answer", samples * numbers, "raise output_step, or leave the forces out")
