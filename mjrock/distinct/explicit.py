@@ -10,6 +10,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_size, require_within
+from ..result.forces import required_room
 from ..result.response import Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
@@ -18,7 +19,7 @@ from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
 from .overlap import checked_overlap
-from .reading import Run, response_of, with_forces
+from .reading import Run, response_of
 from .setup import carried_on, setup_of
 from .system import Books, Samples
 
@@ -84,7 +85,7 @@ def solve_explicit(
     looks = len(steps.looks(steps.last + 1))
     samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
     if forces:
-        samples = with_forces(samples, case)
+        samples = samples.with_forces(*required_room(case, count))
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)

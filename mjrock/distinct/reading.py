@@ -18,7 +18,7 @@ from ..problem.wall.case import Case
 from ..quantities import GRAVITY, Array, Integers, named
 from ..result.ending import ending, masonry_ending
 from ..result.fallen import below_everything, fallen_blocks, sunk_ground
-from ..result.forces import Forces, Gathered, JointFrames, forces_of, require_room
+from ..result.forces import Forces, Gathered, JointFrames, forces_of
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion
@@ -107,13 +107,6 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     )
     warn_if_open(response, run.rounding)
     return response
-
-
-def with_forces(samples: Samples, case: Case | MasonryCase) -> Samples:
-    """Samples with room for the forces of a case."""
-    require_room(case, len(samples.pose))
-    frames = JointFrames.of(case)
-    return samples.with_forces(len(frames.names), len(frames.blocks), len(case.links))
 
 
 def kept_forces(run: Run, kept: Integers) -> Forces | None:

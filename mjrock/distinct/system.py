@@ -131,8 +131,8 @@ class Samples(NamedTuple):
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        none = np.zeros((count, 0, freedom.nv)), np.zeros((count, 0, freedom.translations)), np.zeros((count, 0))
-        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts, *none)
+        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), ())]
+        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
     def with_forces(self, joints: int, blocks: int, links: int) -> Samples:
         """The same with room for the forces of so many joints, fixed blocks and links."""

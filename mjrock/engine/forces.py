@@ -14,7 +14,7 @@ import numpy as np
 from ..compiled import compiled
 from ..geometry.frames import place
 from ..geometry.kinematics import meeting, over_face, where_friction_acts
-from ..geometry.vectors import increase, moment, plus, scaled, tangent, vector
+from ..geometry.vectors import increase, moment, plus, scaled, vector
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers
@@ -74,9 +74,7 @@ def kept_forces(
 
 
 @compiled
-def _gather(
-    points: Points, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, into: Loads
-) -> None:
+def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, into: Loads) -> None:
     places, axes = points.places, points.places.axes
     for row in range(len(into.steps)):
         n = into.steps[row]
@@ -89,10 +87,8 @@ def _gather(
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 continue
             meets = where_friction_acts(places, meeting(places, i, room.frames))
-            way = tangent(meets.normal)
-            if len(axes) == 3:
-                slipping = room.middle if now.coulomb else record.after[n]
-                way = slip_of(meets.normal, over_face(places, i, meets, room.frames, slipping)).way
+            slipping = room.middle if now.coulomb else record.after[n]
+            way = slip_of(meets.normal, over_face(places, i, meets, room.frames, slipping)).way
             force = plus(scaled(now.row, meets.normal), scaled(now.along, way))
             body, joint = places.body[i], into.joint[i]
             at = plus(vector(into.rest, body, axes), plus(place(room.frames, body, axes), meets.arm))

@@ -13,7 +13,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
-from ..result.forces import require_room
+from ..result.forces import required_room
 from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.stopwatch import Stopwatch
@@ -89,6 +89,11 @@ class Options:
     def spacing(self) -> float | None:
         """Distance of samples that are interpolated [s]; None at a fixed step, whose steps are the samples."""
         return (self.output_step or SPACING) if self.timestep is None else None
+
+    @property
+    def apart(self) -> float:
+        """Distance of samples [s]."""
+        return self.spacing or (self.timestep or SPACING) * self.stride
 
     @property
     def stride(self) -> int:
@@ -170,7 +175,7 @@ def simulate(
     if options.timestep is not None:
         require_unbreakable(case)
     if forces:
-        require_room(case, case.duration / (options.spacing or options.timestep * options.stride))
+        required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)
     scene = scene_of(case, contacts, method)
     course = course_of(case, scene)

@@ -30,8 +30,8 @@ def angle_of(pose: Array) -> Array:
 
 
 def rotations(pose: Array) -> Array:
-    """Matrices that turn vectors of a body as the body is turned from rest, shape (..., d, d), of poses of a body, shape
-    (..., 3) in the plane and (..., 7) in space."""
+    """Matrices that turn vectors as bodies are turned from rest, shape (..., d, d), of poses of shape (..., 3) in the
+    plane and (..., 7) in space."""
     if pose.shape[-1] == PLANE.nq:
         sine, cosine = np.sin(pose[..., 2]), np.cos(pose[..., 2])
         return np.stack([np.stack([cosine, sine], axis=-1), np.stack([-sine, cosine], axis=-1)], axis=-2)

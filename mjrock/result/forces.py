@@ -70,6 +70,12 @@ class JointFrames(NamedTuple):
             laden(masonry, case.effects)[1][list(masonry.free)],
         )
 
+    @property
+    def _from_body(self) -> Array:
+        """Of each joint on a body the vector from its centroid to the middle [m], and the axes, shape (j, 1 + d, d)."""
+        arm = self.middle - np.where(self.below[:, None] < 0, 0.0, self.rest[self.below])
+        return np.concatenate([arm[:, None], self.axes], axis=1)
+
     def placed(self, case: Case | MasonryCase, t: Array, pose: Array) -> tuple[Array, Array]:
         """Middles [m] and axes of the joints where what is below them is, shapes (n, j, d) and (n, j, d, d).
 
@@ -81,9 +87,8 @@ class JointFrames(NamedTuple):
         d, on_body = self.middle.shape[1], self.below >= 0
         middle, axes = (np.repeat(part[None], len(t), axis=0) for part in (self.middle, self.axes))
         of = self.below[on_body]
-        turn, arm = rotations(pose[:, of]), self.middle[on_body] - self.rest[of]
-        middle[:, on_body] = self.rest[of] + pose[:, of, :d] + np.einsum("njab,jb->nja", turn, arm)
-        axes[:, on_body] = np.einsum("njab,jcb->njca", turn, self.axes[on_body])
+        turned = np.matmul(self._from_body[on_body], np.swapaxes(rotations(pose)[:, of], 2, 3))
+        middle[:, on_body], axes[:, on_body] = self.rest[of] + pose[:, of, :d] + turned[:, :, 0], turned[:, :, 1:]
         for support in case.supports if isinstance(case, MasonryCase) else ():
             middle[:, self.fixed == self.blocks.index(support.block)] += support.at(t)[:, None]
         return middle, axes
@@ -136,9 +141,11 @@ class Forces:
     def columns(self) -> dict[str, Array]:
         """All of them as columns of a table, with their units, shape (n,) each."""
         d = self.frames.middle.shape[1]
-        columns = {}
+        columns: dict[str, Array] = {}
         for name, force in self.reactions.items():
-            columns |= {f"reaction {axis} of {name} [N]": force[:, i] for i, axis in enumerate("xz" if d == 2 else "xyz")}
+            columns |= {
+                f"reaction {axis} of {name} [N]": force[:, i] for i, axis in enumerate("xz" if d == 2 else "xyz")
+            }
         for i, name in enumerate(self.joints):
             columns[f"normal force of {name} [N]"] = self.normal[:, i]
             for what, values, unit in (("shear", self.shear, "N"), ("eccentricity", self.eccentricity, "m")):
@@ -175,13 +182,13 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     d = frames.middle.shape[1]
     middle, axes = frames.placed(case, gathered.t, gathered.pose)
     force, about = gathered.loads[..., :d], gathered.loads[..., d:]
-    along = np.einsum("njcd,njd->njc", axes, force)
+    along = np.matmul(axes, force[..., None])[..., 0]
     normal, shear = along[..., 0], along[..., 1:]
     if d == 2:
         about = about[..., 0] - (middle[..., 1] * force[..., 0] - middle[..., 0] * force[..., 1])
         arm = -about[..., None]
     else:
-        about = np.einsum("njcd,njd->njc", axes, about - np.cross(middle, force))
+        about = np.matmul(axes, (about - np.cross(middle, force))[..., None])[..., 0]
         arm = np.stack([-about[..., 2], about[..., 1]], axis=-1)
     presses = (normal > 0)[..., None]
     eccentricity = np.where(presses, arm, np.nan) / np.where(presses, normal[..., None], 1.0)
@@ -205,8 +212,14 @@ def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str,
         reactions[anchor] = reactions.get(anchor, 0.0) + force
 
 
-def require_room(case: Case | MasonryCase, samples: float) -> None:
-    """Raise a ValueError if the forces of a case at so many samples do not fit into memory."""
+def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int]:
+    """How many joints, fixed blocks and links a case has.
+
+    Raises:
+        ValueError: if their forces at so many samples do not fit into memory.
+    """
     frames = JointFrames.of(case)
-    numbers = (1 + len(frames.names)) * (1 + 3 * (frames.middle.shape[1] - 1)) + len(case.links)
-    require_size("the forces of this answer", samples * numbers, "raise output_step, or leave the forces out")
+    d, counts = frames.middle.shape[1], (len(frames.names), len(frames.blocks), len(case.links))
+    numbers = samples * (counts[0] * (2 * d - 1) + counts[1] * d + counts[2])
+    require_size("the forces of this answer", numbers, "raise output_step, or leave the forces out")
+    return counts

@@ -285,7 +285,8 @@ class Response:
         The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
         rest [m, m, rad], in space x, y, z and the quaternion, the acceleration of the ground where there is one [m/s2],
         and forces where the run kept them: of each fixed block, joint and link [N], and eccentricities [m]. They are
-        those of `Forces`. No name has a comma: `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept.
+        those of `Forces`. No name has a comma: `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits
+        are kept.
 
         Raises:
             OSError: if the file cannot be written.
