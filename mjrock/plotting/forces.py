@@ -50,7 +50,7 @@ class Strokes(LineCollection):
 
 def require_shown(name: str, value: object, response: Response) -> None:
     """Raise a ValueError unless it is one of `SHOWN`, and an AttributeError unless the response has kept its forces."""
-    if value not in SHOWN:
+    if not isinstance(value, str) or value not in SHOWN:
         raise ValueError(f"{name} = {shown(value)} is not one of {', '.join(SHOWN)}")
     _ = response.forces
 

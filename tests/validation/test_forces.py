@@ -138,6 +138,17 @@ def test_reactions_move_the_blocks(solver, build, h, options):
     assert len(answer.forces.links) == len(options.get("effects", ()))
 
 
+def test_reactions_of_fitted_steps_make_the_momentum():
+    """Summed over time, from sample to sample, in a run whose steps are longer and shorter than these."""
+    masonry, velocity = columns(3), np.full((3, 3), 0.3)
+    answer = mr.simulate(mr.MasonryCase(masonry, 0.3, velocity=velocity), output_step=1e-4, forces=True)
+    mass = np.array([block.mass for block in masonry.blocks if not block.fixed])
+    momentum = np.einsum("b,nbd->nd", mass, answer.velocity[:, :, :2])
+    mean = 0.5 * (total(answer)[1:] + total(answer)[:-1]) - [0, weight(masonry)]
+    given = np.cumsum(mean * np.diff(answer.t)[:, None], axis=0)
+    assert np.abs(given - momentum[1:] + momentum[0]).max() < 5e-3 * np.abs(momentum).max()
+
+
 @pytest.mark.parametrize("build", [lambda: columns(3), in_space])
 def test_the_engine_has_the_same_forces(build):
     """The contact forces that stock MuJoCo reports in each step of the text, where blocks slide and strike too.
@@ -299,8 +310,11 @@ def test_forces_in_a_table():
     assert {"shear of ground|block_0 [N]", "eccentricity of ground|block_0 [m]", "pull of tie_0 [N]"} <= row.keys()
 
 
-def test_the_largest_reaction_in_a_campaign():
+def test_the_largest_reaction_in_a_campaign(tmp_path):
     case = mr.MasonryCase(columns(2), 1e-3)
-    row = mr.Analysis(case, "explicit", options={"forces": True})()
+    row = mr.Analysis(case, "explicit", options={"forces": True})(tmp_path / "history.npz")
+    with np.load(tmp_path / "history.npz") as kept:
+        np.testing.assert_allclose(kept["reaction of ground"][0], [0, weight(case.masonry)], atol=1e-6)
+        assert kept["normal"].shape == kept["shear"].shape == kept["eccentricity"].shape == (len(kept["t"]), 2)
     assert row["largest_reaction_N"] == pytest.approx(weight(case.masonry))
     assert "largest_reaction_N" not in mr.Analysis(case, "explicit")()
