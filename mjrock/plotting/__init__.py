@@ -6,6 +6,7 @@ from .earthquakes import MODES, distributions, fragility, incremental, mode_lege
 from .histories import acceleration, comparison, energy, grid, history, rotation, ties
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
+from .mechanism import mechanism
 from .pushing import moment_rotation, pushover
 from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
@@ -13,7 +14,7 @@ from .tornado import tornado
 
 __all__ = [
     "MODES", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "convergence",
-    "damping_curves", "distributions", "energy", "fragility", "grid", "history", "incremental", "mode_legend",
-    "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity", "peers", "pushover", "residuals",
-    "rotation", "save", "sensitivity", "single", "sketch", "ties", "tornado", "work_precision",
+    "damping_curves", "distributions", "energy", "fragility", "grid", "history", "incremental", "mechanism",
+    "mode_legend", "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity", "peers", "pushover",
+    "residuals", "rotation", "save", "sensitivity", "single", "sketch", "ties", "tornado", "work_precision",
 ]  # fmt: skip

@@ -40,6 +40,7 @@ WRITES = {
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "low_stop": {"low_stop.txt"},
+    "limit_analysis": {f"limit_analysis.{ending}" for ending in ("png", "csv", "txt")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
     "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},

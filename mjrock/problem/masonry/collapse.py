@@ -139,14 +139,14 @@ def _without_dilatancy(
 
 
 def _loads(masonry: Masonry, loads: Mapping[str, ArrayLike]) -> Array:
-    """Loads by the name of their block as generalised forces of the free blocks, shape (free, 3), in space (free, 6)."""
+    """Loads by the name of their block as forces and moments of free blocks, shape (free, 3), in space (free, 6)."""
     require_kind("loads", loads, Mapping)
     forces, full = (3, 6) if masonry.in_space else (2, 3)
     total = np.zeros((len(masonry.free), full))
     rows = {masonry.names[i]: row for row, i in enumerate(masonry.free)}
     for name, load in loads.items():
         if name not in rows:
-            raise ValueError(f"loads: {shown(name)} is not the name of a free block; those are {named(tuple(rows))}")
+            raise ValueError(f"loads: {name!r} is not the name of a free block; those are {named(tuple(rows))}")
         given = require_reals(f"loads of {name}", load, f"an array of the shape ({forces},) or ({full},)")
         count = forces if given.shape == (forces,) else full
         total[rows[name], :count] += require_array(f"loads of {name}", given, (count,))
@@ -155,7 +155,9 @@ def _loads(masonry: Masonry, loads: Mapping[str, ArrayLike]) -> Array:
 
 def _push(masonry: Masonry, direction: float | ArrayLike | None, angle: float | None) -> Array:
     """The unit vector of the force, shape (2,), in space (3,)."""
-    given = require_reals("direction", 1.0 if direction is None else direction, "1, -1 or a vector in plan of the shape (2,)")
+    given = require_reals(
+        "direction", 1.0 if direction is None else direction, "1, -1 or a vector in plan of the shape (2,)"
+    )
     if given.shape == () and abs(float(given)) == 1:
         given = np.array([float(given), 0.0])
     elif given.shape != (2,) or not masonry.in_space:

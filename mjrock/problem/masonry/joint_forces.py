@@ -35,7 +35,9 @@ def joint_forces(masonry: Masonry, forces: Array) -> JointForces:
     forces = np.where(above == lines.body, 1.0, -1.0)[:, None] * forces
     axes = np.array([[j.normal, *(j.axes if isinstance(j, SpaceJoint) else j.along[None])] for j in joints])
     parts = np.einsum("mad,md->ma", axes[lines.joint], forces)
-    arms = np.einsum("mad,md->ma", axes[lines.joint], lines.at - np.array([joint.middle for joint in joints])[lines.joint])
+    arms = np.einsum(
+        "mad,md->ma", axes[lines.joint], lines.at - np.array([joint.middle for joint in joints])[lines.joint]
+    )
     total, moments = np.zeros((len(joints), axes.shape[1])), np.zeros((len(joints), axes.shape[1]))
     np.add.at(total, lines.joint, parts)
     np.add.at(moments, lines.joint, parts[:, :1] * arms)

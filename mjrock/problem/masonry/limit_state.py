@@ -5,8 +5,8 @@ cones, and the friction that is left. They balance the weight w and the multipli
 
     M x + lambda f + w = 0,    M = [N  Q  0; mu G  -E  -I].
 
-The first rows of M are equilibrium. The others say that friction is at most mu times the pressure. A mechanism is p, the
-velocities of the blocks and the rates at which joints slide, these negative. It opens and slides joints at the rates
+The first rows of M are equilibrium. The others say that friction is at most mu times the pressure. A mechanism is p,
+the velocities of the blocks and the rates at which joints slide, these negative. Joints open and slide at the rates
 
     z = M'^T p >= 0,    f . p = 1.
 
@@ -25,9 +25,9 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack
 
-from ...quantities import Array, Integers
+from ...quantities import Array, Flags, Integers
 from .joint_law import Law, shear_limit
-from .lines import Lines, rates
+from .lines import rates
 from .masonry import Masonry
 from .statics import edges_of, method, sizes_of, weight_of
 
@@ -36,7 +36,7 @@ SLOPE, SHRINKS, LEAST_SLOPE = 0.3, 0.9, 0.01
 TAKEN = 0.6
 """Share of the new pressures in those that the next cones stand on [-]."""
 TURNS, EVERY = 24, 3
-"""Most turns of the search for the forces and the mechanism of one state, and of the cones; turns from start to start."""
+"""Most turns of the search for forces and mechanism of one state, and of the cones; turns from start to start."""
 DESCENTS = 60
 """Most steps of a descent."""
 SHARED = 1e-10
@@ -100,20 +100,20 @@ class Programme(NamedTuple):
         lines, sizes, weight = masonry.lines, sizes_of(masonry), weight_of(masonry)
         m, group = len(lines.k), np.arange(len(lines.k)) if masonry.in_space else lines.joint
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
-        edges = edges_of(across)[:, leader]
-        first = Lines(*(values[leader] for values in lines))
-        carried = [rates(masonry.blocks, lines, lines.normal), *(rates(masonry.blocks, first, e) for e in edges)]
+        edges = edges_of(across)
+        rubbing = [rates(masonry.blocks, lines, edge)[leader] for edge in edges]
         limits = np.asarray(shear_limit(Law(friction=masonry.joint_friction[lines.joint]), 1.0))
         held, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))
-        balance = [diags_array(1 / sizes) @ part.T for part in carried]
+        pressing = rates(masonry.blocks, lines, lines.normal)
+        balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]
         matrix = csc_array(block_array([[*balance, None], [held, *[-whole] * (len(edges) + 1)]]))
         rest = csr_array((len(leader), matrix.shape[1] - m))
         grip = csc_array(block_array([[csr_array((len(weight), m)), None], [held, rest]]))
         total, none = float(np.abs(weight).sum()), np.zeros(len(leader))
-        acting = [np.append(np.ravel(force) / total / sizes, none) for force in (weight, grown)]
-        return cls(matrix, grip, *acting, edges, leader, len(weight), method(masonry))
+        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (weight, grown))
+        return cls(matrix, grip, down, pushed, edges[:, leader], leader, len(weight), method(masonry))
 
-    def forces(self, cost: Array, price: float, none_at: Array | None = None) -> Any:
+    def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> Any:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""
         upper = np.full(len(cost) + 1, np.inf)
         if none_at is not None:
@@ -122,7 +122,7 @@ class Programme(NamedTuple):
         prices = np.append(cost, price)
         return linprog(prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT)
 
-    def mechanism(self, cost: Array, only_at: Array | None = None) -> tuple[Array, Array] | None:
+    def mechanism(self, cost: Array, only_at: Flags | None = None) -> tuple[Array, Array] | None:
         """Rates z and velocities of the mechanism without dilatancy that costs least, None where nothing can move.
 
         Joints that are not among `only_at` stay as they are.
@@ -216,7 +216,8 @@ def _descended(programme: Programme, moving: tuple[Array, Array] | None) -> Stat
     forces that the mechanism keeps at zero for those that would lower the multiplier further, and takes the mechanism
     that keeps fewest of them, of those that the forces allow.
     """
-    state, multipliers, nothing = None, [], np.zeros(programme.matrix.shape[1])
+    state, nothing = None, np.zeros(programme.matrix.shape[1])
+    multipliers: list[float] = []
     while moving is not None and len(multipliers) < DESCENTS:
         moves = moving[0] > 0
         answer = programme.forces(nothing, 1.0, moves)
