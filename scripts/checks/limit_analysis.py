@@ -113,14 +113,14 @@ def main(argv: Sequence[str] | None = None) -> None:
         half = time.perf_counter()
         found[number] = mr.collapse_multiplier(masonry, associated=False)
         spent = half - begun, time.perf_counter() - half
-        cells = [str(number), str(len(masonry.free))]
+        cells: list[object] = [number, len(masonry.free)]
         for one, published in zip((bound, found[number].multiplier), PUBLISHED[number], strict=True):
-            cells += [f"{published:.3f}", f"{one:.4f}", f"{one / published - 1:+.1%}"]
+            cells += [published, round(one, 4), round(100 * (one / published - 1), 1) + 0.0]
         others = " ".join(f"{other:.4f}" for other in found[number].others)
-        rows.append([*cells, others or "-", *(f"{one:.2f} s" for one in spent)])
+        rows.append([*cells, others, *(f"{one:.2f} s" for one in spent)])
     plotting.save(drawn(found), out / "limit_analysis.png")
-    header = ["wall", "blocks", "associated, published", "associated", "error", "without dilatancy, published"]
-    header += ["without dilatancy", "its error", "others found", "time", "its time"]
+    header = ["wall", "blocks", "associated, published", "associated", "error [%]", "without dilatancy, published"]
+    header += ["without dilatancy", "its error [%]", "others found", "time", "its time"]
     cli.report(out / "limit_analysis", cli.table(header, rows), header[:-2], [row[:-2] for row in rows])
 
 

@@ -141,6 +141,7 @@ def main_of(name):
 LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
     "sensitivity",
     "low_stop",
+    "limit_analysis",
     "fragility_coverage",
     "agreement",
     "polarity",
