@@ -40,8 +40,15 @@ def of_wall(case: Case) -> TableRows:
         ("overturning_rotation, with effects", f"{case.overturning_rotation:.4g} rad"),
         ("p, frequency parameter", f"{wall.p:.4g} rad/s"),
     ]
+    if block.gable is not None:
+        rows.append(("gable", f"{block.gable.height:.4g} m high, {block.gable.top:.4g} m long at its top"))
     for opening in block.openings:
-        rows.append(("opening", f"{opening.width:.4g} x {opening.height:.4g} m, sill {opening.sill:.4g} m"))
+        rows.append(
+            (
+                "round opening" if opening.round else "opening",
+                f"{opening.width:.4g} x {opening.height:.4g} m, sill {opening.sill:.4g} m",
+            )
+        )
     stop = "none: the wall rocks to both sides" if case.stop_top is None else f"up to {case.stop_top:.4g} m"
     return [*rows, ("side_stop", stop)]
 

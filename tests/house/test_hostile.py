@@ -23,6 +23,7 @@ E = mr.Restitution.from_geometry(WALL)
 CONTACTS = mr.Contacts.from_law(WALL, E, 5e8, 5e8)
 SHORT = mr.Case(WALL, 0.05, 0.02)
 MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
+SPECTRUM = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")
 RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
 PAIRED = mujoco.MjModel.from_xml_string(
@@ -162,6 +163,22 @@ CALLS = OF_NUMBERS | {
     "rocking_spectrum": (
         mr.rocking_spectrum, {"motion": MOTION, "R": [2.0], "slenderness": 7.0, "side_stop": True, "rtol": 1e-4},
     ),
+    "scaled_together": (
+        mr.scaled_together,
+        {"motions": (MOTION, MOTION), "periods": [0.5, 1.0], "target": [2.0, 1.0], "damping": 0.05},
+    ),
+    "code_spectrum": (
+        mr.code_spectrum,
+        {"code": "NTC 2018", "ag": 2.0, "soil": "C", "F0": 2.4, "Tc": 0.3, "topography": "T1", "damping": 0.05},
+    ),
+    "spectrum": (SPECTRUM, {"T": [0.0, 0.5], "damping": 0.05}),
+    "spectrum.at_height": (
+        SPECTRUM.at_height, {"period": [0.3, 0.1], "damping": 0.05, "participation": [1.2, 0.3], "height": [0.5, -0.2]},
+    ),
+    "through_building": (
+        MOTION.through_building, {"period": [0.3], "damping": 0.05, "participation": [1.2], "height": [0.5]},
+    ),
+    "records_in": (mr.records_in, {"folder": ".", "pattern": "*.none"}),
     "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
@@ -372,7 +389,7 @@ def test_every_public_entry_is_tried():
         "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
-        "MeasuredContact", "SpaceJoint", "Collapse",
+        "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -46,6 +46,7 @@ WRITES = {
     "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
+    "collapse": {"collapse.csv", "collapse.txt"},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
     | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
     "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
