@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack
 
 from ...quantities import Array, Flags, Integers
@@ -120,7 +120,9 @@ class Programme(NamedTuple):
             upper[:-1][none_at] = 0.0
         columns, bounds = hstack([self.matrix, self.grown[:, None]]), np.column_stack([np.zeros_like(upper), upper])
         prices = np.append(cost, price)
-        return linprog(prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT)
+        return scipy.optimize.linprog(
+            prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT
+        )
 
     def mechanism(self, cost: Array, only_at: Flags | None = None) -> tuple[Array, Array] | None:
         """Rates z and velocities of the mechanism without dilatancy that costs least, None where nothing can move.
@@ -134,7 +136,9 @@ class Programme(NamedTuple):
             high[:count][~only_at] = 0.0
         bounds, right = np.column_stack([low, high]), np.append(np.zeros(count), 1.0)
         prices = np.append(cost, np.zeros(rows))
-        answer = linprog(prices, A_eq=columns, b_eq=right, bounds=bounds, method=self.method, options=EXACT)
+        answer = scipy.optimize.linprog(
+            prices, A_eq=columns, b_eq=right, bounds=bounds, method=self.method, options=EXACT
+        )
         if answer.status != 0:
             return None
         z = np.where(answer.x[:count] > STILL * answer.x[:count].max(), answer.x[:count], 0.0)
