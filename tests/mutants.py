@@ -75,9 +75,9 @@ OWN = {
     "problem/wall/ties_on_wall.py": ("effects", "pushover"),
     "study/masonry_by_matching.py": ("matched_masonry",),
     "study/pushover.py": ("pushover",),
-    "theory/forced.py": ("forced", "analytical", "effects"),
+    "theory/arcs.py": ("arcs", "free", "analytical", "effects"),
     "theory/impact.py": ("impact",),
-    "theory/law.py": ("forced", "analytical"),
+    "theory/law.py": ("arcs", "free", "analytical"),
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 ROUNDS = (

@@ -51,6 +51,7 @@ TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
 """Columns of each tie, after its name: how far it has yielded, its largest force, what yielding and breaking took, and
 when it broke, empty where it did not."""
 MASONRY_COLUMNS = (
+    "solver",
     "outcome",
     "fallen",
     "first_fall_s",
@@ -100,15 +101,14 @@ class Analysis:
             if not isinstance(value, Mapping):
                 raise TypeError(f"{name} = {shown(value)} is not a mapping of names to values")
             keep(self, **{name: dict(value)})
-        if not isinstance(self.solver, str) or self.solver not in SOLVERS:
-            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(SOLVERS)}")
+        valid_solvers = tuple(SOLVERS) if isinstance(self.case, Case) else OF_MASONRY
+        if not isinstance(self.solver, str) or self.solver not in valid_solvers:
+            whom = "" if isinstance(self.case, Case) else ", which take masonry"
+            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(valid_solvers)}{whom}")
         if isinstance(self.case, Case):
             self._require_wall(self.case)
-        elif self.solver not in OF_MASONRY or self.e is not None or self.contacts is not None:
-            raise ValueError(
-                f"masonry has its joints and is solved by {', '.join(OF_MASONRY)}, not {self.solver}; "
-                "leave e and contacts out"
-            )
+        elif self.e is not None or self.contacts is not None:
+            raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
         valid = OPTIONS[self.solver]
         unknown = self.options.keys() - set(valid)
         if unknown:
@@ -136,7 +136,10 @@ class Analysis:
 
     @property
     def law(self) -> str:
-        """The law of the damping, or "restitution" for the analytical solver."""
+        """The law of the damping, or "restitution" for the analytical solver; of masonry without a law "given"."""
+        if isinstance(self.case, MasonryCase):
+            given = self.case.masonry.law
+            return "given" if given is None else str(getattr(given, "name", spelt(given)))
         return "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
 
     @property
@@ -186,6 +189,7 @@ def _of_ties(response: Response) -> Iterator[float | None]:
 def _of_masonry(response: Response) -> tuple[object, ...]:
     """The columns of masonry but the last two."""
     return (
+        response.solver,
         response.outcome.value,
         len(response.fallen),
         min(response.fallen.values(), default=None),
@@ -197,10 +201,13 @@ def _of_masonry(response: Response) -> tuple[object, ...]:
 
 @dataclass(frozen=True, repr=False)
 class MasonryAnalysis(Analysis):
-    """`Analysis` of masonry by MuJoCo, with the arguments case, options and labels."""
+    """`Analysis` of masonry, with the arguments case, options, labels and, by its name, solver.
+
+    The solver is "MuJoCo", or "explicit" for `solve_explicit`, which is the faster one from some eight blocks on.
+    """
 
     case: MasonryCase
-    solver: str = field(default="MuJoCo", init=False)
+    solver: str = field(default="MuJoCo", kw_only=True)
     e: None = field(default=None, init=False)
     contacts: None = field(default=None, init=False)
 

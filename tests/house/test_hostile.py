@@ -216,8 +216,14 @@ CALLS = OF_NUMBERS | {
         },
     ),
     "Polyhedron.prism": (mr.Polyhedron.prism, {"polygon": COLUMN.blocks[1], "middle": 0.0}),
-    "collapse_multiplier": (mr.collapse_multiplier, {"masonry": COLUMN, "direction": 1, "angle": None}),
-    "collapse_multiplier, space": (mr.collapse_multiplier, {"masonry": BOX, "direction": (1.0, 0.3), "angle": None}),
+    "collapse_multiplier": (
+        mr.collapse_multiplier,
+        {"masonry": COLUMN, "direction": 1, "angle": None, "associated": True, "loads": {"block_0": (1.0, 0.0)}},
+    ),
+    "collapse_multiplier, space": (
+        mr.collapse_multiplier,
+        {"masonry": BOX, "direction": (1.0, 0.3), "angle": None, "associated": True, "loads": {"block": (1.0, 0, 0)}},
+    ),
     "Masonry, space": (
         mr.Masonry,
         {

@@ -40,6 +40,7 @@ WRITES = {
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "low_stop": {"low_stop.txt"},
+    "limit_analysis": {f"limit_analysis.{ending}" for ending in ("png", "csv", "txt")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
     "thrust_lines": {"thrust_lines.png", "thrust_lines.txt"},
@@ -142,6 +143,7 @@ def main_of(name):
 LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
     "sensitivity",
     "low_stop",
+    "limit_analysis",
     "fragility_coverage",
     "agreement",
     "polarity",
