@@ -10,12 +10,13 @@ from .mechanism import mechanism
 from .pushing import moment_rotation, pushover
 from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
+from .thrust import thrust
 from .tornado import tornado
 
 __all__ = [
     "MODES", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "convergence",
     "damping_curves", "displacement", "distributions", "energy", "fragility", "grid", "history", "incremental",
-    "mechanism", "mode_legend", "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity", "peers",
-    "pushover", "residuals", "rotation", "save", "sensitivity", "single", "sketch", "spectra", "ties", "tornado",
-    "work_precision",
+    "mechanism", "mode_legend", "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity",
+    "peers", "pushover", "residuals", "rotation", "save", "sensitivity", "single", "sketch", "spectra", "thrust",
+    "ties", "tornado", "work_precision",
 ]  # fmt: skip

@@ -130,6 +130,8 @@ class Analysis:
     def COLUMNS(self) -> tuple[str, ...]:
         """The columns of a row."""
         own = tuple(f"{tie}_{name}" for tie in self.case.springs for name in TIE_COLUMNS)
+        if self.options.get("forces"):
+            own += ("largest_reaction_N",)
         return (WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS) + own
 
     @property
@@ -166,7 +168,8 @@ class Analysis:
             save_history(response, history)
         values = self._of_wall(response) if isinstance(self.case, Case) else _of_masonry(response)
         ending = float(response.t[-1]), response.message
-        return dict(zip(self.COLUMNS, (*values, *ending, *_of_ties(response)), strict=True))
+        forces = () if response.kept_forces is None else (response.forces.largest_reaction,)
+        return dict(zip(self.COLUMNS, (*values, *ending, *_of_ties(response), *forces), strict=True))
 
     def _of_wall(self, response: Response) -> tuple[object, ...]:
         """The columns of a wall but the last two."""
@@ -210,6 +213,13 @@ class MasonryAnalysis(Analysis):
 
 
 def save_history(response: Response, path: Path) -> None:
-    """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file."""
+    """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file.
+
+    Where the run has kept forces, normal, shear and eccentricity follow, and the reaction of each fixed block.
+    """
     names = ("theta", "omega") if response.joints is None else ("pose", "velocity")
-    write_arrays(path, **{name: getattr(response, name) for name in ("t", *names, "energy")})
+    arrays = {name: getattr(response, name) for name in ("t", *names, "energy")}
+    if response.kept_forces is not None:
+        arrays |= {name: getattr(response.forces, name) for name in ("normal", "shear", "eccentricity")}
+        arrays |= {f"reaction of {name}": force for name, force in response.reactions.items()}
+    write_arrays(path, **arrays)

@@ -43,6 +43,7 @@ WRITES = {
     "limit_analysis": {f"limit_analysis.{ending}" for ending in ("png", "csv", "txt")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
+    "thrust_lines": {"thrust_lines.png", "thrust_lines.txt"},
     "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},

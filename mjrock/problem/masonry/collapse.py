@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import linprog
 from scipy.sparse import hstack
 
 from ...quantities import Array, named, require_array, require_flag, require_kind, require_reals, require_within, shown
@@ -117,7 +117,9 @@ def _associated(masonry: Masonry, grown: Array, across: tuple[Array, ...]) -> tu
     raised = (grown.ravel() / total / sizes)[:, None]
     prices = np.zeros(pressed.shape[1] + 1)
     prices[-1] = -1.0
-    answer = linprog(prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry))
+    answer = scipy.optimize.linprog(
+        prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry)
+    )
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return None  # unbounded
     if answer.status != 0:

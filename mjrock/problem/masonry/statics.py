@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
 from ...linear import loose
@@ -152,7 +152,9 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     missing = eye_array(len(weight))
     columns = hstack([*edges, missing, -missing])
     prices = np.concatenate([*cost, np.ones(2 * len(weight))])
-    return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry))
+    return scipy.optimize.linprog(
+        prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry)
+    )
 
 
 def _stands(answer: Any) -> bool:
