@@ -167,6 +167,6 @@ def test_a_plate_between_two_walls_is_stable_with_steps_that_its_base_allows(sha
     ]
     masonry = mr.Masonry(blocks, k_n=1e9, friction=0.3, xi=xi)
     limit = mr.solve_explicit(mr.MasonryCase(masonry, 1e-3)).stats["stable_timestep"]
-    case = mr.MasonryCase(masonry, 1.0, velocity=[(0.5, 0, 0)])
+    case = mr.MasonryCase(masonry, 1.0, velocity=[(0.2, 0, 0)])
     run = mr.solve_explicit(case, timestep=share * limit, output_step=5e-3)
-    assert np.abs(run.velocity).max() < 0.6
+    assert np.abs(run.velocity).max() < 0.24
