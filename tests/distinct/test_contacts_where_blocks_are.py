@@ -156,8 +156,7 @@ def test_a_pillar_lands_on_its_edge_with_the_default_step(in_space):
     assert run.stats["overlap"] < 0.01
 
 
-@pytest.mark.parametrize("share", [0.8, 0.98])
-@pytest.mark.parametrize("xi", [0.0, 0.1])
+@pytest.mark.parametrize(("share", "xi"), [(0.8, 0.0), (0.8, 0.1), (0.98, 0.1)])
 def test_a_plate_between_two_walls_is_stable_with_steps_that_its_base_allows(share, xi):
     blocks = [
         GROUND,
