@@ -34,6 +34,9 @@ OTHERS = (
     "scene/masonry.py",
     "scene/rest.py",
     "result/history.py",
+    "result/ledger.py",
+    "result/reading.py",
+    "result/ties.py",
     "reference/equations.py",
 )
 """Modules of the method without compiled functions."""
