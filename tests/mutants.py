@@ -34,9 +34,6 @@ OTHERS = (
     "scene/masonry.py",
     "scene/rest.py",
     "result/history.py",
-    "result/ledger.py",
-    "result/reading.py",
-    "result/ties.py",
     "reference/equations.py",
 )
 """Modules of the method without compiled functions."""
@@ -73,6 +70,9 @@ OWN = {
     "problem/masonry/joint_forces.py": ("collapse_without_dilatancy",),
     "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
+    "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
+    "result/ledger.py": ("ledger",),
+    "result/ties.py": ("ties_that_break", "friction_damper", "masonry_effects"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
     "problem/masonry/polygon.py": ("polygon",),

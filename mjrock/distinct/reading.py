@@ -18,7 +18,7 @@ from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, JointFrames, forces_of
 from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
-from ..result.reading import Meetings, Reading, masonry_reading, wall_reading
+from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
 from ..result.response import Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
@@ -83,7 +83,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         RuntimeError: if energy has appeared from nowhere.
     """
     require_sound(run, stats)
-    reading, yielded = read(run), plastic(run)
+    reading, yielded = reading_of(run), plastic(run)
     samples, kept = run.samples, thinned(len(run.t), stride)
     response = Response(
         case=run.case,
@@ -129,7 +129,7 @@ def plastic(run: Run) -> dict[str, Plastic]:
     return plastic_of(run.scene, ties["drawn"], books.ties, ties["broken"], books.broken)
 
 
-def read(run: Run) -> Reading:
+def reading_of(run: Run) -> Reading:
     """What is read from a run."""
     case, contacts, samples = run.case, run.contacts, run.samples
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
@@ -137,7 +137,7 @@ def read(run: Run) -> Reading:
         met = None if run.followed.memory is None else run.followed.memory.met
         widest = run.followed.system.lines["widest"][: len(run.scene.contacts.joint)]
         left = met is not None and bool(met.handed.any())
-        return masonry_reading(case, run.scene, run.t, motion, Meetings(widest, left))
+        return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left))
     assert contacts is not None
     return wall_reading(case, contacts, run.t, motion, released=run.course.released)
 

@@ -17,7 +17,7 @@ from ..scene.scene import Scene, is_quiet
 from .ending import Outcome, ending, masonry_ending
 from .fallen import below_everything, fallen_blocks, in_order, left_joints, sunk_ground
 from .history import rocking_history
-from .joint_motion import Followed, joint_motion, slips
+from .joint_motion import JointRecord, joint_motion, slips
 from .joints import JointMotion
 from .motion import SampledMotion
 from .overhang import past_support, told_of_overhang
@@ -49,7 +49,7 @@ class Reading:
     stats: dict[str, Any] = field(default_factory=dict)
 
 
-class Meetings(NamedTuple):
+class BesidePoses(NamedTuple):
     """What is known of blocks that meet wherever they are, beside their poses.
 
     Args:
@@ -76,9 +76,9 @@ def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion
 
 
 def masonry_reading(
-    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, meetings: Meetings | None = None
+    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, beside: BesidePoses | None = None
 ) -> Reading:
-    """Openings, slidings and falls of masonry. Without `meetings` blocks meet at the joints at rest alone, whose faces
+    """Openings, slidings and falls of masonry. Without `beside` blocks meet at the joints at rest alone, whose faces
     have no end."""
     masonry, pose = case.masonry, motion.pose.reshape(len(t), -1)
     up = scene.freedom.translations - 1
@@ -87,15 +87,15 @@ def masonry_reading(
     below = drop - sunk_ground(masonry, case.supports, t)
     fallen = fallen_blocks(masonry, t, joints.parted, tilts(pose, scene.freedom), below)
     quiet, opening = is_quiet(scene, float(motion.energy[-1]), motion.velocity[-1]), joints.opening.copy()
-    if meetings is None:
+    if beside is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
         told = told_of_overhang(_past_edges(case, scene, pose, joints, fallen))
     else:
-        quiet = quiet or (meetings.left and _lies_still(scene, t, motion))
+        quiet = quiet or (beside.left and _lies_still(scene, t, motion))
         gone = below_everything(masonry, case.supports, t, drop)
         told = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
-        np.maximum.at(opening, scene.contacts.joint, meetings.widest)
-    outcome, message = masonry_ending(fallen, quiet, min(float(t[-1]), case.duration), everywhere=meetings is not None)
+        np.maximum.at(opening, scene.contacts.joint, beside.widest)
+    outcome, message = masonry_ending(fallen, quiet, min(float(t[-1]), case.duration), everywhere=beside is not None)
     return Reading(
         outcome,
         message + told,
@@ -105,7 +105,7 @@ def masonry_reading(
 
 
 def _fallen_from_faces(
-    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, joints: Followed, fallen: dict[str, float]
+    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, joints: JointRecord, fallen: dict[str, float]
 ) -> dict[str, float]:
     """When each block fell [s], where one that has slid off its joints counts as fallen, and one that ended the run."""
     left = left_joints(case.masonry, t, joints.off)
@@ -123,7 +123,7 @@ def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
 
 
 def _past_edges(
-    case: MasonryCase, scene: Scene, pose: Array, joints: Followed, fallen: dict[str, float]
+    case: MasonryCase, scene: Scene, pose: Array, joints: JointRecord, fallen: dict[str, float]
 ) -> dict[str, float]:
     """How far the weight of each block that has not fallen has passed the edge of what it stands on [m]."""
     masonry, places, joint, start = case.masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel()
