@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from .problem.ground.motion import GroundMotion
     from .problem.ground.record_sets import records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
+    from .problem.masonry.actuator import Actuator
     from .problem.masonry.case import MasonryCase
     from .problem.masonry.collapse import Collapse, collapse_multiplier
     from .problem.masonry.joints import Joint
@@ -89,7 +90,7 @@ if TYPE_CHECKING:
     from .theory.impact import RigidImpact, rigid_impact
 
 __all__ = [
-    "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
+    "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass", "Analysis", "Block",
     "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts",
     "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable", "Grid",
     "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load",

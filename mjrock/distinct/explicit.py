@@ -79,7 +79,9 @@ def solve_explicit(
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
     looks = len(steps.looks(steps.last + 1))
-    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
+    samples = Samples.room(
+        count, bodies, books, scene.freedom, ledger=ledger, looks=looks, actuators=len(setup.system.actuators)
+    )
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)

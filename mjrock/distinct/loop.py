@@ -35,6 +35,7 @@ from .touches import in_transit, was_open
 from .turning import (
     apply_inverse_inertia,
     in_body,
+    kick_place,
     kick_spin,
     momentum_of,
     take_turn,
@@ -122,7 +123,7 @@ def kick_bodies(bodies: Rows, kick: float, axes: tuple[int, ...]) -> None:
     """Let forces and moments act for a time [s]."""
     for b in range(len(bodies)):
         body = bodies[b]
-        increase(body.velocity, scaled(kick / body.mass, components(body.force, axes)))
+        kick_place(body, scaled(kick, components(body.force, axes)))
         kick_spin(body, kick, axes)
 
 
@@ -168,6 +169,8 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
     keep_account(books.ends, energy.ends)
+    for i in range(len(system.actuators)):
+        samples.actuators[row, i] = system.actuators[i].pulled
 
 
 @jitable
@@ -250,6 +253,7 @@ def make_steps(
         looked = n % clock.look == 0 or n == clock.last
         kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
+        move_supports(system.drives, n * h, before)
         push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
         if n == 0:
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))

@@ -99,12 +99,18 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
         plastic=plastic_of(run),
         ledger=ledger_of(run, kept) if ledger else None,
+        actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
         stats=reading.pop("stats") | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
         **reading,
     )
     warn_if_open(response, run.rounding)
     return response
+
+
+def actuators_of(case: Case | MasonryCase) -> tuple[str, ...]:
+    """Names of the actuators of a case."""
+    return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
 
 
 def plastic_of(run: Run) -> dict[str, Plastic]:

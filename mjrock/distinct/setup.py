@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from ..problem.damping.contacts import Contacts
+from ..problem.masonry.actuator import Actuator
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
@@ -19,7 +20,7 @@ from ..scene.explicit_step import SHARE
 from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
-from .assembly import copied, moved_by, started, system_of, take_grips
+from .assembly import copied, driven_by, moved_by, started, system_of, take_grips
 from .encounters import Encounters
 from .limit import longest_step
 from .memory import Memory, memory_of, recalled
@@ -86,10 +87,11 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     """Masonry at the start of a case, or in a given state."""
     masonry = case.masonry
-    scene, at_rest, drawn = standing(masonry, case.effects, case.settled)
+    scene, at_rest, drawn = standing(masonry, case.passive, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
-    of, blocks = (masonry, case.effects), tuple(support.block for support in case.supports)
+    system = driven_by(system, scene, masonry, case.each(Actuator))
+    of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
     return Setup(scene, course, system, longest_step(system), SHARE, encounters=encounters, of=of, blocks=blocks)

@@ -36,7 +36,8 @@ class Supports(NamedTuple):
 
 
 class System(NamedTuple):
-    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly."""
+    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly, and
+    `drives` are the histories of the actuators, along one axis each."""
 
     axes: tuple[int, ...]
     bodies: Rows
@@ -46,8 +47,10 @@ class System(NamedTuple):
     ties: Rows
     dampers: Rows
     forces: Rows
+    actuators: Rows
     ground: Ground
     supports: Supports
+    drives: Supports
 
 
 class Books(NamedTuple):
@@ -104,6 +107,7 @@ class Samples(NamedTuple):
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
         looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
         dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        actuators: force of each actuator [N], shape (samples, a).
     """
 
     pose: Array
@@ -114,17 +118,27 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
+    actuators: Array
 
     @classmethod
     def room(
-        cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False, looks: int = 2
+        cls,
+        count: int,
+        bodies: int,
+        books: Books,
+        freedom: Freedom = PLANE,
+        *,
+        ledger: bool = False,
+        looks: int = 2,
+        actuators: int = 0,
     ) -> Samples:
         """Room for some samples and looks, for a sample that is not kept, and for the accounts of a ledger."""
         count += 1
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
+        energies = rows(ENERGY, count), rows(ENERGY, looks)
+        return cls(pose, velocity, *energies, *accounts, np.zeros((count, actuators)))
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""

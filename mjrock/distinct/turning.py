@@ -26,6 +26,7 @@ from ..geometry.vectors import (
     scaled,
     spin_components,
     spun,
+    times,
 )
 from ..quantities import Array
 from .rows import Row, Rows
@@ -108,7 +109,8 @@ def spin_from_moment(body: Row, a: Vector) -> Vector:
 def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
     """Angular momentum in the axes of the world [N m s]."""
     if len(axes) == 2:
-        return (body.spin[0] / body.inverse_inertia[0, 0],)
+        inverse = body.inverse_inertia[0, 0]
+        return (body.spin[0] / inverse if inverse > 0 else 0.0,)
     return components(body.momentum, axes)
 
 
@@ -147,10 +149,16 @@ def strike_spin(body: Row, impulse: float, lever: Vector, spin: Vector) -> None:
 
 
 @inlined
+def kick_place(body: Row, impulse: Vector) -> None:
+    """Let an impulse act on the centroid of a body [N s]."""
+    increase(body.velocity, times(components(body.inverse_mass, impulse), impulse))
+
+
+@inlined
 def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
     """Let an impulse act at an arm from the centroid of a body [N s]."""
     lever = moment(arm, impulse)
-    increase(body.velocity, scaled(1 / body.mass, impulse))
+    kick_place(body, impulse)
     strike_spin(body, 1.0, lever, spin_from_moment(body, lever))
 
 
@@ -226,7 +234,7 @@ def start_turning(bodies: Rows, pose: Array, velocity: Array) -> None:
         bodies["angle"], bodies["spin"] = pose[:, 2], velocity[:, 2:]
         return
     bodies["quaternion"] = pose[:, 3:]
-    momentum = np.linalg.solve(bodies["inverse_inertia"], velocity[:, 3:, None])[:, :, 0]
+    momentum = (np.linalg.pinv(bodies["inverse_inertia"]) @ velocity[:, 3:, None])[:, :, 0]  # zero of guided bodies
     bodies["momentum"] = momentum + np.einsum("nij,nj->ni", rotations(bodies), momentum)
 
 
@@ -261,6 +269,6 @@ def quaternions(bodies: Rows) -> Array:
 def root_of_masses(bodies: Rows) -> csr_array:
     """A matrix whose product with its transpose is the inverse of the masses at rest, shape (n nv, n nv)."""
     blocks = []
-    for mass, root in zip(bodies["mass"], np.linalg.cholesky(bodies["inverse_inertia"]), strict=True):
-        blocks += [np.eye(bodies["rest"].shape[1]) / np.sqrt(mass), root]
+    for light, turning in zip(bodies["inverse_mass"], bodies["inverse_inertia"], strict=True):
+        blocks += [np.diag(np.sqrt(light)), np.linalg.cholesky(turning) if turning.any() else turning]
     return csr_array(block_diag(blocks, format="csr"))
