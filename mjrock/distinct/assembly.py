@@ -147,7 +147,8 @@ def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequenc
         support=-1,
         at=at,
         between=way,
-        k=[each.stiffness for each in actuators],
+        k=np.array([each.stiffness for each in actuators]),
+        c=np.array([each.damping for each in actuators]),
         reach=((bodies["place"][held] + change) * way).sum(axis=1),
     )
     for body, each in zip(held, actuators, strict=True):

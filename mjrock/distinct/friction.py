@@ -20,7 +20,6 @@ from ..geometry.vectors import (
     Vector,
     components,
     dot,
-    increase,
     minus,
     moment,
     plus,
@@ -130,7 +129,8 @@ def yielding(body: Row, way: Vector) -> float:
 
     It is not quite zero of a body that a guide holds, so that it can be divided by.
     """
-    return max(dot(way, times(components(body.inverse_mass, way), way)), HELD / body.mass)
+    light: float = max(dot(way, times(components(body.inverse_mass, way), way)), HELD / body.mass)
+    return light
 
 
 @inlined

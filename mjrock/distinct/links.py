@@ -148,9 +148,13 @@ def drive(system: System, books: Books, i: int, h: float, axes: tuple[int, ...])
     at = components(row.at, way)
     change = rotation_change(body, at)
     moved = dot(way, plus(components(body.place, way), change)) - row.reach
-    force = row.k * (system.drives.moved[i, 0] - moved)
+    speed = dot(way, plus(components(body.velocity, way), spun(spin_components(body.spin, way), plus(at, change))))
+    rate = system.drives.moving[i, 0] - speed
+    dragged = row.c * rate
+    force = row.k * (system.drives.moved[i, 0] - moved) + dragged
     books.totals[0].ground += 0.5 * h * (row.pulled + force) * system.drives.moving[i, 0]
-    row.pulled = force
+    books.dampers[len(system.dampers) + i] += 0.5 * h * (row.dragged + dragged) * rate
+    row.pulled, row.dragged = force, dragged
     add_force(body, plus(at, change), scaled(force, way))
 
 
@@ -166,7 +170,8 @@ def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
         elastic += 0.5 * tie.k * stretched * stretched
     for i in range(len(system.actuators)):
         actuator = system.actuators[i]
-        elastic += 0.5 * actuator.pulled * actuator.pulled / actuator.k
+        held = actuator.pulled - actuator.dragged
+        elastic += 0.5 * held * held / actuator.k
     for i in range(len(system.forces)):
         row = system.forces[i]
         body = system.bodies[row.body]

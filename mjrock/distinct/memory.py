@@ -86,10 +86,11 @@ def places(supports: Supports, i: int, t: float) -> Array:
 
 def carry_drives(memory: Memory, system: System) -> None:
     """Let actuators go on from where the same ones before had driven their blocks."""
-    before, same = memory.system.actuators, ["body", "at", "between", "k"]
+    before, same = memory.system.actuators, ["body", "at", "between", "k", "c"]
     if len(before) != len(system.actuators) or (before[same] != system.actuators[same]).any():
         return
-    system.actuators["pulled"] = before["pulled"]
+    for name in ("pulled", "dragged"):
+        system.actuators[name] = before[name]
     system.actuators["reach"] = before["reach"] + memory.driven[:, 0]
     system.drives.moved[:, 0] = -memory.driven[:, 1]
 

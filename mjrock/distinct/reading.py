@@ -230,7 +230,7 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     scene, samples = run.scene, run.samples.taken(kept)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
+    dashpots = dict(zip((*scene.links.damped.names, *actuators_of(run.case)), samples.dampers.T, strict=True))
     dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(

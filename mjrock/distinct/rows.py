@@ -143,6 +143,7 @@ def _link(d: int) -> Fields:
         # actuator the displacement of its point at the start of its history [m]
         *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
         *_number("pulled"),  # force in the last step, negative where it pulls [N]
+        *_number("dragged"),  # of an actuator, the part of it that its dashpot has [N]
     ]
 
 

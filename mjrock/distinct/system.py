@@ -58,7 +58,7 @@ class Books(NamedTuple):
 
     Args:
         dashpots: by group, shape (g,).
-        ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
+        ties, broken, dampers: by tie, yielding and breaking, shape (t,) each, and by damper and actuator, shape (d,).
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
@@ -80,7 +80,7 @@ class Books(NamedTuple):
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
-        sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
+        sizes = groups, len(system.ties), len(system.ties), len(system.dampers) + len(system.actuators), 2
         dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
         totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
@@ -137,8 +137,8 @@ class Samples(NamedTuple):
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        energies = rows(ENERGY, count), rows(ENERGY, looks)
-        return cls(pose, velocity, *energies, *accounts, np.zeros((count, actuators)))
+        accounts.append(np.zeros((count, actuators)))
+        return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""

@@ -52,8 +52,8 @@ class Response:
             of the steps alone `stepping_time` and `stepping_processor_time` [s]. MuJoCo adds the deepest penetrations,
             `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
             `base_displacement` when the duration is over [m].
-        actuators: force of each actuator at the samples, by its name [N], shape (n,), positive where it pushes its block
-            along its direction.
+        actuators: force of each actuator at the samples, by its name [N], shape (n,), positive where it pushes its
+            block along its direction.
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
     """
 

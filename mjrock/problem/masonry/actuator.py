@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ...quantities import Array, keep, require_array, require_reals, require_whole, require_within, shown
 from ..wall.effect import Effect
@@ -33,11 +32,12 @@ GUIDES = {None: Guide(), "upright": Guide(turning=True), "translation": Guide(ri
 class Actuator(Effect):
     """An actuator that drives a point of a block of masonry along a direction, through a spring.
 
-    Its force is stiffness (d - u): d is the history, and u the displacement of the point along the direction since the
-    masonry stood at rest, or as drawn. The actuator pushes and pulls, and its direction stays as it is in space. Its
-    force at the samples is `response.actuators` [N], positive where it pushes along the direction. What it puts in is
-    in `ledger.ground`, and what its spring holds in `ledger.elastic`. A stiffness far above that of the joints follows
-    the history closely and makes the steps short; u is d less the force over the stiffness.
+    Its force is stiffness (d - u) + damping (d' - u'): d is the history, u the displacement of the point along the
+    direction since the masonry stood at rest, or as drawn, and d' and u' are their rates. The actuator pushes and
+    pulls, and its direction stays as it is in space. Its force at the samples is `response.actuators` [N], positive
+    where it pushes along the direction. What it puts in is in `ledger.ground`, what its spring holds in
+    `ledger.elastic`, and what its dashpot takes in `ledger.dashpots`. A stiffness far above that of the joints follows
+    the history closely and makes the steps short. Without damping the block swings on the spring.
 
     Args:
         block: the block that it drives, by its name or number.
@@ -45,6 +45,7 @@ class Actuator(Effect):
         direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z).
         displacement: (t, d) in s and m, from (0, 0) on, linear in between and constant after the last, within 10 m.
         stiffness: of its spring [N/m], 1 to 1e12.
+        damping: of its dashpot [N s/m], 0 to 1e12.
         guided: how the block is guided from rest on: None leaves it free, "upright" keeps it from turning, as a beam
             that a constant load presses on the wall, and "translation" from turning and rising, as a beam of a rig
             that is held in both. Guides do no work.
@@ -57,9 +58,10 @@ class Actuator(Effect):
     arguments: ClassVar[str] = "block, at, direction,\ndisplacement, stiffness"
     block: Any
     at: Any
-    direction: float | ArrayLike
+    direction: Any
     displacement: Any
     stiffness: float
+    damping: float = 0.0
     guided: Literal["upright", "translation"] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -77,6 +79,7 @@ class Actuator(Effect):
             direction=_unit(self.direction, len(at)),
             displacement=history_of("displacement of the actuator", self.displacement, LARGEST, "m", from_zero=True),
             stiffness=require_within("stiffness of the actuator", self.stiffness, 1.0, 1e12, "N/m"),
+            damping=require_within("damping of the actuator", self.damping, 0.0, 1e12, "N s/m"),
         )
 
     @property

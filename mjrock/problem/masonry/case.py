@@ -47,8 +47,8 @@ class MasonryCase(Carrying):
             to the left. Responses are motions as seen from the ground.
         vertical: the same, vertical. A positive one is upwards and presses the blocks on their joints.
         effects: ties, loads, thrusts, added masses, dampers and actuators. Each says which `block` it belongs to, by
-            its name or its number in `masonry.blocks`. Heights are z; offsets are measured from the centroid of the block. A tie holds the left
-            end of its block at its height. In space each acts at a point, `at`.
+            its name or its number in `masonry.blocks`. Heights are z; offsets are measured from the centroid of the
+            block. A tie holds the left end of its block at its height. In space each acts at a point, `at`.
         velocity: velocity of each block that is not fixed at the release: x, z and rotation [m/s, m/s, rad/s], shape
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
             turns to the right. In space x, y, z and the angular velocity about the three axes, shape (bodies, 6).

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...quantities import GRAVITY, Array, named, require_whole, shown
+from ...quantities import GRAVITY, Array, named, require_whole
 from ..wall.effect import Anchored, Effect
 from .actuator import Actuator
 from .masonry import Masonry
@@ -69,7 +69,7 @@ def numbered(name: str, effect: Effect, masonry: Masonry) -> Effect:
         block = getattr(effect, field, None)
         if isinstance(block, str):
             if block not in masonry.names:
-                raise ValueError(f"{name}, {field} = {shown(block)} is no block; the valid ones are {named(masonry.names)}")
+                raise ValueError(f"{name}, {field} = {block!r} is no block; the valid ones are {named(masonry.names)}")
             effect = replace(effect, **{field: masonry.names.index(block)})  # type: ignore[type-var]
     return effect
 
@@ -82,8 +82,8 @@ def require_pushing(name: str, actuator: Actuator, masonry: Masonry) -> None:
     _require_on(f"{name}, at", actuator.at, masonry.blocks[actuator.block])
     if actuator.guide.rising and actuator.direction[-1] != 0:
         raise ValueError(
-            f"{name}, direction = {actuator.direction} rises, which guided = 'translation' keeps the block from; give a "
-            "horizontal one"
+            f"{name}, direction = {actuator.direction} rises, which guided = 'translation' keeps the block from; the "
+            "valid ones are horizontal"
         )
 
 
