@@ -124,12 +124,15 @@ CALLS = OF_NUMBERS | {
         mr.simulate,
         {
             "case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "accuracy": 1e-3, "newmark_beta": 0.25,
-            "output_step": 1e-3, "ledger": False, "start": RESPONSE.end,
+            "output_step": 1e-3, "ledger": False, "forces": True, "start": RESPONSE.end,
         },
     ),
     "simulate, fitted": (mr.simulate, {"case": SHORT, "contacts": CONTACTS, "accuracy": 1e-2, "output_step": 1e-3}),
     "solve_analytical": (mr.solve_analytical, {"case": SHORT, "e": E, "rtol": 1e-8, "output_step": 1e-3, "rest": 1e-9}),
-    "solve_explicit": (mr.solve_explicit, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-4, "output_step": 1e-3}),
+    "solve_explicit": (
+        mr.solve_explicit,
+        {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-4, "output_step": 1e-3, "forces": True},
+    ),
     "solve_compliant": (mr.solve_compliant, {"case": SHORT, "contacts": CONTACTS, "rtol": 1e-6, "output_step": 1e-3}),
     "compare": (mr.compare, {"reference": RESPONSE, "candidate": RESPONSE}),
     "wall_mjcf": (mr.wall_mjcf, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
@@ -213,8 +216,14 @@ CALLS = OF_NUMBERS | {
         },
     ),
     "Polyhedron.prism": (mr.Polyhedron.prism, {"polygon": COLUMN.blocks[1], "middle": 0.0}),
-    "collapse_multiplier": (mr.collapse_multiplier, {"masonry": COLUMN, "direction": 1, "angle": None}),
-    "collapse_multiplier, space": (mr.collapse_multiplier, {"masonry": BOX, "direction": (1.0, 0.3), "angle": None}),
+    "collapse_multiplier": (
+        mr.collapse_multiplier,
+        {"masonry": COLUMN, "direction": 1, "angle": None, "associated": True, "loads": {"block_0": (1.0, 0.0)}},
+    ),
+    "collapse_multiplier, space": (
+        mr.collapse_multiplier,
+        {"masonry": BOX, "direction": (1.0, 0.3), "angle": None, "associated": True, "loads": {"block": (1.0, 0, 0)}},
+    ),
     "Masonry, space": (
         mr.Masonry,
         {
@@ -282,7 +291,7 @@ CALLS = OF_NUMBERS | {
         mr.simulate,
         {
             "case": mr.MasonryCase(COLUMN, 0.02), "contacts": None, "timestep": None, "accuracy": 1e-2,
-            "newmark_beta": 0.25, "output_step": 1e-3, "ledger": False, "start": None,
+            "newmark_beta": 0.25, "output_step": 1e-3, "ledger": False, "forces": False, "start": None,
         },
     ),
     "Plan": (mr.Plan, {name: getattr(PLAN, name) for name in inspect.signature(mr.Plan).parameters}),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ...quantities import Array, require_reals, require_row, require_within
 
@@ -38,9 +38,9 @@ def _answer(accel: Array, h: float, period: float, damping: float, reading: tupl
     omega = 2 * math.pi / period
     rates = np.array([[0.0, 1.0], [-(omega**2), -2 * damping * omega]])
     system = rates, np.array([[0.0], [-1.0]]), np.array([reading]), np.array([[0.0]])
-    A, B, C, D, _ = cont2discrete(system, h, method="foh")
-    upper, lower = ss2tf(A, B, C, D)
-    return np.asarray(lfilter(upper[0], lower, accel))
+    A, B, C, D, _ = scipy.signal.cont2discrete(system, h, method="foh")
+    upper, lower = scipy.signal.ss2tf(A, B, C, D)
+    return np.asarray(scipy.signal.lfilter(upper[0], lower, accel))
 
 
 def building_modes(
