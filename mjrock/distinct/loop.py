@@ -31,6 +31,7 @@ from .friction import book_rubbing, note_slips, stick
 from .gathering import keep_forces
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
+from .slowing import oppose, slow_down
 from .system import Books, Samples, System
 from .touches import in_transit, was_open
 from .turning import (
@@ -63,6 +64,7 @@ class Clock(NamedTuple):
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
         look: steps from one look to the next.
+        drag, local: mass-proportional damping [1/s] and local damping [-] of the motion, see `slowing`.
         lead: by how many steps dashpots look ahead, see `touches.foreseen`.
     """
 
@@ -77,6 +79,8 @@ class Clock(NamedTuple):
     pushed: Vector
     look: int = sys.maxsize
     lead: float = 0.0
+    drag: float = 0.0
+    local: float = 0.0
 
 
 @inlined
@@ -265,6 +269,8 @@ def make_steps(
             keep_pose(system, books, samples, kept, before, axes)
         if accounted:
             note_slips(system, books.active, sticking, axes)
+        if clock.local > 0:
+            oppose(system, books, clock.local, kick, axes)
         kick_bodies(system.bodies, kick, axes)
         stick(system, books.active, sticking, kick, axes)
         taken, put_in = settle_touches(system, books, touched, kick, axes)
@@ -275,6 +281,8 @@ def make_steps(
             if before > 0:  # halves that belong to the time before the pose
                 samples.energy[kept].friction += rubbed
                 samples.energy[kept].ground += put_in
+        if clock.drag > 0:
+            slow_down(system, books, clock.drag * kick, axes)
         if sampled or looked:
             keep_velocity(system.bodies, samples, kept, before, axes)
         if looked:

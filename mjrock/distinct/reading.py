@@ -243,7 +243,8 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     scene, samples = run.scene, run.samples.taken(kept)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
     dashpots = dict(zip((*scene.links.damped.names, *actuators_of(run.case)), samples.dampers.T, strict=True))
-    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
+    groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
+    dashpots |= dict(zip(groups, samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[kept],

@@ -44,6 +44,7 @@ class Actuator(Effect):
         at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m].
         direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z).
         displacement: (t, d) in s and m, from (0, 0) on, linear in between and constant after the last, within 10 m.
+            None rests, for `push`, which finds its own.
         stiffness: of its spring [N/m], 1 to 1e12.
         damping: of its dashpot [N s/m], 0 to 1e12.
         guided: how the block is guided from rest on: None leaves it free, "upright" keeps it from turning, as a beam
@@ -73,6 +74,8 @@ class Actuator(Effect):
             raise ValueError(f"guided of the actuator = {shown(self.guided)} is not known; the valid ones are {names}")
         if not isinstance(self.block, str):
             keep(self, block=require_whole("block of the actuator", self.block, 0, BLOCKS))
+        if self.displacement is None:
+            keep(self, displacement=((0.0,), (0.0,)))
         keep(
             self,
             at=tuple(at.tolist()),
