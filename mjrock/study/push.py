@@ -36,7 +36,7 @@ QUIET = 0.25
 """Share of the inertia allowed below which the next piece takes half the time [-]."""
 LONGEST = 0.5
 """Longest step of the motion that is a force that grows [s]."""
-RISE = 0.005
+RISE = 0.002
 """Growth of the multiplier in a piece [-]."""
 BEYOND = 1.02
 """Multiplier over what is borne from which it does not grow any more [-]."""
@@ -227,7 +227,7 @@ class Driven(Load):
         goal = float(self.levels[0])
         driven = replace(self.actuator, displacement=((0.0, duration), (0.0, goal - self.level)))
         answer = self._answer(duration, driven)
-        (force,) = answer.actuators.values()
+        *_, force = answer.actuators.values()  # effects may have others
         pushed = means(force)
         place = self.level + means(answer.t) / duration * (goal - self.level) - pushed / self.actuator.stiffness
         inertia = self._inertia(answer, driven.way)
@@ -300,9 +300,9 @@ def _pushed(load: Load, allowed: float, falls_to: float) -> Push:
                 if share <= allowed or not load.may_slow or attempt == TRIES - 1:
                     break
                 duration *= 2
-            if share < QUIET * allowed:
-                duration = max(0.5 * duration, FIRST)
             load.accept(piece)
+            if share < QUIET * allowed or not load.may_slow:
+                duration = max(0.5 * duration, FIRST) if load.may_slow else FIRST
             points.append(piece[:3])
             largest = max(largest, float(np.abs(piece.force).max()))
             fallen = float(np.abs(piece.force).max()) < falls_to * largest
