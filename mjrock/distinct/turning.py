@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.sparse import block_diag, csr_array
 
 from ..compiled import inlined, jitable
 from ..geometry.vectors import (
@@ -266,9 +265,12 @@ def quaternions(bodies: Rows) -> Array:
     return np.asarray(bodies["quaternion"])
 
 
-def root_of_masses(bodies: Rows) -> csr_array:
-    """A matrix whose product with its transpose is the inverse of the masses at rest, shape (n nv, n nv)."""
-    blocks = []
-    for light, turning in zip(bodies["inverse_mass"], bodies["inverse_inertia"], strict=True):
-        blocks += [np.diag(np.sqrt(light)), np.linalg.cholesky(turning) if turning.any() else turning]
-    return csr_array(block_diag(blocks, format="csr"))
+def roots_of_masses(bodies: Rows) -> Array:
+    """Of each body a matrix whose product with its transpose is the inverse of its masses at rest, (n, nv, nv)."""
+    d = bodies["rest"].shape[1]
+    nv = d + bodies["inverse_inertia"].shape[1]
+    roots = np.zeros((len(bodies), nv, nv))
+    roots[:, range(d), range(d)] = np.sqrt(np.asarray(bodies["inverse_mass"]))
+    turning = bodies["inverse_inertia"].any(axis=(1, 2))  # guides keep the others from it
+    roots[turning, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"][turning])
+    return roots
