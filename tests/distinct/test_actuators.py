@@ -43,7 +43,7 @@ def test_a_panel_pushed_at_its_top_has_the_force_of_a_rigid_block_down_to_overtu
     assert rocks.sum() > 400
     expected = np.interp(driven, moved, closed)
     assert np.abs(force - expected)[rocks].max() < 0.01 * B / (2 * H)
-    assert force[50:].max() == pytest.approx(B / (2 * H), rel=0.01)
+    assert force[40:50].max() == pytest.approx(B / (2 * H), rel=0.01)
 
 
 @pytest.mark.parametrize("k_s", [None, 1e10])
@@ -62,7 +62,7 @@ def test_a_panel_pushed_to_and_fro_loses_friction_times_path(k_s):
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize("guided", ["upright", "translation"])
 def test_a_guided_block_does_not_turn(guided, in_space):
-    history = ([0.0, 0.5], [0.0, 0.05])
+    history = ([0.0, 0.5], [0.0, 0.02])
     driven = actuator(-B, 2 * H, history, in_space=in_space, guided=guided)
     answer, force = pushed(panel(0.3, in_space=in_space), driven, duration=0.5)
     assert np.median(force[25:]) == pytest.approx(0.3, rel=0.001)  # free, it would turn at 0.125
