@@ -1,9 +1,9 @@
 """Dry granite walls of Vasconcelos (2005), pushed in their plane under a constant load, beside the tests.
 
 The walls are 1.0 x 1.2 x 0.2 m, of blocks of 0.2 x 0.15 m without mortar. A beam stands on the wall and may turn; the
-actuator pushes it 1.325 m above the base. The vertical load is taken to come through rollers, so that its line stays where it is
-as the beam moves: a plate on rollers, held by an actuator that rests, carries it. Prints a table and draws the
-curves over the tests, which are in `tests/records/granite_walls` (stone masonry database of EPFL's EESD group, MIT
+actuator pushes it 1.325 m above the base. The vertical load is taken to come through rollers, so that its line stays
+where it is as the beam moves: a plate on rollers, held by an actuator that rests, carries it. Prints a table and draws
+the curves over the tests, which are in `tests/records/granite_walls` (stone masonry database of EPFL's EESD group, MIT
 licence; Vanin et al. 2017, doi 10.1007/s10518-017-0188-5).
 
 The stiffness of the joints is fitted on WS.175; the other walls are shown with it.
