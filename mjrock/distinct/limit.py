@@ -26,13 +26,14 @@ def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
     lines, bodies = system.lines, len(system.bodies)
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
-    rates += [link_rates(links, bodies) for links in (system.ties, system.dampers)]
+    linked = (system.ties, system.dampers, system.actuators)
+    rates += [link_rates(links, bodies) for links in linked]
     lengths, root = csr_array(vstack(rates)), csr_array(block_diag(roots_of_masses(system.bodies)))
 
     def weights(along: str, across: str) -> Array:
         shear = np.where(np.isfinite(lines["k_s"]), lines[across], 0.0)
         ways = [shear] * (len(system.axes) - 1)
-        return np.concatenate([lines[along], *ways, system.ties[along], system.dampers[along]])
+        return np.concatenate([lines[along], *ways, *(links[along] for links in linked)])
 
     return stable_step(highest(lengths, weights("k", "k_s"), root), highest(lengths, weights("c", "c_s"), root))
 
