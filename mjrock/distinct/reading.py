@@ -96,6 +96,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         joints=reading.joints,
         plastic=yielded,
         ledger=ledger_of(run, kept) if ledger else None,
+        actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
@@ -113,13 +114,18 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     return response
 
 
+def actuators_of(case: Case | MasonryCase) -> tuple[str, ...]:
+    """Names of the actuators of a case."""
+    return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
+
+
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
     """The forces of a run at some of its samples, if they were kept."""
     samples, links = run.samples.taken(kept), run.scene.links
     if not samples.held.shape[1]:
         return None
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
-    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled)
+    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled, samples.actuators)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
@@ -183,8 +189,9 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     scene, samples = run.scene, run.samples.taken(kept)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
-    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
+    dashpots = dict(zip((*scene.links.damped.names, *actuators_of(run.case)), samples.dampers.T, strict=True))
+    groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
+    dashpots |= dict(zip(groups, samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[kept],

@@ -10,6 +10,7 @@ from ..method import METHOD
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
+from ..quantities import named
 from ..result.ledger import warn_if_open
 from ..result.response import Response
 from ..scene.scene import Scene
@@ -34,7 +35,9 @@ SLID = 0.01
 
 
 def require_still(case: MasonryCase) -> None:
-    """Raise a ValueError where supports move: in MuJoCo the fixed blocks belong to the world."""
+    """Raise a ValueError where supports move, as in MuJoCo the fixed blocks belong to the world, or actuators drive."""
+    if case.actuators:
+        raise ValueError(f"{named(tuple(case.actuators))}: MuJoCo has no row for actuators; take solve_explicit")
     if case.supports:
         names = ", ".join(support.block for support in case.supports)
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")
