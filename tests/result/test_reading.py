@@ -35,7 +35,9 @@ def test_a_run_that_ends_early_names_the_blocks_that_went_far():
     """A fixed step may end up to half of it before the duration."""
     far = np.zeros((3, 2, 3))
     far[-1, :, 0] = 0.04, 0.09
-    assert dict(read(np.array([0.0, 0.5, 1.0]), far).joints.fallen) == {"right": 1.0}
+    reading = read(np.array([0.0, 0.5, 1.0]), far)
+    assert dict(reading.joints.fallen) == {"right": 1.0}
+    assert "The motion was followed for 1 s" in reading.message
     far[-1, 0, 0] = 0.05
     assert dict(read(np.array([0.0, 0.5, 1.0]), far).joints.fallen) == {"left": 1.0, "right": 1.0}
     for turned, names in ((0.14, {"right"}), (0.16, {"left", "right"})):  # times 0.3 m, half the width
@@ -59,3 +61,17 @@ def test_blocks_that_left_joints_and_lie_still_have_come_to_rest(left, outcome):
     np.testing.assert_array_equal(reading.joints.opening, 0.3)
     velocity[t > 2.0 - 0.5 * STILL] = 1.0
     assert masonry_reading(CASE, SCENE, t, motion, beside).outcome is mr.Outcome.TIME_ENDED
+
+
+def test_a_block_beside_ground_that_has_sunk_as_far_has_not_fallen():
+    """It has left its joint, and is as high above the ground as at rest."""
+    t, sunk = np.linspace(0.0, 2.0, 5), np.array([0.0, 1.0, 2.0, 3.0, 4.0])
+    case = mr.MasonryCase(BOX, 2.0, supports={"ground": (t, 0 * t, -sunk)})
+    pose = np.tile(SCENE.at_rest, (len(t), 1, 1))
+    pose[:, :, 1] -= sunk[:, None]
+    pose[:, 1, 0] += 2.0
+    for below, fallen in ((0.2, {}), (0.3, {"right": 2.0})):  # half its height is 0.25 m
+        pose[-1, 1, 1] = SCENE.at_rest[1, 1] - sunk[-1] - below
+        beside = BesidePoses(np.zeros(len(SCENE.contacts.joint)), True)
+        reading = masonry_reading(case, SCENE, t, SampledMotion(pose, 0 * pose, np.zeros(len(t))), beside)
+        assert dict(reading.joints.fallen) == fallen
