@@ -36,6 +36,7 @@ from ..wall.effects import SideStop
 from ..wall.section import Opening
 from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below
+from .drawing import odd_sizes, split_faces
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
@@ -101,7 +102,8 @@ class Masonry:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
 
     Warns:
-        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd.
+        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
+            so large or small that they are probably not in m, and for faces that rounded vertices have split.
     """
 
     blocks: Sequence[Polygon | Polyhedron]
@@ -153,6 +155,9 @@ class Masonry:
             _ = self.retardation
         elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
             warnings.warn(odd, Implausible, stacklevel=3)
+        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.names)):
+            if odd:
+                warnings.warn(odd, Implausible, stacklevel=3)
 
     @property
     def in_space(self) -> bool:
