@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
     from .problem.ground.motion import GroundMotion
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
+    from .problem.masonry.bond import BONDS, Bond
     from .problem.masonry.case import MasonryCase
     from .problem.masonry.collapse import Collapse, collapse_multiplier
     from .problem.masonry.joints import Joint
@@ -87,8 +88,9 @@ if TYPE_CHECKING:
     from .theory.impact import RigidImpact, rigid_impact
 
 __all__ = [
-    "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
-    "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction",
+    "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
+    "Bond", "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts",
+    "CoulombFriction",
     "Damper", "DampingLaw", "Fragility", "FrictionDamper", "Grid", "GroundMotion", "Impact", "Implausible",
     "InspectedContact",
     "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",

@@ -33,7 +33,7 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
         edges = add_joints(lines, scene, masonry)
     ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
     acting = *links_of(scene), Ground.of(None), moving((), d)
-    system = System(scene.freedom.axes, bodies, lines, edges, ways, *acting)
+    system = System(scene.freedom.axes, bodies, lines, edges, ways, rows(kind.bond, 0), *acting)
     return started(system, scene.potential.unmoved.reshape(n, -1))
 
 
@@ -132,7 +132,7 @@ def moving(supports: Sequence[Support], d: int) -> Supports:
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables = ("bodies", "lines", "edges", "ways", "ties", "dampers", "forces")
+    tables = ("bodies", "lines", "edges", "ways", "bonds", "ties", "dampers", "forces")
     return system._replace(**{name: getattr(system, name).copy() for name in tables})
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
+from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Places, Poses, in_pairs, places_of, take_over
 from .looking import Wear, held, nearest, wears
@@ -153,6 +154,7 @@ class Encounters:
         if not (wears(system, wear, LOOK) or met.watched.any() or system.supports.moved.any()):
             return system, books, LOOK
         worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
+        worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
         poses, (velocity, about) = self.poses(system), self._velocities(system)
         ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
         watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
@@ -192,6 +194,8 @@ class Encounters:
         """
         met, count = self.met, len(self.wear.pairs)
         lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
+        if len(system.bonds):
+            released(lines[:count], system.bonds, worn)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         of_gone = np.append(worn, ~stays)
         before, gone = held(system, of_gone), lines[of_gone]

@@ -29,6 +29,7 @@ from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.scene import Scene, is_quiet
+from .bonds import TAKEN
 from .following import Followed
 from .memory import remembered
 from .rows import Rows
@@ -235,4 +236,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),
+        bonds=dict(zip(TAKEN, energy["bonds"].T, strict=True)) if len(run.followed.system.bonds) else {},
     )

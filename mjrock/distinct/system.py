@@ -12,10 +12,14 @@ from ..scene.ground import Ground
 from .rows import Rows, kinds, rows
 
 ENERGY = np.dtype(
-    [*((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")), ("ends", float, (2,))]
+    [
+        *((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")),
+        ("ends", float, (2,)),
+        ("bonds", float, (3,)),
+    ]
 )
 """Energy at a sample or a look, what friction has taken, what ground and supports have put in, and what lines of joints
-and of encounters have lost at the ends of faces by then [J]."""
+and of encounters have lost at the ends of faces, and what bonds have taken by then [J]."""
 
 
 class Supports(NamedTuple):
@@ -36,13 +40,15 @@ class Supports(NamedTuple):
 
 
 class System(NamedTuple):
-    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly."""
+    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly. `bonds`
+    has a row for each line of the joints, or none where all are dry."""
 
     axes: tuple[int, ...]
     bodies: Rows
     lines: Rows
     edges: Rows
     ways: Rows
+    bonds: Rows
     ties: Rows
     dampers: Rows
     forces: Rows
@@ -56,6 +62,7 @@ class Books(NamedTuple):
     Args:
         dashpots: by group, shape (g,).
         ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
+        bonds: what bonds have taken in tension, slip and crushing, shape (3,).
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
@@ -69,6 +76,7 @@ class Books(NamedTuple):
     broken: Array
     dampers: Array
     ends: Array
+    bonds: Array
     totals: Rows
     active: Integers
     touched: Integers
@@ -77,11 +85,11 @@ class Books(NamedTuple):
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
-        sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2
-        dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
+        sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2, 3
+        dashpots, ties, broken, dampers, ends, bonds = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
         totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
-        return cls(dashpots, ties, broken, dampers, ends, totals, active, touched, struck)
+        return cls(dashpots, ties, broken, dampers, ends, bonds, totals, active, touched, struck)
 
     def with_room(self, lines: int) -> Books:
         """The books with room for so many lines."""
@@ -93,7 +101,7 @@ class Books(NamedTuple):
     @property
     def size(self) -> int:
         """Accounts that a ledger keeps at each sample."""
-        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
+        return 5 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
 
 
 class Samples(NamedTuple):
@@ -134,7 +142,7 @@ class Samples(NamedTuple):
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
         for table in (self.energy, self.looks):
-            for name in ("friction", "ground", "ends"):
+            for name in ("friction", "ground", "ends", "bonds"):
                 table[name] -= table[name][0]
         for account in (self.dampers, self.ties, self.broken, self.dashpots):
             account -= account[0]
