@@ -107,7 +107,8 @@ def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
         put(line.grip, spin_components(bond.grip, axes))
         put(line.dragged, spin_components(bond.dragged, axes))
         put(bond.grip, no_spin(axes))
-        bond.k = 0.0
+        put(bond.dragged, no_spin(axes))
+        bond.k = bond.push = 0.0
 
 
 @jitable

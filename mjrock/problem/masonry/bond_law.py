@@ -22,7 +22,7 @@ from ...compiled import inlined, jitable
 from .joint_law import shear_limit
 
 PASSES = 8
-"""Passes of Newton's method for the opening of a crack. It comes from above and gains twice the digits with each."""
+"""Passes of the search for the opening of a crack, by Newton's method, and for a plastic closing."""
 
 
 @jitable
@@ -46,17 +46,21 @@ def tear(bond: Any, gap: float) -> None:
 @inlined
 def cap(bond: Any) -> float:
     """The most that a joint bears before it is crushed [N]."""
-    return bond.crushing * math.exp(-bond.crumbled * bond.crushed)
+    most: float = bond.crushing * math.exp(-bond.crumbled * bond.crushed)
+    return most
 
 
 @jitable
 def crush(bond: Any, gap: float, sheared: float) -> float:
     """Crush a joint at a gap [m] under a force along the face [N]. Returns by how much it closes for good [m]."""
-    most = cap(bond)
-    closing = max(-gap - math.sqrt(max(most * most - 9 * sheared * sheared, 0.0)) / bond.k, 0.0)
-    if closing > 0:
-        bond.crushed += closing
-        bond.left *= math.exp(-bond.crumbled * closing)
+    most, closing = cap(bond), 0.0
+    for _ in range(PASSES):
+        left = most * math.exp(-bond.crumbled * closing)
+        closing = max(-gap - math.sqrt(max(left * left - 9 * sheared * sheared, 0.0)) / bond.k, 0.0)
+        if closing == 0:
+            return 0.0
+    bond.crushed += closing
+    bond.left *= math.exp(-bond.crumbled * closing)
     return closing
 
 
