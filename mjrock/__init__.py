@@ -40,7 +40,9 @@ if TYPE_CHECKING:
     from .problem.damping.measured import MeasuredContact, hertz_stiffness, measured_contact
     from .problem.damping.restitution import Restitution
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
+    from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, code_spectrum
     from .problem.ground.motion import GroundMotion
+    from .problem.ground.record_sets import records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.bond import BONDS, Bond
     from .problem.masonry.case import MasonryCase
@@ -55,7 +57,7 @@ if TYPE_CHECKING:
     from .problem.wall.damper import Damper
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
     from .problem.wall.friction_damper import FrictionDamper
-    from .problem.wall.section import Opening
+    from .problem.wall.section import Gable, Opening
     from .problem.wall.tie import Tie
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
@@ -89,22 +91,22 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "AddedMass", "Analysis", "Block",
-    "Bond", "Capacity", "Case", "Collapse", "Comparison", "ContactParameters", "ContactWarning", "Contacts",
-    "CoulombFriction",
-    "Damper", "DampingLaw", "Fragility", "FrictionDamper", "Grid", "GroundMotion", "Impact", "Implausible",
-    "InspectedContact",
-    "Interface", "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
-    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
-    "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum",
-    "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError",
-    "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep",
-    "calibrate", "campaign", "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness",
-    "contacts_for", "crushed_inset", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts",
-    "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts",
-    "matched_masonry", "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity",
-    "paired_ratio", "pushover", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact",
-    "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scene_of", "sensitivity", "simulate", "solve_analytical",
-    "solve_compliant", "solve_explicit", "stiffness_range", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "ContactParameters", "ContactWarning",
+    "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable",
+    "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load",
+    "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType",
+    "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan",
+    "Polygon", "Polyhedron", "PowerLaw", "Response", "ResponseSpectrum", "Restitution", "RigidImpact",
+    "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store",
+    "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum",
+    "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for",
+    "crushed_inset", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness",
+    "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry",
+    "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio",
+    "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact",
+    "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
+    "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "wall_mjcf", "wall_scene",
+    "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)

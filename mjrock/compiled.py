@@ -21,8 +21,15 @@ from typing import Any, TypeVar
 
 from .interrupts import interrupts_held_back
 
-COST = "about half a minute"
-"""Time that compiling takes in the first run, on one core that has nothing else to do."""
+SLOW = {
+    "mjrock.theory.arcs.rocking_loop": ("rocking theory", 3),
+    "mjrock.engine.loop.fitted_loop": ("steps in MuJoCo that fit the motion", 20),
+    "mjrock.engine.loop.fixed_loop": ("steps in MuJoCo of one length", 10),
+    "mjrock.distinct.loop.advance": ("explicit steps", 12),
+    "mjrock.distinct.finder.find": ("contacts of explicit steps where blocks are", 5),
+}
+"""Loops whose compilation takes seconds: what they do, and how many [s], on one core that has nothing else to do
+(`scripts/measure/speed.py`). All others take a second or less."""
 WITHOUT = "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
 NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
 
@@ -107,31 +114,24 @@ def _imported_numba() -> Any:
             with contextlib.suppress(OSError):
                 super().save_overload(*key)
 
-    class _FirstCompilation(event.Listener):  # type: ignore[misc]
-        """Says once that the loops are being compiled, and where they are stored."""
-
-        said = False
+    class _Compilations(event.Listener):  # type: ignore[misc]
+        """Says which loop is being compiled where that takes seconds, how many, and where it is stored."""
 
         def on_start(self, event: Any) -> None:
             """Tell the user why nothing seems to happen."""
             dispatcher = event.data.get("dispatcher")
             function = getattr(dispatcher, "py_func", None)
-            if not self.said and function is not None and function.__module__.startswith("mjrock."):
-                _FirstCompilation.said = True
+            slow = SLOW.get(f"{function.__module__}.{function.__name__}") if function is not None else None
+            if slow is not None:
                 folder = dispatcher._cache.cache_path
-                part = ".".join(function.__module__.split(".")[:2])
-                stored = (
-                    f"once for each part; they are stored in {folder}"
-                    if folder is not None
-                    else f"in every process: {NOWHERE}"
-                )
-                _notice(f"compiling the loops of {part} and of what this run needs besides, {COST}, {stored}")
+                stored = f"once; stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
+                _notice(f"compiling {slow[0]}, some {slow[1]} s of a core, {stored}")
 
         def on_end(self, event: Any) -> None:
             """Nothing to say."""
 
-    event.register("numba:compile", _FirstCompilation())
-    globals().update(numba=numba, _Cache=_Cache, _FirstCompilation=_FirstCompilation)
+    event.register("numba:compile", _Compilations())
+    globals().update(numba=numba, _Cache=_Cache)
     while _waiting:
         function, how = _waiting.pop(0)
         _register(numba, function, how)
@@ -145,7 +145,7 @@ def _register(numba: Any, function: Callable[..., Any], how: dict[str, bool]) ->
 
 def __getattr__(name: str) -> Any:
     """numba and what is made of it, where there is numba."""
-    if name in ("numba", "_Cache", "_FirstCompilation") and _numba() is not None:
+    if name in ("numba", "_Cache") and _numba() is not None:
         return globals()[name]
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
@@ -175,6 +175,10 @@ def compiled(function: Function) -> Function:
     The function allocates nothing: it writes into arrays that it is given. numba then need not count references to
     arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
     numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
+
+    Products and sums are not fused (numba's `fastmath={"contract"}`), although explicit steps would be 13 to 17 %
+    faster. Last digits would then differ between processors that fuse and others, and masonry that slides or falls
+    makes of last digits another motion: what one machine has found another could not repeat.
     """
     numba = _numba()
     if numba is None:

@@ -15,6 +15,7 @@ OF_NUMBERS = {
     "Restitution": (mr.Restitution, {"base": 0.5, "side": -0.5}),
     "Restitution.from_geometry": (mr.Restitution.from_geometry, {"wall": 0.5}),
     "Restitution.from_lumped": (mr.Restitution.from_lumped, {"lumped": -0.25, "wall": 0.5}),
+    "Gable": (mr.Gable, {"height": 100, "top": 100}),
     "Opening": (mr.Opening, {"width": 100, "height": 100, "sill": 100}),
     "Damper": (mr.Damper, {"height": 100, "c": 100, "length": 100, "block": 100}),
     "FrictionDamper": (

@@ -63,9 +63,10 @@ OWN = {
     "geometry/poses.py": ("scene_in_space",),
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
     "distinct/touches.py": ("touches_inside_a_step", "books_close"),
+    **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py", "result/forces.py")},
     "distinct/links.py": ("breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
-    **{f"distinct/{name}.py": ("encounters", "encounters_in_space") for name in FINDING},
+    **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
     "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),
@@ -74,9 +75,9 @@ OWN = {
     "problem/wall/ties_on_wall.py": ("effects", "pushover"),
     "study/masonry_by_matching.py": ("matched_masonry",),
     "study/pushover.py": ("pushover",),
-    "theory/forced.py": ("forced", "analytical", "effects"),
+    "theory/arcs.py": ("arcs", "free", "analytical", "effects"),
     "theory/impact.py": ("impact",),
-    "theory/law.py": ("forced", "analytical"),
+    "theory/law.py": ("arcs", "free", "analytical"),
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 ROUNDS = (
@@ -93,7 +94,7 @@ SWAPPED = {
 }
 """Operators, as they are written and what takes their place."""
 EQUIVALENT = {
-    "energy_work.py: work.dashpots[n, joint[i]] += drag.dashpot * opened if pressed > 1 else given": (
+    "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",

@@ -47,6 +47,8 @@ def lines_of(scene: Scene) -> Rows:
         face=places.face_body,
         support=-1,
         group=scene.contacts.joint,
+        fixed=np.where(places.face_body < 0, scene.contacts.joint, -1),
+        sense=1.0,
         at=places.at,
         origin=places.face_at + places.between,
         normal=places.normal,
@@ -88,6 +90,9 @@ def add_joints(lines: Rows, scene: Scene, masonry: Masonry) -> Rows:
     edges, counts = joined(*tables), np.cumsum([0, *(len(table) for table in tables)])
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
     above = number[[joint.above for joint in masonry.joints]][of] == lines["body"]
+    fixed = np.cumsum([block.fixed for block in masonry.blocks]) - 1
+    below = fixed[[joint.below for joint in masonry.joints]]
+    lines["sense"], lines["fixed"] = np.where(above, 1.0, -1.0), np.where(lines["face"] < 0, below[of], -1)
     lines["first"], lines["last"] = ends[of, np.where(above, 0, 1)].T
     lines["own_first"], lines["own_last"] = ends[of, np.where(above, 1, 0)].T
     lines["margin"] = margins(lines, edges)

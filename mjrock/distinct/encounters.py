@@ -243,6 +243,7 @@ class Encounters:
             face=np.where(point, POINT, self.body[face]),
             support=self.support[face],
             group=self.group,
+            fixed=np.where(held, np.cumsum(self.body < 0)[face] - 1, -1),
             at=at,
             origin=origin,
             between=self.drawn[block] + at - rest - origin,

@@ -10,6 +10,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_size, require_within
+from ..result.forces import required_room
 from ..result.response import Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
@@ -30,6 +31,7 @@ def solve_explicit(
     *,
     output_step: float | None = None,
     ledger: bool = False,
+    forces: bool = False,
     start: State | None = None,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, by explicit steps.
@@ -50,6 +52,7 @@ def solve_explicit(
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.
         ledger: whether to account for every part of the energy. A residual above 1 % of the largest part warns.
+        forces: whether to keep `forces` and `reactions` at every sample, see `Forces`.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. The end of
             explicit steps of the same structure carries on to rounding, histories of supports from wherever they have
             ended. It does not go with ties that yield.
@@ -66,6 +69,7 @@ def solve_explicit(
     watch = Stopwatch()
     require_case(case, contacts)
     require_flag("ledger", ledger)
+    require_flag("forces", forces)
     if timestep is not None:
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
@@ -80,6 +84,8 @@ def solve_explicit(
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
     looks = len(steps.looks(steps.last + 1))
     samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
+    if forces:
+        samples = samples.with_forces(*required_room(case, count))
     if timestep is not None:
         warn_if_tiny(timestep, setup.share * limit)
     warn_if_long(setup, steps)

@@ -21,7 +21,7 @@ from .system import Books, Samples, System
 
 LOOKED, LOOKS = 100, 1_000_000
 """Steps from one look at the energy to the next, and most looks."""
-SHORT, LEAD = 0.1, 0.5
+SHORT, LEAD = 0.25, 0.5
 """Step over the longest stable one up to which dashpots take the rate at the pose, half a step ahead of the velocity
 that there is [-]. At longer steps what is foreseen is worse than that velocity."""
 FIRST = 100_000

@@ -103,6 +103,7 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
     for i in range(len(system.ties)):
         tie = system.ties[i]
         if t >= tie.broken:
+            tie.pulled = 0.0
             continue
         now = pull(tie, system, axes)
         beyond = now.length - tie.reach - tie.strength / tie.k
@@ -115,7 +116,8 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
                 since = since_broken(beyond - left, lengthening(tie, system, now, axes), h)
                 book_support(tie, system, books, now, -tie.strength, h - since)
                 tie.broken, books.broken[i] = t - since, 0.5 * tie.strength**2 / tie.k
-                act(tie, bodies, now, -pulled_until_broken(tie, since, h))
+                tie.pulled = -pulled_until_broken(tie, since, h)
+                act(tie, bodies, now, tie.pulled)
                 continue
         elif tie.push > 0 and shorter > 0:  # it slips the other way
             tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter

@@ -29,6 +29,7 @@ from ..scene.ground import Ground, mean_acceleration
 from .bonds import bonded_energy, hold_bonds
 from .contact import press_lines, settle_touches
 from .friction import book_rubbing, note_slips, stick
+from .gathering import keep_forces
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
 from .system import Books, Samples, System
@@ -278,6 +279,7 @@ def make_steps(
         if looked:
             keep_energy(samples, kept, -(-n // clock.look))
         if sampled:
+            keep_forces(system, samples, row, axes)
             row += 1
             if is_astray(system.bodies, clock.ends, axes):
                 return n, row, True

@@ -6,9 +6,8 @@ import heapq
 import warnings
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import ConvexHull, HalfspaceIntersection
 
+from ..geometry.hull import area_vector
 from ..problem.masonry.case import MasonryCase
 from ..quantities import Array
 from .encounters import Encounters
@@ -23,8 +22,8 @@ LOOKS = 200
 """Most samples that are looked at."""
 DEEPEST = 16
 """Pairs whose overlap is measured: those whose mean depth over their size is largest."""
-ROUNDING = 1e-9
-"""Radius of a sphere inside two blocks below which they have nothing in common [m]."""
+ROUNDING = 1e-12
+"""Distance within which faces of two blocks lie in one plane [m]."""
 DOUBTED = 0.01
 """Share of a block from which on its overlap is warned of [-]."""
 
@@ -82,15 +81,39 @@ def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: 
 
 
 def common_volume(solids: Solids, a: int, b: int) -> float:
-    """Volume that two blocks have in common [m3]."""
-    faces = np.concatenate([np.arange(solids.face[block], solids.face[block + 1]) for block in (a, b)])
-    normals = solids.normals[faces]
-    reach = np.sum(normals * solids.corners[solids.outline[solids.first[faces]]], axis=1)
-    # the deepest point inside: as far as can be from every face
-    inside = linprog(
-        [0.0, 0.0, 0.0, -1.0], A_ub=np.column_stack([normals, np.ones(len(faces))]), b_ub=reach, bounds=(None, None)
-    )
-    if not inside.success or inside.x[3] < ROUNDING:
+    """Volume that two convex blocks have in common [m3]: that of pyramids on what is left of their faces, from a point
+    within both."""
+    kept = []
+    for block, other in ((a, b), (b, a)):
+        for face in range(solids.face[block], solids.face[block + 1]):
+            normal, polygon = solids.normals[face], face_corners(solids, face)
+            for wall in range(solids.face[other], solids.face[other + 1]):
+                beyond = (polygon - face_corners(solids, wall)[0]) @ solids.normals[wall]
+                flush = np.abs(beyond).max(initial=0.0) < ROUNDING and normal @ solids.normals[wall] > 0
+                # a face that two blocks share counts once
+                polygon = polygon[:0] if flush and block == b else polygon if flush else cut_off(polygon, beyond)
+            if len(polygon):
+                kept.append((normal, polygon))
+    if not kept:
         return 0.0
-    corners = HalfspaceIntersection(np.column_stack([normals, -reach]), inside.x[:3]).intersections
-    return float(ConvexHull(corners).volume)
+    middle = np.concatenate([polygon for _, polygon in kept]).mean(axis=0)
+    return sum(float(normal @ (polygon[0] - middle) * (normal @ area_vector(polygon))) for normal, polygon in kept) / 3
+
+
+def face_corners(solids: Solids, face: int) -> Array:
+    """Corners around a face [m], shape (n, 3)."""
+    corners: Array = solids.corners[solids.outline[solids.first[face] : solids.first[face + 1]]]
+    return corners
+
+
+def cut_off(polygon: Array, beyond: Array) -> Array:
+    """What is left of a convex polygon, shape (n, 3), where its corners lie beyond a plane [m], shape (n,)."""
+    kept = []
+    for i in range(len(polygon)):
+        j = i - 1
+        if (beyond[i] > 0) != (beyond[j] > 0):
+            share = beyond[j] / (beyond[j] - beyond[i])
+            kept.append(polygon[j] + share * (polygon[i] - polygon[j]))
+        if beyond[i] <= 0:
+            kept.append(polygon[i])
+    return np.array(kept) if len(kept) > 2 else polygon[:0]

@@ -18,6 +18,7 @@ from ..problem.wall.case import Case
 from ..quantities import GRAVITY, Array, Integers, named
 from ..result.ending import ending, masonry_ending
 from ..result.fallen import below_everything, fallen_blocks, sunk_ground
+from ..result.forces import Forces, Gathered, JointFrames, forces_of
 from ..result.history import rocking_history
 from ..result.joint_motion import joint_motion
 from ..result.joints import JointMotion
@@ -100,12 +101,23 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
         plastic=plastic_of(run),
         ledger=ledger_of(run, kept) if ledger else None,
+        kept_forces=kept_forces(run, kept),
         stats=reading.pop("stats") | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
         **reading,
     )
     warn_if_open(response, run.rounding)
     return response
+
+
+def kept_forces(run: Run, kept: Integers) -> Forces | None:
+    """The forces of a run at some of its samples, if they were kept."""
+    samples, links = run.samples.taken(kept), run.scene.links
+    if not samples.held.shape[1]:
+        return None
+    pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
+    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled)
+    return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
 def plastic_of(run: Run) -> dict[str, Plastic]:

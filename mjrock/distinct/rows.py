@@ -95,6 +95,8 @@ def _line(d: int, s: int) -> Fields:
         *_integer("body", "face"),  # the body that carries the point, and that of the face, -1 or POINT where fixed
         *_integer("support"),  # the support that moves a fixed block, -1 for none
         *_integer("group"),  # number of the account
+        *_integer("fixed"),  # number of the fixed block of its face among these, -1 where that is a body
+        *_number("sense"),  # 1 where its body is above its joint, -1 where it is below
         *_vector(d, "at"),  # the point from the centroid of its body [m]
         *_vector(d, "origin"),  # a point of the face from the centroid of its body [m]
         *_vector(d, "between"),  # from there to the point at rest, zero for a line of a joint [m]

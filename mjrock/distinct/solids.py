@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.hull import unlike_ways
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..quantities import Array, Integers
+
+
+class Solid(NamedTuple):
+    """A block in space, with the fields of a `Polyhedron` that are asked for."""
+
+    corners: Array
+    faces: tuple[tuple[int, ...], ...]
+    normals: Array
+    edges: Array
+    volume: float
 
 
 class Solids(NamedTuple):
@@ -37,7 +47,7 @@ class Solids(NamedTuple):
     first: Integers
 
     @classmethod
-    def about(cls, blocks: Sequence[Polyhedron], centroids: Array) -> Solids:
+    def about(cls, blocks: Sequence[Solid | Polyhedron], centroids: Array) -> Solids:
         """Blocks about their centroids [m], shape (blocks, 3)."""
         corner = _begins(block.corners for block in blocks)
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
@@ -70,8 +80,18 @@ def _begins(tables: Iterable[Array | Integers]) -> Integers:
     return np.cumsum([0, *map(len, tables)])
 
 
-def solids_of(blocks: Sequence[Polygon | Polyhedron], half: float) -> list[Polyhedron]:
+def solids_of(blocks: Sequence[Polygon | Polyhedron], half: float) -> list[Solid | Polyhedron]:
     """Blocks in space: those of the plane as prisms of some half length [m]."""
-    return [
-        Polyhedron.prism(replace(block, length=2 * half)) if isinstance(block, Polygon) else block for block in blocks
-    ]
+    return [prism(block, half) if isinstance(block, Polygon) else block for block in blocks]
+
+
+def prism(block: Polygon, half: float) -> Solid:
+    """A block of the plane as a prism from y = -half to half. (`Polyhedron.prism` searches its corners for a hull.)"""
+    n, across = len(block.corners), np.array([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0)])
+    corners, normals = np.repeat(half * across, n, axis=0), np.zeros((n, 3))
+    corners[:n, ::2] = corners[n:, ::2] = block.corners
+    normals[:, ::2] = block.normals
+    sides = tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
+    faces = (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *sides)
+    edges = np.concatenate([across[1:], unlike_ways(normals[:, ::-1] * (1.0, 1.0, -1.0))])
+    return Solid(corners, faces, np.concatenate([across, normals]), edges, 2 * half * block.area)

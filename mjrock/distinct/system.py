@@ -112,6 +112,10 @@ class Samples(NamedTuple):
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
         looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
         dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
+            and (samples, blocks, d).
+        pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links). All
+            three have no columns where no forces are kept.
     """
 
     pose: Array
@@ -122,6 +126,9 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
+    loads: Array
+    held: Array
+    pulled: Array
 
     @classmethod
     def room(
@@ -132,7 +139,14 @@ class Samples(NamedTuple):
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
+        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), ())]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
+
+    def with_forces(self, joints: int, blocks: int, links: int) -> Samples:
+        """The same with room for the forces of so many joints, fixed blocks and links."""
+        parts, counts = (self.loads, self.held, self.pulled), (joints, blocks, links)
+        room = [np.zeros((len(part), n, *part.shape[2:])) for part, n in zip(parts, counts, strict=True)]
+        return self._replace(loads=room[0], held=room[1], pulled=room[2])
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""

@@ -245,6 +245,45 @@ def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> f
     return dot(slip_of(meets.normal, over_face(places, i, meets, frames, way)).way, velocity)
 
 
+class Pressed(NamedTuple):
+    """A contact in a step.
+
+    Args:
+        gap: [m].
+        dashpot: force of its dashpot [N].
+        law: force of its row along the normal without friction, negative where it would pull [N].
+        row: the same with friction, not below zero. What slides on its row presses more.
+        along: friction along the way of its slip, see `slip_along` [N].
+        coulomb: whether it slides by Coulomb's law, without a row of friction.
+    """
+
+    gap: float
+    dashpot: float
+    law: float
+    row: float
+    along: float
+    coulomb: bool
+
+
+@jitable
+def pressed_in(
+    points: Points, record: Record, step: Step, room: LedgerRoom, impratio: float, n: int, i: int
+) -> Pressed:
+    """Contact i in step n of a record, whose frames, rates and rows are in the room."""
+    places, law, inertia = points.places, points.law, room.inertia[i]
+    closed = gap(places, i, room.frames, room.middle, room.acceleration)
+    drag = drag_of(law.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
+    pressed = -(law.k[i] * closed.value + drag.dashpot + drag.sprung)
+    row, along, coulomb = max(pressed, 0.0), 0.0, not math.isnan(record.friction[n, i])
+    if law.friction[i] > 0 and (closed.value < 0 or n == 0):
+        along = record.friction[n, i]
+        if not coulomb:
+            slip = slip_along(places, i, room.frames, record.after[n], record.after[n])
+            stopping = -impratio * inertia * slip / step.h
+            row, along = cone_force(pressed, stopping, impratio * inertia, inertia, law.friction[i])
+    return Pressed(closed.value, drag.dashpot, pressed, row, along, coulomb)
+
+
 @compiled
 def _contact_work(
     points: Points, joint: Integers, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, work: Work
@@ -257,27 +296,19 @@ def _contact_work(
         step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
         impratio = take_rows(points, step, room)
         for i in range(len(law.k)):
-            closed = gap(places, i, room.frames, room.middle, room.acceleration)
+            now = pressed_in(points, record, step, room, impratio, n, i)
             given = spring_energy(places, law.k, i, room.seam) - spring_energy(places, law.k, i, room.next_seam)
-            inertia = room.inertia[i]
-            drag = drag_of(law.k[i], room.dashpot[i], inertia, step, i, closed.rate, closed.linear)
-            pressed = -(law.k[i] * closed.value + drag.dashpot + drag.sprung)
-            if not kinds.released_on[i] if n == 0 else closed.value >= 0:
+            if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 work.dashpots[n, joint[i]] += given
                 continue
             # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
             opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
-            work.dashpots[n, joint[i]] += drag.dashpot * opened if pressed > 0 else given
+            work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 0 else given
             if law.friction[i] > 0:
-                dragging, lift = record.friction[n, i], 0.0
-                if math.isnan(dragging):
-                    slip = slip_along(places, i, room.frames, record.after[n], record.after[n])
-                    stopping = -impratio * inertia * slip / step.h
-                    pressing, dragging = cone_force(pressed, stopping, impratio * inertia, inertia, law.friction[i])
-                    lift = pressing - max(pressed, 0.0)  # what a sliding cone presses on top of the law
-                    if points.rubs[i] and abs(stopping) > law.friction[i] * max(pressed, 0.0):
-                        work.impulses[0] += lift * step.h
-                        work.impulses[1] += max(pressed, 0.0) * step.h
-                way = record.after[n] if math.isnan(record.friction[n, i]) else room.middle
+                lift = now.row - max(now.law, 0.0)  # what a sliding cone presses on top of the law
+                if points.rubs[i] and lift > 0:
+                    work.impulses[0] += lift * step.h
+                    work.impulses[1] += max(now.law, 0.0) * step.h
+                way = room.middle if now.coulomb else record.after[n]
                 slipped = slip_along(places, i, room.frames, room.mean, way) * windows.width[n]
-                work.friction[n] -= dragging * slipped + lift * opened
+                work.friction[n] -= now.along * slipped + lift * opened

@@ -4,6 +4,9 @@ A step that fits the motion is made in four moves: predict (which contacts will 
 step, judge (how long the next may be). The rules are in modules of their own: `pace` (how long), `touches` (when),
 `sticking` (where), `sliding` (friction), and `mjrock.scene.ground` (the force of the moving base). The loops call
 `mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
+
+numba compiles a function anew for the loop itself, for `jitable` callers and for `inlined` ones. What is large has
+callers of one kind: those of the engine's accelerations and steps are `inlined`.
 """
 
 from __future__ import annotations
@@ -73,14 +76,15 @@ def out_of_reach(reach: Reach, openings: Openings) -> bool:
 
 
 @inlined
-def at_the_pose(memory: Memory, state: Progress, previous: float) -> None:
-    """Velocity and acceleration at the time of the pose, from the last step and its rate of change."""
+def at_the_pose(memory: Memory, setting: Setting, state: Progress, previous: float) -> None:
+    """Velocity and acceleration at the time of the pose, from the last step and its rate of change, gaps and slack."""
     for j in range(len(state.rate)):
         state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * previous
         state.velocity_now[j] = memory.velocity[j] + 0.5 * previous * state.acceleration_now[j]
+    follow_now(setting, state)
 
 
-@jitable
+@inlined
 def acceleration_from_engine(memory: Memory, setting: Setting, state: Progress, t: float) -> None:
     """Acceleration at the time of the pose, found by the engine, where a contact has just opened or closed."""
     find_acceleration(memory, setting, state.sliding, state.frames, t)
@@ -110,7 +114,14 @@ def set_step(memory: Memory, points: Points, pace: Pace, step: float) -> None:
     memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, step), memory.rows)
 
 
-@jitable
+@inlined
+def before_the_release(memory: Memory, setting: Setting, state: Progress, step: float) -> None:
+    """Acceleration on the ground that is quiet before the release."""
+    find_acceleration(memory, setting, state.sliding, state.frames, -step)
+    copy_into(memory.acceleration, state.acceleration)
+
+
+@inlined
 def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, velocity: Array) -> None:
     """Set the velocity half the first step before the release, where the leapfrog keeps it.
 
@@ -200,11 +211,9 @@ def fitted_loop(
     axes = points.places.axes
     if previous == 0:
         set_step(memory, points, pace, allowed)
-        find_acceleration(memory, setting, sliding, state.frames, -allowed)
-        copy_into(memory.acceleration, state.acceleration)
+        before_the_release(memory, setting, state, allowed)
     while n < len(record.t) and not ended:
-        at_the_pose(memory, state, previous)
-        follow_now(setting, state)
+        at_the_pose(memory, setting, state, previous)
         if closure_changed(openings, state.closed) and previous > pace.short and not no_rate:
             acceleration_from_engine(memory, setting, state, t)
             allowed, calm_steps, no_rate = pace.short, 0, True

@@ -18,6 +18,7 @@ from ..scene.course import Course
 from ..scene.scene import Scene
 from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
+from .forces import kept_forces
 from .model import SimulationError
 from .reading import Asked, Reading
 from .record import StepError, Steps
@@ -73,7 +74,9 @@ class EngineRun:
         require_no_gain(scene, steps, work, reading.marks, scale)
         return cls(asked, scene, course, steps, energy, taken, broken, reading, scale)
 
-    def response(self, spacing: float | None, stride: int, want_ledger: bool, settings: dict[str, Any]) -> Response:
+    def response(
+        self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: dict[str, Any]
+    ) -> Response:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None."""
         scene, course, steps, reading = self.scene, self.course, self.steps, self.reading
         t, pose, velocity, end = steps.sampled(course.duration, spacing, stride)
@@ -91,6 +94,7 @@ class EngineRun:
             ledger=ledger(scene, course, steps).at(t) if want_ledger else None,
             stats=stats_of(scene, steps) | reading.stats | settings,
             end=end,
+            kept_forces=kept_forces(self.asked.case, scene, steps, t, plastic) if want_forces else None,
         )
 
 

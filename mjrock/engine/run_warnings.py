@@ -33,7 +33,9 @@ SLID = 0.01
 
 
 def require_still(case: MasonryCase) -> None:
-    """Raise a ValueError where supports move: in MuJoCo the fixed blocks belong to the world."""
+    """Raise a ValueError where joints have bonds or supports move: contacts of MuJoCo push only, and its fixed blocks
+    belong to the world."""
+    case.masonry.require_dry("MuJoCo")
     if case.supports:
         names = ", ".join(support.block for support in case.supports)
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")

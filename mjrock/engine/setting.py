@@ -55,12 +55,14 @@ class Setting(NamedTuple):
 
 
 @jitable
-def add_gyroscopic_correction(memory: Memory, setting: Setting, ahead: float) -> None:
-    """Add to the applied forces what MuJoCo's gyroscopic moments lack in space.
+def add_gyroscopic_correction(memory: Memory, setting: Setting, axes: tuple[int, ...], ahead: float) -> None:
+    """Add to the applied forces what MuJoCo's gyroscopic moments lack in space; in the plane there are none.
 
     MuJoCo has -w x I w at the velocity that it keeps, half a step before the pose. This is first order in the step, and
     energy grows by it. The difference to the velocity of the pose, w + h/2 w', makes it second order.
     """
+    if len(axes) == 2:
+        return  # the rest is then not compiled
     v, a = memory.velocity, memory.acceleration
     for body in range(len(setting.products)):
         x, y, z = 6 * body + 3, 6 * body + 4, 6 * body + 5
@@ -90,6 +92,5 @@ def push(memory: Memory, setting: Setting, frames: Array, t: float) -> None:
     memory.applied[:] = 0.0
     if setting.refines:
         damp(dampers, frames, setting.damping, axes, memory.applied)
-        if len(axes) == 3:
-            add_gyroscopic_correction(memory, setting, ahead)
+        add_gyroscopic_correction(memory, setting, axes, ahead)
     push_ground(setting.ground, setting.masses, axes, t, memory.options[TIMESTEP], memory.applied)

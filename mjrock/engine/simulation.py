@@ -13,6 +13,7 @@ from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
+from ..result.forces import required_room
 from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.stopwatch import Stopwatch
@@ -41,7 +42,7 @@ class Options:
 
     Args:
         duration: how long the motion is followed [s].
-        timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method: those of `simulate`.
+        timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method: those of `simulate`.
 
     Raises:
         TypeError, ValueError: for a value of another type or outside its range, or more samples or steps than fit into
@@ -55,6 +56,7 @@ class Options:
     coulomb: bool | None
     output_step: float | None
     ledger: bool
+    forces: bool
     method: Method
 
     def __post_init__(self) -> None:
@@ -64,6 +66,7 @@ class Options:
             accuracy=require_within("accuracy", self.accuracy, 1e-8, 0.1),
             newmark_beta=require_within("newmark_beta", self.newmark_beta, 0.0, 10.0),
             ledger=require_flag("ledger", self.ledger),
+            forces=require_flag("forces", self.forces),
         )
         if self.coulomb is not None:
             keep(self, coulomb=require_flag("coulomb", self.coulomb))
@@ -86,6 +89,11 @@ class Options:
     def spacing(self) -> float | None:
         """Distance of samples that are interpolated [s]; None at a fixed step, whose steps are the samples."""
         return (self.output_step or SPACING) if self.timestep is None else None
+
+    @property
+    def apart(self) -> float:
+        """Distance of samples [s]."""
+        return self.spacing or (self.timestep or SPACING) * self.stride
 
     @property
     def stride(self) -> int:
@@ -123,6 +131,7 @@ def simulate(
     coulomb: bool | None = None,
     output_step: float | None = None,
     ledger: bool = False,
+    forces: bool = False,
     start: State | None = None,
     method: Method = METHOD,
 ) -> Response:
@@ -141,6 +150,8 @@ def simulate(
             Fixed steps are thinned to whole steps, None returns them all, and the run ends with the step that is
             nearest to the duration. Fitted steps are interpolated at even distances, None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.engine.energy_work`.
+        forces: whether to keep `forces` and `reactions` at every sample, see `Forces`. Those of fitted steps are of the
+            step in whose window the sample lies.
         start: pose and velocity to start from instead of the release, the `end` of an earlier response; the release is
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
         method: the constants of the method, see `mjrock.method`, for studies that vary them.
@@ -157,12 +168,14 @@ def simulate(
     """
     watch = Stopwatch()
     require_case(case, contacts)
-    options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, method)
+    options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
     if isinstance(case, MasonryCase):
         require_still(case)
         warn_if_sheared(case.masonry)
     if options.timestep is not None:
         require_unbreakable(case)
+    if forces:
+        required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)
     scene = scene_of(case, contacts, method)
     course = course_of(case, scene)
@@ -177,7 +190,7 @@ def simulate(
         warn_if_coarse(scene, options.timestep)
         warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
         run, settings = fixed(asked, scene, course, options, options.timestep)
-    response = run.response(options.spacing, options.stride, options.ledger, settings)
+    response = run.response(options.spacing, options.stride, options.ledger, options.forces, settings)
     if not (options.timestep is None or options.slides):
         warn_if_lifted(scene, run.steps)
     if isinstance(asked, AskedWall):

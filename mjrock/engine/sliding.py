@@ -154,7 +154,7 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
     return any_slides
 
 
-@jitable
+@inlined
 def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Write the force of the moving ground and the friction of what slides into the applied forces."""
     places = setting.points.places
@@ -241,7 +241,7 @@ def give_rows_back(memory: Memory, sliding: Sliding) -> None:
             memory.dimension[i] = ROUGH
 
 
-@jitable
+@inlined
 def find_acceleration(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Let the engine find the accelerations of a step, and make none."""
     if slide(memory, setting, sliding, frames, t):

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+import scipy
 
 from ..quantities import Array
 
@@ -54,8 +54,8 @@ def hull_of(points: Array) -> Hull:
     if not thickness > THINNEST:
         raise ValueError(f"lie in a plane: they are {thickness * extent:.3g} m thick")
     try:
-        facets = ConvexHull(centred)
-    except QhullError:
+        facets = scipy.spatial.ConvexHull(centred)
+    except scipy.spatial.QhullError:
         raise ValueError(f"enclose no body: they are {thickness * extent:.3g} m thick") from None
     sets = _coplanar(centred, facets)
     number_of_faces = np.zeros(len(points), dtype=int)
@@ -79,7 +79,7 @@ def hull_of(points: Array) -> Hull:
     return Hull(tuple(corners.tolist()), tuple(faces), outwards, depth * extent)
 
 
-def _coplanar(points: Array, facets: ConvexHull) -> list[list[int]]:
+def _coplanar(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]]:
     """Corners of the facets of each plane, the planes of the largest facets first. Points have an extent of 1."""
     a, b, c = points[facets.simplices].transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -113,6 +113,12 @@ def area_vector(ring: Array) -> Array:
     about = ring - ring[0]
     summed: Array = 0.5 * np.cross(about, np.roll(about, -1, axis=0)).sum(axis=0)
     return summed
+
+
+def unlike_ways(ways: Array) -> Array:
+    """Unit vectors, shape (n, 3), those that are parallel once."""
+    apart = np.abs(ways @ ways.T) < 1 - 1e-12
+    return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
 
 
 def bulk_of(corners: Array, faces: tuple[tuple[int, ...], ...]) -> Bulk:

@@ -29,6 +29,21 @@ def angle_of(pose: Array) -> Array:
     return angle
 
 
+def rotations(pose: Array) -> Array:
+    """Matrices that turn vectors as bodies are turned from rest, shape (..., d, d), of poses of shape (..., 3) in the
+    plane and (..., 7) in space."""
+    if pose.shape[-1] == PLANE.nq:
+        sine, cosine = np.sin(pose[..., 2]), np.cos(pose[..., 2])
+        return np.stack([np.stack([cosine, sine], axis=-1), np.stack([-sine, cosine], axis=-1)], axis=-2)
+    w, x, y, z = np.moveaxis(pose[..., 3:], -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
 def at_rest(bodies: int, freedom: Freedom) -> Array:
     """The pose of bodies that have not moved, shape (bodies nq,)."""
     pose = np.zeros((bodies, freedom.nq))

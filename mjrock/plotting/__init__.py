@@ -2,18 +2,21 @@
 
 from .accuracy import convergence, peers, work_precision
 from .animation import animate, animate_bodies
-from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs
-from .histories import acceleration, comparison, energy, grid, history, rotation, ties
+from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs, spectra
+from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
+from .mechanism import mechanism
 from .pushing import moment_rotation, pushover
 from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
+from .thrust import thrust
 from .tornado import tornado
 
 __all__ = [
     "MODES", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "convergence",
-    "damping_curves", "distributions", "energy", "fragility", "grid", "history", "incremental", "mode_legend",
-    "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity", "peers", "pushover", "residuals",
-    "rotation", "save", "sensitivity", "single", "sketch", "ties", "tornado", "work_precision",
+    "damping_curves", "displacement", "distributions", "energy", "fragility", "grid", "history", "incremental",
+    "mechanism", "mode_legend", "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity",
+    "peers", "pushover", "residuals", "rotation", "save", "sensitivity", "single", "sketch", "spectra", "thrust",
+    "ties", "tornado", "work_precision",
 ]  # fmt: skip

@@ -25,6 +25,7 @@ from ..problem.wall.case import Case
 from ..quantities import Array, require_kind, require_path, require_text, require_within, shown
 from ..result.response import Response
 from .bodies import Bodies
+from .forces import Moving, forces_on, require_shown
 from .histories import acceleration, rotation, ties
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
@@ -125,6 +126,7 @@ def animate(
     dpi: float = 100.0,
     camera: Sequence[float] | None = None,
     limits: ArrayLike | None = None,
+    forces: str | None = None,
 ) -> Path:
     """Write the motion of a response as a moving picture.
 
@@ -145,6 +147,7 @@ def animate(
             None is (18, 35), from outside.
         limits: lowest and highest coordinate that the picture shows along each axis [m], shape (2, 2), in space (3, 2);
             None shows a wall or blocks, and what has gone no farther than one extent of them.
+        forces: "thrust" or "bars" draws the forces of a response with forces=True, see `blocks`.
 
     Returns:
         The path that was written.
@@ -168,7 +171,11 @@ def animate(
         histories.append(lambda ax: rotation(ax, [response]))
         if response.ties:
             histories.append(lambda ax: ties(ax, [response]))
-    return _film(bodies, path, histories, case, speed=speed, fps=fps, title=title, dpi=dpi)
+    pressed = None
+    if forces is not None:
+        require_shown("forces", forces, response)
+        pressed = response, forces
+    return _film(bodies, path, histories, case, speed=speed, fps=fps, title=title, dpi=dpi, pressed=pressed)
 
 
 def animate_bodies(
@@ -205,6 +212,7 @@ def _film(
     fps: float,
     title: str,
     dpi: float,
+    pressed: tuple[Response, str] | None = None,
 ) -> Path:
     """Check, draw frame by frame, and write the file."""
     path = require_path("path", path)
@@ -213,7 +221,7 @@ def _film(
     times = frame_times(bodies.t, speed * interval)
     dpi = require_within("dpi", dpi, 20.0, 600.0)
     require_text("title", title)
-    figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title)
+    figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title, pressed=pressed)
     with replacing(path) as partial:
         with writer.saving(figure, str(partial), dpi):
             if isinstance(writer, GifWriter | PageWriter):
@@ -261,6 +269,7 @@ def scene(
     *,
     speed: float = 1.0,
     title: str = "",
+    pressed: tuple[Response, str] | None = None,
 ) -> tuple[Figure, Update]:
     """The picture, and what moves it to a frame.
 
@@ -269,12 +278,15 @@ def scene(
         histories: draw what stands beside the bodies, each on an Axes of its own, over the time.
         case: whose surroundings are drawn, or None.
         speed, title: as in `animate`.
+        pressed: the response whose forces are drawn, and how, or None.
     """
     figure = Figure(figsize=(8.0, 4.5), layout="constrained")
     halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.5)) if histories else None
     depth = {"projection": "3d"} if isinstance(bodies, Solids) else None
     ax: Axes = (figure if halves is None else halves[0]).subplots(subplot_kw=depth)
     updates = _standing(ax, bodies, case)
+    if pressed is not None:
+        updates.append(forces_on(ax, pressed[0], Moving(bodies.t, bodies.poses, bodies.magnify), pressed[1]))
     scale = "true to scale" if bodies.magnify == 1 else f"displacements x {bodies.magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
     clock = ax.set_title(f"{scale}, {rate}\n$t$ = 0.00 s", fontsize=9)

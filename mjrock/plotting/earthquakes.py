@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,8 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
+from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
+from ..problem.ground.motion import GroundMotion
+from ..problem.ground.spectrum import response_spectrum
+from ..quantities import GRAVITY
 from ..study.fragility import Fragility
-from .arguments import finite_row, mapping, picture, row, table
+from .arguments import finite_row, kind, listed, mapping, picture, row, table
 from .style import STYLES, folded, legend_below
 
 MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
@@ -37,6 +41,28 @@ def mode_legend(figure: Figure) -> None:
     """What the colours of `overturning_map` stand for, below the figure."""
     handles = [Patch(facecolor=colour, edgecolor="0.4", linewidth=0.5, label=name) for name, colour in MODES.items()]
     legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
+
+
+@picture(motions=listed(kind(GroundMotion)), periods=finite_row, target=kind(CodeSpectrum, FloorSpectrum))
+def spectra(
+    ax: Axes,
+    motions: Sequence[GroundMotion],
+    periods: ArrayLike,
+    target: CodeSpectrum | FloorSpectrum | None = None,
+    damping: float = 0.05,
+) -> Axes:
+    """Pseudo-acceleration of each motion over the period, with their mean and the spectrum that they are scaled to."""
+    T = np.asarray(periods, dtype=float)
+    found = np.array([response_spectrum(motion, T, damping).Sa for motion in motions]) / GRAVITY
+    for i, line in enumerate(found):
+        ax.plot(T, line, color="0.7", linewidth=0.7, label="records" if i == 0 else None)
+    ax.plot(T, found.mean(axis=0), color="#12406b", linewidth=2.0, label=f"mean of {len(found)}")
+    if target is not None:
+        ax.plot(T, target(T, damping) / GRAVITY, color="#f0a35e", linewidth=2.0, linestyle="--", label="target")
+    ax.set(xlim=(T.min(), T.max()), ylim=(0, None), xlabel="period $T$ [s]")
+    ax.set_ylabel(f"pseudo-acceleration $S_a$, {damping:.0%} damping [g]")
+    ax.legend(frameon=False, fontsize=8)
+    return ax
 
 
 @picture()

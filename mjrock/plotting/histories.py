@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_text, shown
 from ..result.ending import Outcome
@@ -66,14 +67,39 @@ def overturned_at(response: Response) -> float | None:
     return float(response.t[min(returns[-1] + 1, len(response.t) - 1) if returns.size else 0])
 
 
-@picture()
-def acceleration(ax: Axes, case: Case, until: float) -> Axes:
-    """Acceleration of the ground against time [m/s2], horizontal and, where there is one, vertical."""
-    for motion, label, color in ((case.motion, "horizontal", "0.25"), (case.vertical, "vertical", "#f0a35e")):
+@picture(responses=listed(kind(Response)))
+def displacement(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | None = None) -> Axes:
+    """Largest displacement of a centroid of all blocks of masonry against time, from rest [mm], a cross at each fall.
+
+    Responses have the lines of their solvers, or with `labels` colours of their own.
+    """
+    for response, style in zip(responses, styles_of(responses, labels), strict=True):
+        far = 1e3 * np.linalg.norm(response.pose[:, :, : 3 if response.in_space else 2], axis=2).max(axis=1)
+        (line,) = ax.plot(response.t, far, **style)
+        fell = np.array(list(response.of_joints.fallen.values()))
+        ax.plot(fell, np.interp(fell, response.t, far), "x", color=line.get_color(), markersize=7, zorder=5)
+    ax.set_ylim(bottom=0)
+    ax.set(xlabel=TIME, ylabel="farthest block [mm]")
+    return ax
+
+
+GROUNDS = {
+    "motion": ("horizontal", "0.25"),
+    "transverse": ("transverse", "#4f8f5b"),
+    "vertical": ("vertical", "#f0a35e"),
+}
+"""The motions of the ground of a case, what they are called and their colours."""
+
+
+@picture(case=kind(Case, MasonryCase))
+def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
+    """Acceleration of the ground against time [m/s2], horizontal and, where there are some, transverse and vertical."""
+    moved = [(getattr(case, name, None), *look) for name, look in GROUNDS.items()]
+    for motion, label, color in moved:
         if motion is not None:
             t = np.append(motion.dt * np.arange(len(motion.accel)), [motion.duration, max(until, motion.duration)])
             ax.plot(t, np.append(motion.accel, [0.0, 0.0]), color=color, linewidth=0.8, label=label)
-    if case.vertical is not None:
+    if sum(motion is not None for motion, *_ in moved) > 1 or case.vertical is not None:
         ax.legend(frameon=False, fontsize=7, loc="upper right", ncols=2)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     ax.set(xlabel=TIME, ylabel="ground [m/s²]")
@@ -130,6 +156,8 @@ def history(
 ) -> Figure:
     """Rotation against time of one response or of several, below the ground motion and above the forces of the ties.
 
+    Of masonry it is the largest displacement of a block, see `displacement`.
+
     Args:
         responses: one, or several under the same ground motion: of one case by several solvers, or of two cases, such
             as one with a tie and one without.
@@ -138,7 +166,8 @@ def history(
             have the names of their solvers, and cases that differ are numbered.
 
     Raises:
-        ValueError: for no response, responses under different ground motions, or another number of labels.
+        ValueError: for no response, responses under different ground motions, of walls and of masonry, or another
+            number of labels.
     """
     require_text("title", title)
     if not isinstance(responses, Sequence):
@@ -149,7 +178,8 @@ def history(
     if not given:
         raise ValueError("responses is empty; at least one response is needed")
     for i, response in enumerate(given):
-        response.of_wall  # noqa: B018, raises for masonry
+        if isinstance(response.case, Case) != isinstance(given[0].case, Case):
+            raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
         if not same_ground(given[0], response):
             raise ValueError(
                 f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion"
@@ -157,12 +187,13 @@ def history(
     names = required_labels(given, labels)
     case, until = given[0].case, max(float(response.t[-1]) for response in given)
     tied = any(response.ties for response in given)
-    heights = [1.0] * case.shaken + [2.0] + [1.2] * tied
+    shaken = any(getattr(case, name, None) is not None for name in GROUNDS)
+    heights = [1.0] * shaken + [2.0] + [1.2] * tied
     figure = Figure(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
-    if case.shaken:
+    if shaken:
         acceleration(axes[0], case, until)
-    rotation(axes[int(case.shaken)], given, names)
+    (rotation if isinstance(case, Case) else displacement)(axes[int(shaken)], given, names)
     if tied:
         ties(axes[-1], given, names)
     for ax in axes[:-1]:
@@ -170,13 +201,13 @@ def history(
     axes[0].set_xlim(0, until)
     axes[0].set_title(wrapped(title, 5.4, 10), fontsize=10)
     if len(given) > 1:
-        below_figure(figure, axes[int(case.shaken)])
+        below_figure(figure, axes[int(shaken)])
     return figure
 
 
 def same_ground(left: Response, right: Response) -> bool:
     """Whether two responses are those to the same ground motions."""
-    return bool(left.case.motion == right.case.motion and left.case.vertical == right.case.vertical)
+    return all(getattr(left.case, name, None) == getattr(right.case, name, None) for name in GROUNDS)
 
 
 def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:

@@ -15,6 +15,7 @@ from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_kind, require_within
 from ..result.response import Response
 from .bodies import ends_of, require_masonry, required_limits, window
+from .forces import Moving, forces_on, require_shown, sample_at
 from .solids import Solids
 from .view import fill, solids
 
@@ -32,6 +33,8 @@ def blocks(
     masonry: Masonry | Response,
     pose: ArrayLike | None = None,
     *,
+    at: float | None = None,
+    forces: str | None = None,
     magnified: float = 1.0,
     joints: bool = True,
     camera: Sequence[float] | None = None,
@@ -43,9 +46,12 @@ def blocks(
 
     Args:
         ax: where to draw.
-        masonry: the masonry, or a response of it, which is drawn as it was in the end.
+        masonry: the masonry, or a response of it, which is drawn as it was at a time.
         pose: x, z and theta of each block that is not fixed [m, m, rad], shape (bodies, 3), in space (bodies, 7), such
             as `answer.pose[-1]`; None draws masonry at rest.
+        at: time of the response that is drawn [s]; None is the end.
+        forces: "thrust" draws the line of thrust over the blocks, see `thrust`, and "bars" a bar at each joint along
+            its force, as long as that is large, through the place where it acts. Both need a response with forces=True.
         magnified: factor on the pose, to show a small motion, 0 to 1e6.
         joints: whether to draw the joints as lines, in the plane and where no pose is given.
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;
@@ -54,28 +60,40 @@ def blocks(
             None shows the blocks, but for what has gone farther than one extent of the masonry.
 
     Raises:
+        AttributeError: for forces of a run that has kept none.
         ValueError: for a pose of another shape, a value outside its range, or axes of two dimensions for blocks in
             space.
     """
     require_kind("ax", ax, Axes)
     time: Array = np.zeros(1)
     supports: tuple[Support, ...] = ()
-    if isinstance(masonry, Response):
-        response, masonry = masonry, require_masonry("blocks", masonry)
-        if pose is None:
-            pose, time, supports = response.pose[-1], response.t[-1:], response.case.supports
+    acting: tuple[Response, Moving, str] | None = None
+    if isinstance(masonry, Response) and pose is None:
+        run, masonry = masonry, require_masonry("blocks", masonry)
+        sample = sample_at(run, at)
+        pose, time, supports = run.pose[sample], run.t[sample : sample + 1], run.case.supports
+        there = run.pose[sample : sample + 1]
+        if forces is not None:
+            require_shown("forces", forces, run)
+            acting = run, Moving(time, there, require_within("magnified", magnified, 0.0, 1e6)), forces
+    elif at is not None or forces is not None:
+        raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
+    elif isinstance(masonry, Response):
+        masonry = require_masonry("blocks", masonry)
     require_kind("masonry", masonry, Masonry)
     magnified = require_within("magnified", magnified, 0.0, 1e6)
     rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0] if masonry.in_space else [0.0, 0.0, 0.0]
     bodies = len(masonry.free), len(rest)
-    at = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
+    placed = np.tile(rest, (bodies[0], 1)) if pose is None else require_array("pose", pose, bodies)
     if masonry.in_space:
-        bodies_in_space = Solids(masonry, time, at[None], magnified, camera, supports=supports, limits=limits)  # type: ignore[arg-type]
+        bodies_in_space = Solids(masonry, time, placed[None], magnified, camera, supports=supports, limits=limits)  # type: ignore[arg-type]
         solids(ax, bodies_in_space, animated=False)(0)
+        if acting is not None:
+            forces_on(ax, *acting, animated=False)(0)
         fill(ax, ax.bbox.expanded(1.05, 1.25))  # blocks may reach into the margin of the axes
         return ax
     shifts = {support.block: magnified * support.at(time)[0] for support in supports}
-    where = dict(zip(masonry.free, magnified * at, strict=True))
+    where = dict(zip(masonry.free, magnified * placed, strict=True))
     width = min(1.4, 14 / np.sqrt(len(masonry.blocks)))  # lines of many joints would hide the blocks
     drawn: list[list[Array]] = [[], []]
     for i, block in enumerate(masonry.blocks):
@@ -87,6 +105,8 @@ def blocks(
     for joint in masonry.plane_joints if joints and pose is None else ():
         ax.plot(*np.transpose([joint.start, joint.end]), color=MORTAR, linewidth=width, solid_capstyle="butt")
     _view(ax, masonry, drawn[False], drawn[True], required_limits(limits, "xz"))
+    if acting is not None:
+        forces_on(ax, *acting, animated=False)(0)
     return ax
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Ellipse, Patch, Polygon, Rectangle
 
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
@@ -158,12 +159,21 @@ def _elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
     height, length = 2 * wall.h, wall.length
     side = 0.08 * length + 0.08 * height
     ax.add_patch(Rectangle((-0.5 * length - side, -height), length + 2 * side, height, facecolor=GROUND, zorder=0.5))
-    ax.add_patch(Rectangle((-0.5 * length, 0.0), length, height, facecolor=STONE, edgecolor="0.15"))
-    sills = [opening.sill for opening in wall.openings]
+    levels = np.array([0.0, wall.front.eaves, height])
+    half_length = 0.5 * wall.front.long(levels)
+    front = np.column_stack([np.append(-half_length, half_length[::-1]), np.append(levels, levels[::-1])])
+    ax.add_patch(Polygon(front, facecolor=STONE, edgecolor="0.15"))
+    sills = [opening.sill for opening in wall.openings if opening.at is None]
     for i, opening in enumerate(wall.openings):
-        middle = length * ((sills[:i].count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5)
-        place = middle - 0.5 * opening.width, opening.sill
-        ax.add_patch(Rectangle(place, opening.width, opening.height, facecolor="white", edgecolor="0.35"))
+        middle, before = opening.at, [other.sill for other in wall.openings[:i] if other.at is None]
+        if middle is None:
+            wide = float(wall.front.long(np.array(opening.head)))
+            middle = wide * ((before.count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5)
+        hole: Patch = Rectangle((middle - 0.5 * opening.width, opening.sill), opening.width, opening.height)
+        if opening.round:
+            hole = Ellipse((middle, opening.sill + 0.5 * opening.height), opening.width, opening.height)
+        hole.set(facecolor="white", edgecolor="0.35")
+        ax.add_patch(hole)
     edge = -0.5 * length - 0.5 * side
     _across(ax, (edge, 0.0), (edge, height), f"{height:g} m")
     _across(ax, (-0.5 * length, -0.02 * height), (0.5 * length, -0.02 * height), f"{length:g} m")
@@ -174,8 +184,9 @@ def _elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
 def _sizes(case: Case) -> list[str]:
     """The size of each kind of opening, and how many there are."""
     made = []
-    for opening, count in Counter(case.block.openings).items():
+    for opening, count in Counter(replace(opening, at=None) for opening in case.block.openings).items():
         number = f"{count} openings" if count > 1 else "opening"
         sill = f"sill at {opening.sill:.3g} m" if opening.sill else "from the ground"
-        made.append(f"{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
+        kind = "round " if opening.round else ""
+        made.append(f"{kind}{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
     return made

@@ -8,13 +8,15 @@ from collections.abc import Sequence
 import matplotlib
 import mujoco
 import numpy
+import numpy as np
 import scipy
 
 from .._version import __version__
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
+from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY
+from ..quantities import GRAVITY, named
 from ..result.ending import Outcome
 from ..result.response import Response
 from ..result.ties import Plastic, overdrawn
@@ -38,19 +40,43 @@ def of_wall(case: Case) -> TableRows:
         ("overturning_rotation, with effects", f"{case.overturning_rotation:.4g} rad"),
         ("p, frequency parameter", f"{wall.p:.4g} rad/s"),
     ]
+    if block.gable is not None:
+        rows.append(("gable", f"{block.gable.height:.4g} m high, {block.gable.top:.4g} m long at its top"))
     for opening in block.openings:
-        rows.append(("opening", f"{opening.width:.4g} x {opening.height:.4g} m, sill {opening.sill:.4g} m"))
+        rows.append(
+            (
+                "round opening" if opening.round else "opening",
+                f"{opening.width:.4g} x {opening.height:.4g} m, sill {opening.sill:.4g} m",
+            )
+        )
     stop = "none: the wall rocks to both sides" if case.stop_top is None else f"up to {case.stop_top:.4g} m"
     return [*rows, ("side_stop", stop)]
 
 
-def of_effects(case: Case) -> TableRows:
+def of_masonry(case: MasonryCase) -> TableRows:
+    """Masonry: quantity, value with unit."""
+    masonry = case.masonry
+    mass = float(sum(masonry.blocks[i].mass for i in masonry.free))
+    rows: TableRows = [
+        ("blocks", f"{len(masonry.free)} free, {len(masonry.blocks) - len(masonry.free)} fixed"),
+        ("joints", f"{len(masonry.joints)}, points = {masonry.points}"),
+        ("mass of the free blocks", f"{mass:.5g} kg"),
+    ]
+    values = {"k_n": masonry.joint_stiffness, "k_s": masonry.joint_shear, "friction": masonry.joint_friction}
+    for name, unit in (("k_n", " N/m³"), ("k_s", " N/m³"), ("friction", "")):
+        low, high = values[name].min(), values[name].max()
+        said = f"{low:.4g}{unit}" if low == high else f"{low:.4g} to {high:.4g}{unit}"
+        rows.append((name, "sticks rigidly" if np.isinf(low) else said))
+    retardation = masonry.retardation
+    rows.append(("damping, c/k", f"{retardation.min():.3g} to {retardation.max():.3g} s"))
+    return rows
+
+
+def of_effects(case: Case | MasonryCase) -> TableRows:
     """The effects: name and values with units."""
     own = [(name, effect) for name, effect in case.named.items() if not effect.mass_added]
-    return [
-        (name, effect.said.replace("\n", " "))
-        for name, effect in (*own, *(("added mass", mass) for mass in case.wall.masses))
-    ]
+    masses = [("added mass", mass) for mass in case.effects if mass.mass_added]
+    return [(name, effect.said.replace("\n", " ")) for name, effect in (*own, *masses)]
 
 
 def of_contacts(e: Restitution | None, contacts: Contacts | None) -> TableRows:
@@ -73,7 +99,8 @@ def of_motions(responses: Sequence[Response]) -> TableRows:
     """The ground motions of the responses, each once."""
     rows: TableRows = []
     for case in (response.case for response in responses):
-        for direction, motion in (("horizontal", case.motion), ("vertical", case.vertical)):
+        for direction, name in (("horizontal", "motion"), ("transverse", "transverse"), ("vertical", "vertical")):
+            motion = getattr(case, name, None)
             if motion is not None:
                 peak = float(abs(motion.accel).max())
                 said = f"{peak:.4g} m/s² = {peak / GRAVITY:.3g} g, {motion.duration:.4g} s, step {motion.dt:.4g} s"
@@ -90,6 +117,18 @@ def of_results(responses: Sequence[Response], names: Sequence[str]) -> TableRows
         peak = "overturned" if over == float("inf") else f"{over:.3f}"
         share = "-" if over == float("inf") else f"{response.peak_over_overturning:.3f}"
         rows.append((name, response.outcome.value, peak, share, top, str(len(response.impacts)), _settings(response)))
+    return rows
+
+
+def of_masonry_results(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
+    """Outcome, fallen blocks and largest motions of each response of masonry."""
+    rows: TableRows = []
+    for response, name in zip(responses, names, strict=True):
+        fell = [f"{block} at {t:.3g} s" for block, t in response.fallen.items()]
+        said = named(fell) if fell else "none"
+        moved = f"{response.peak.max():.3g} rad", f"{1e3 * response.opening.max():.3g} mm"
+        slid = f"{1e3 * response.sliding.max():.3g} mm"
+        rows.append((name, response.outcome.value, said, *moved, slid, f"{response.solver}, {_settings(response)}"))
     return rows
 
 
@@ -110,6 +149,24 @@ def of_ties(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
             broke = "-" if motion.broken == float("inf") else f"{motion.broken:.3f} s"
             rows.append((name, tie, f"{motion.largest_force / 1e3:.4g} kN", *taken, broke))
     return rows
+
+
+def masonry_cautions(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
+    """What to be careful of in the results of masonry."""
+    said = []
+    if len({bool(response.fallen) for response in responses}) > 1:
+        said.append("The responses do not agree on whether blocks fall.")
+    motions = [response.case.motion for response in responses if response.case.motion is not None]
+    if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
+        said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
+    if not any(response.solver == "explicit" for response in responses):
+        said.append("In MuJoCo faces have no end, and blocks that fall meet no others: explicit steps know both.")
+    said.append("A margin hangs on k_n and the points of the joints: repeat it with others.")
+    for response, name in zip(responses, names, strict=True):
+        for tie, drawn in response.plastic.items():
+            if drawn.broken < float("inf"):
+                said.append(f"{name}: {tie} broke at {drawn.broken:.3f} s.")
+    return said
 
 
 def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) -> list[str]:

@@ -12,9 +12,13 @@ from matplotlib.figure import Figure
 
 from ..files import write_text
 from ..plotting.histories import history, required_labels, same_ground
+from ..plotting.masonry import blocks
 from ..plotting.sketch import sketch
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.masonry import Masonry
+from ..problem.wall.block import Block
 from ..problem.wall.case import Case
 from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
@@ -40,7 +44,7 @@ footer { margin-top: 2em; font-size: .8em; color: #666 }
 
 
 def report(
-    case: Case,
+    case: Case | MasonryCase,
     responses: Response | Sequence[Response],
     path: str | Path,
     *,
@@ -55,11 +59,13 @@ def report(
     """Write a report of a case and its responses: one HTML page that needs no other file and prints to PDF.
 
     It has a sketch with dimensions, the inputs with their units and what they rest on, what to be careful of, the
-    histories with the forces of the ties, a table of the results and the versions of the programs.
+    histories with the forces of the ties, a table of the results and the versions of the programs. Of masonry it has
+    pictures of the blocks at rest and as each response ends.
 
     Args:
-        case: the wall and its effects, for the sketch and the inputs.
-        responses: of walls of this size, by any solver, under any motions. Those under one motion share a picture.
+        case: the wall or masonry and its effects, for the sketch and the inputs.
+        responses: of walls of this size or of this masonry, by any solver, under any motions. Those under one motion
+            share a picture.
         path: where to, an .html.
         title: of the page.
         labels: what each response is called, one for each.
@@ -74,11 +80,11 @@ def report(
         The path that was written.
 
     Raises:
-        TypeError: for an argument of another type, and for responses of masonry.
-        ValueError: for another ending of the path, no response, one of another wall, another number of labels, or a
-            basis of an input that the page does not have.
+        TypeError: for an argument of another type.
+        ValueError: for another ending of the path, no response, one of another wall or of other masonry, e or contacts
+            of masonry, another number of labels, or a basis of an input that the page does not have.
     """
-    require_kind("case", case, Case)
+    require_kind("case", case, Case, MasonryCase)
     path = require_path("path", path)
     if path.suffix.lower() != ".html":
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html")
@@ -88,16 +94,23 @@ def report(
     require_kind("contacts", contacts, Contacts, type(None))
     several = required_responses(case, responses)
     names = required_labels(several, labels) or [response.solver for response in several]
+    if isinstance(case, MasonryCase) and (e is not None or contacts is not None):
+        raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
+    what = "Wall" if isinstance(case, Case) else "Masonry"
     inputs = {
-        "Wall": content.of_wall(case),
+        what: content.of_wall(case) if isinstance(case, Case) else content.of_masonry(case),
         "Effects": content.of_effects(case),
         "Impacts and contacts": content.of_contacts(e, contacts),
     }
     further = [part for name, pieces in required_sections(sections).items() for part in section(name, pieces)]
     rests = required_basis(basis, {row[0] for rows in inputs.values() for row in rows})
     head = [f"<h1>{html.escape(title)}</h1>", *([f"<p>{html.escape(notes)}</p>"] if notes else [])]
-    parts = [*head, heading("The wall"), picture(sketch(case), "Section and elevation, true to scale [m].")]
-    parts += [heading("What to be careful of"), listed(content.cautions(case, several, names))]
+    parts = [*head, heading(f"The {what.lower()}"), *at_rest(case)]
+    if isinstance(case, Case):
+        careful = content.cautions(case, several, names)
+    else:
+        careful = content.masonry_cautions(several, names)
+    parts += [heading("What to be careful of"), listed(careful)]
     parts += [heading("Results"), results(several, names), *histories(several, names), *further]
     for name, rows in inputs.items():
         if rows:
@@ -107,13 +120,14 @@ def report(
     if motions:
         parts += [heading("Inputs: ground motions"), table(("direction", "name", "peak, duration, step"), motions)]
     parts += [heading("Versions"), table(("program", "version"), content.versions())]
-    parts.append("<footer>The wall is rigid and moves in one vertical plane. SI units; rotations in radians.</footer>")
+    rigid = "The wall is rigid and moves in one vertical plane." if what == "Wall" else "The blocks are rigid."
+    parts.append(f"<footer>{rigid} SI units; rotations in radians.</footer>")
     write_text(path, page(title, parts))
     return path
 
 
-def required_responses(case: Case, responses: object) -> list[Response]:
-    """At least one response, each of a wall of the size of the case; TypeError or ValueError for any other."""
+def required_responses(case: Case | MasonryCase, responses: object) -> list[Response]:
+    """At least one response, each of the wall or masonry of the case; TypeError or ValueError for any other."""
     given = [responses] if isinstance(responses, Response) else responses
     if not isinstance(given, Sequence) or isinstance(given, str):
         raise TypeError(f"responses = {shown(responses)} is neither a Response nor a sequence of them")
@@ -121,10 +135,11 @@ def required_responses(case: Case, responses: object) -> list[Response]:
         raise ValueError("responses is empty; at least one response is needed")
     for i, response in enumerate(given):
         require_kind(f"responses[{i}]", response, Response)
-        if not isinstance(response.case, Case):
-            raise TypeError(f"responses[{i}] is that of masonry; a report is of one wall")
-        if response.case.block != case.block:
-            raise ValueError(f"responses[{i}] is of {response.case.block!r}, and the case of {case.block!r}")
+        own, asked = (one.block if isinstance(one, Case) else one.masonry for one in (response.case, case))
+        if own != asked:
+            said = [repr(one) if isinstance(one, Block) else "masonry" for one in (own, asked)]
+            other = "other " if said[0] == said[1] else ""
+            raise ValueError(f"responses[{i}] is of {said[0]}, and the case of {other}{said[1]}")
     return list(given)
 
 
@@ -165,13 +180,33 @@ def section(name: str, pieces: object) -> list[str]:
 
 def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     """The tables of results, of ties, and the messages."""
-    columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts", "solved with"
-    made = table(columns, content.of_results(responses, names))
+    if isinstance(responses[0].case, Case):
+        columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts"
+        rows = content.of_results(responses, names)
+    else:
+        columns = "response", "outcome", "fallen", "largest rotation", "opening", "sliding"
+        rows = content.of_masonry_results(responses, names)
+    made = table((*columns, "solved with"), rows)
     ties = content.of_ties(responses, names)
     if ties:
         of_tie = "response", "tie", "largest force", "drawn out by", "energy taken", "broke at"
         made += "<p></p>" + table(of_tie, ties)
     return made + listed([f"{name}: {r.message}" for r, name in zip(responses, names, strict=True)], "")
+
+
+def at_rest(case: Case | MasonryCase) -> list[str]:
+    """The sketch of a wall, or the blocks of masonry."""
+    if isinstance(case, Case):
+        return [picture(sketch(case), "Section and elevation, true to scale [m].")]
+    return [picture(drawn(case.masonry), "The blocks at rest, fixed ones in grey.")]
+
+
+def drawn(masonry: Masonry | Response) -> Figure:
+    """Masonry at rest, or as a response of it ends."""
+    in_space = masonry.in_space
+    figure = Figure(figsize=(6.3, 4.2), layout="constrained")
+    blocks(figure.add_subplot(projection="3d") if in_space else figure.subplots(), masonry)
+    return figure
 
 
 def histories(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
@@ -182,8 +217,11 @@ def histories(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
         own = [pair for pair in left if same_ground(first, pair[0])]
         left = [pair for pair in left if not same_ground(first, pair[0])]
         motion = first.case.motion
-        drawn = history([response for response, _ in own], labels=[name for _, name in own])
-        made.append(picture(drawn, "No ground motion." if motion is None else f"Ground motion: {motion.name}."))
+        over_time = history([response for response, _ in own], labels=[name for _, name in own])
+        made.append(picture(over_time, "No ground motion." if motion is None else f"Ground motion: {motion.name}."))
+    for response, name in zip(responses, names, strict=True):
+        if not isinstance(response.case, Case):
+            made.append(picture(drawn(response), f"{name}: the blocks at {response.t[-1]:.4g} s."))
     return made
 
 

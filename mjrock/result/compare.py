@@ -187,7 +187,10 @@ def compare(reference: Response, candidate: Response) -> Comparison:
     require_kind("candidate", candidate, Response)
     for name, response in (("reference", reference), ("candidate", candidate)):
         if not isinstance(response.case, Case):
-            raise TypeError(f"{name} is that of masonry; responses of one wall are compared")
+            raise TypeError(
+                f"{name} is that of masonry; responses of one wall are compared. `mjrock.plotting.history` takes both, "
+                "and their opening, sliding, fallen and peak are arrays of equal shapes"
+            )
     if reference.case != candidate.case:
         raise ValueError(f"the responses answer different cases: {reference.case} and {candidate.case}")
     common = reference.t <= min(reference.t[-1], candidate.t[-1]) * (1 + 1e-12)

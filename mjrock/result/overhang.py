@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from scipy.spatial import ConvexHull
+import scipy
 
 from ..problem.masonry.faces_of_joints import faces_of_joints
 from ..problem.masonry.lines import edge_ends
@@ -91,5 +91,5 @@ def _beyond(point: Array, corners: Array) -> float:
     """How far a point lies outside of the hull of some corners in plan [m], negative inside."""
     if len(point) == 1:
         return float(max(corners.min() - point[0], point[0] - corners.max()))
-    sides = ConvexHull(corners).equations
+    sides = scipy.spatial.ConvexHull(corners).equations
     return float((sides[:, :2] @ point + sides[:, 2]).max())

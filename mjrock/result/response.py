@@ -17,6 +17,7 @@ from ..geometry.poses import angle_of, tilt_of
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path
 from .ending import Outcome
+from .forces import Forces
 from .joints import JointMotion
 from .ledger import Ledger
 from .motion import Motion
@@ -53,6 +54,7 @@ class Response:
             `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
             `base_displacement` when the duration is over [m].
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
+        kept_forces: what `forces` and `reactions` give, or None where they were not asked for.
     """
 
     case: Any  # Case or MasonryCase
@@ -67,6 +69,7 @@ class Response:
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
     end: State | None = None
+    kept_forces: Forces | None = None
 
     @property
     def pose(self) -> Array:
@@ -139,6 +142,31 @@ class Response:
     def energy_residual(self) -> Array | None:
         """Closure error of the energy ledger [J], shape (n,), or None where none was asked for."""
         return None if self.ledger is None else self.ledger.residual
+
+    @property
+    def forces(self) -> Forces:
+        """Forces of joints and links at the samples, see `Forces`.
+
+        Raises:
+            AttributeError: where the run was not asked to keep them.
+        """
+        if self.kept_forces is None:
+            raise AttributeError(
+                "this run kept no forces; pass forces=True to solve_explicit or simulate, which keep those of joints, "
+                "links and fixed blocks at every sample"
+            )
+        return self.kept_forces
+
+    @property
+    def reactions(self) -> Mapping[str, Array]:
+        """Force on the masonry, or on the wall, by each fixed block, by its name [N], shape (n, 2), in space (n, 3).
+
+        Along x and z, in space x, y and z. They sum to the weight at rest. `Forces` says what counts.
+
+        Raises:
+            AttributeError: where the run was not asked to keep them.
+        """
+        return self.forces.reactions
 
     @cached_property
     def ties(self) -> Mapping[str, TieMotion]:
@@ -255,8 +283,10 @@ class Response:
         """The samples as CSV text, one row each, written to `path` where one is given.
 
         The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
-        rest [m, m, rad], in space x, y, z and the quaternion, and the acceleration of the ground where there is one
-        [m/s2]. No name has a comma: `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept.
+        rest [m, m, rad], in space x, y, z and the quaternion, the acceleration of the ground where there is one [m/s2],
+        and forces where the run kept them: of each fixed block, joint and link [N], and eccentricities [m]. They are
+        those of `Forces`. No name has a comma: `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits
+        are kept.
 
         Raises:
             OSError: if the file cannot be written.
@@ -275,6 +305,8 @@ class Response:
         for field_name, name in (("motion", "horizontal"), ("vertical", "vertical"), ("transverse", "transverse")):
             if (motion := getattr(self.case, field_name, None)) is not None:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
+        if self.kept_forces is not None:
+            columns |= self.kept_forces.columns()
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
         if path is not None:
             write_text(require_path("path", path), text)

@@ -95,12 +95,17 @@ def elongation_of(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array
 
     The times t [s] say where supports are, shape (n,).
     """
+    return np.asarray(np.linalg.norm(across(case, tie, t, pose), axis=1) - tie.law.reach)
+
+
+def across(case: Case | MasonryCase, tie: Anchored, t: Array, pose: Array) -> Array:
+    """From the anchor of a link to the point that it holds at poses as in `elongation_of` [m], shape (n, d)."""
     held = held_by(case, tie)[1]
     anchor = tie.anchor_of(held)
     between = held - anchor + _displaced(case, tie.block, held, t, pose)
     if tie.anchor_block is not None:
         between = between - _displaced(case, tie.anchor_block, anchor, t, pose)
-    return np.asarray(np.linalg.norm(between, axis=1) - tie.law.reach)
+    return np.asarray(between)
 
 
 def _displaced(case: Case | MasonryCase, block: int, point: Array, t: Array, pose: Array) -> Array:

@@ -51,6 +51,7 @@ TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
 """Columns of each tie, after its name: how far it has yielded, its largest force, what yielding and breaking took, and
 when it broke, empty where it did not."""
 MASONRY_COLUMNS = (
+    "solver",
     "outcome",
     "fallen",
     "first_fall_s",
@@ -100,15 +101,14 @@ class Analysis:
             if not isinstance(value, Mapping):
                 raise TypeError(f"{name} = {shown(value)} is not a mapping of names to values")
             keep(self, **{name: dict(value)})
-        if not isinstance(self.solver, str) or self.solver not in SOLVERS:
-            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(SOLVERS)}")
+        valid_solvers = tuple(SOLVERS) if isinstance(self.case, Case) else OF_MASONRY
+        if not isinstance(self.solver, str) or self.solver not in valid_solvers:
+            whom = "" if isinstance(self.case, Case) else ", which take masonry"
+            raise ValueError(f"solver = {spelt(self.solver)} is not one of {', '.join(valid_solvers)}{whom}")
         if isinstance(self.case, Case):
             self._require_wall(self.case)
-        elif self.solver not in OF_MASONRY or self.e is not None or self.contacts is not None:
-            raise ValueError(
-                f"masonry has its joints and is solved by {', '.join(OF_MASONRY)}, not {self.solver}; "
-                "leave e and contacts out"
-            )
+        elif self.e is not None or self.contacts is not None:
+            raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
         valid = OPTIONS[self.solver]
         unknown = self.options.keys() - set(valid)
         if unknown:
@@ -130,11 +130,16 @@ class Analysis:
     def COLUMNS(self) -> tuple[str, ...]:
         """The columns of a row."""
         own = tuple(f"{tie}_{name}" for tie in self.case.springs for name in TIE_COLUMNS)
+        if self.options.get("forces"):
+            own += ("largest_reaction_N",)
         return (WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS) + own
 
     @property
     def law(self) -> str:
-        """The law of the damping, or "restitution" for the analytical solver."""
+        """The law of the damping, or "restitution" for the analytical solver; of masonry without a law "given"."""
+        if isinstance(self.case, MasonryCase):
+            given = self.case.masonry.law
+            return "given" if given is None else str(getattr(given, "name", spelt(given)))
         return "restitution" if self.contacts is None or self.solver == "analytical" else self.contacts.law
 
     @property
@@ -163,7 +168,8 @@ class Analysis:
             save_history(response, history)
         values = self._of_wall(response) if isinstance(self.case, Case) else _of_masonry(response)
         ending = float(response.t[-1]), response.message
-        return dict(zip(self.COLUMNS, (*values, *ending, *_of_ties(response)), strict=True))
+        forces = () if response.kept_forces is None else (response.forces.largest_reaction,)
+        return dict(zip(self.COLUMNS, (*values, *ending, *_of_ties(response), *forces), strict=True))
 
     def _of_wall(self, response: Response) -> tuple[object, ...]:
         """The columns of a wall but the last two."""
@@ -183,6 +189,7 @@ def _of_ties(response: Response) -> Iterator[float | None]:
 def _of_masonry(response: Response) -> tuple[object, ...]:
     """The columns of masonry but the last two."""
     return (
+        response.solver,
         response.outcome.value,
         len(response.fallen),
         min(response.fallen.values(), default=None),
@@ -194,15 +201,25 @@ def _of_masonry(response: Response) -> tuple[object, ...]:
 
 @dataclass(frozen=True, repr=False)
 class MasonryAnalysis(Analysis):
-    """`Analysis` of masonry by MuJoCo, with the arguments case, options and labels."""
+    """`Analysis` of masonry, with the arguments case, options, labels and, by its name, solver.
+
+    The solver is "MuJoCo", or "explicit" for `solve_explicit`, which is the faster one from some eight blocks on.
+    """
 
     case: MasonryCase
-    solver: str = field(default="MuJoCo", init=False)
+    solver: str = field(default="MuJoCo", kw_only=True)
     e: None = field(default=None, init=False)
     contacts: None = field(default=None, init=False)
 
 
 def save_history(response: Response, path: Path) -> None:
-    """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file."""
+    """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file.
+
+    Where the run has kept forces, normal, shear and eccentricity follow, and the reaction of each fixed block.
+    """
     names = ("theta", "omega") if response.joints is None else ("pose", "velocity")
-    write_arrays(path, **{name: getattr(response, name) for name in ("t", *names, "energy")})
+    arrays = {name: getattr(response, name) for name in ("t", *names, "energy")}
+    if response.kept_forces is not None:
+        arrays |= {name: getattr(response.forces, name) for name in ("normal", "shear", "eccentricity")}
+        arrays |= {f"reaction of {name}": force for name, force in response.reactions.items()}
+    write_arrays(path, **arrays)

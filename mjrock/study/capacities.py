@@ -24,13 +24,13 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
 
     A wall is lost if it overturned. One with ties is lost too if the time ended after it had leaned by alpha or more:
     ties alone held it, and a wall that leans on ties that yield does not survive. So is one that leaned inwards by
-    alpha or more, over its side stop. A wall that still rocks stands.
+    alpha or more, over its side stop. A wall that still rocks stands. Masonry is lost if a block has fallen.
 
     Args:
-        rows: rows of walls, as `Store.rows` gives them.
+        rows: rows of walls or of masonry, as `Store.rows` gives them.
 
     Raises:
-        ValueError: for a row without a result, or one that is not of a wall.
+        ValueError: for a row without a result, or one of another task.
     """
     if isinstance(rows, Mapping) or not is_iterable(rows):
         raise TypeError(f"rows = {shown(rows)} are not rows of a campaign")
@@ -39,9 +39,13 @@ def lost(rows: Iterable[Mapping[str, Any]]) -> Flags:
         if not isinstance(row, Mapping):
             raise TypeError(f"rows[{i}] = {shown(row)} is not a row of a campaign")
         outcome, peak = row.get("outcome"), row.get("peak_over_alpha")
+        if peak is None and outcome in OUTCOMES and isinstance(row.get("fallen"), int):
+            found.append(row["fallen"] > 0)
+            continue
         if not isinstance(outcome, str) or outcome not in OUTCOMES or peak is None:
             raise ValueError(
-                f"rows[{i}] has outcome = {shown(outcome)} and peak_over_alpha = {shown(peak)}: no result of a wall"
+                f"rows[{i}] has outcome = {shown(outcome)} and peak_over_alpha = {shown(peak)}: no result of a "
+                "wall or of masonry"
             )
         peak, inwards = (
             require_real(f"rows[{i}], {name}", row.get(name) or 0.0)

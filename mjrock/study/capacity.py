@@ -1,4 +1,4 @@
-"""The intensity that overturns a wall under the motion of its case, as a task of a campaign."""
+"""The intensity that overturns a wall or brings masonry down under the motion of its case, as a task of a campaign."""
 
 from __future__ import annotations
 
@@ -58,7 +58,8 @@ def halved(falls: Callable[[float], bool], low: float, high: float, tolerance: f
 class Capacity:
     """The intensity at which the motion of a case overturns its wall; a task of a campaign, as an `Analysis` is.
 
-    The horizontal and the vertical motion of the case are scaled together. From the scale `start` the search goes up
+    Masonry is lost when a block falls. The motions of the case in all directions are scaled together, and the intensity
+    is that of `motion`, or in space without it of `transverse`. From the scale `start` the search goes up
     by a quarter at a time until the wall falls, or down until it stands, and then halves the interval. Its row has
     `capacity_g`, the peak ground acceleration over g that overturns the wall, `capacity_scale`, the factor on the
     motion of the case, and `stands_at_g`, hardly lower, at which the wall stands. Where there are several such edges,
@@ -66,14 +67,14 @@ class Capacity:
     the wall falls too, empty if it stands at all of them; the message then says "Not monotonic". `ida` shows all.
 
     Args:
-        analysis: the case with its motion, solver and contacts.
+        analysis: the case with its motion, solver and, of a wall, contacts.
         tolerance: how far below the answer the wall may be known to stand, over the answer [-], 1e-6 to 0.5.
         start: scale of the motion from which the search starts [-], 1e-6 to 1e6.
         below: how many weaker intensities are tried, 0 to 30.
 
     Raises:
         TypeError: for what is no `Analysis`.
-        ValueError: for a value outside its range, masonry, or a case whose ground does not move.
+        ValueError: for a value outside its range, or a case whose ground does not move horizontally.
     """
 
     COLUMNS: ClassVar[tuple[str, ...]] = NAMES
@@ -93,9 +94,15 @@ class Capacity:
             start=require_within("start", self.start, 1e-6, 1e6),
             below=require_whole("below", self.below, 0, 30),
         )
+        if not self.peak > 0:
+            raise ValueError(f"analysis = {shown(self.analysis)} has no horizontal motion to scale")
+
+    @property
+    def peak(self) -> float:
+        """Largest horizontal acceleration of the case over g [-], 0 where there is none."""
         case = self.analysis.case
-        if not isinstance(case, Case) or not isinstance(case.motion, GroundMotion) or not case.motion.peak > 0:
-            raise ValueError(f"analysis = {shown(self.analysis)} has no wall with a horizontal motion to scale")
+        motion = case.motion or getattr(case, "transverse", None)
+        return motion.peak / GRAVITY if isinstance(motion, GroundMotion) else 0.0
 
     @property
     def labels(self) -> Mapping[str, object]:
@@ -116,8 +123,9 @@ class Capacity:
         case = self.analysis.case
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=".* peaks at ", category=UserWarning)  # weak and strong are meant
-            motion, vertical = (ground and ground.scaled(scale) for ground in (case.motion, case.vertical))
-            return replace(self.analysis, case=replace(case, motion=motion, vertical=vertical))
+            grounds = {name: getattr(case, name, None) for name in ("motion", "vertical", "transverse")}
+            moved = {name: ground.scaled(scale) for name, ground in grounds.items() if ground is not None}
+            return replace(self.analysis, case=replace(case, **moved))
 
     def __call__(self, history: Path | None = None) -> Row:
         """Search, and return the columns of the row; a history is that of the run that overturned the wall."""
@@ -126,17 +134,19 @@ class Capacity:
         def falls(scale: float) -> bool:
             nonlocal runs
             runs += 1
-            return self.scaled(scale).solve().peak_over_alpha == math.inf
+            analysis = self.scaled(scale)
+            return bool(analysis()[analysis.PEAK] == math.inf)
 
         low, high = halved(falls, *bracket(falls, self.start), self.tolerance)
         weaker = [scale for scale in (low / GROWTH**i for i in range(1, self.below + 1)) if falls(scale)]
         if history is not None:
             self.scaled(high)(history)
-        assert self.analysis.case.motion is not None
-        peak = self.analysis.case.motion.peak / GRAVITY
-        message = f"The wall overturns at {high * peak:.4g} g and stands at {low * peak:.4g} g."
+        peak, what = self.peak, "wall overturns" if isinstance(self.analysis.case, Case) else "masonry falls"
+        message = f"The {what} at {high * peak:.4g} g and stands at {low * peak:.4g} g."
         lowest = min(weaker) * peak if weaker else None
         if weaker:
-            message += f" Not monotonic: it overturns at {', '.join(f'{scale * peak:.4g}' for scale in weaker)} g too."
+            message += (
+                f" Not monotonic: it {what.split()[1]} at {', '.join(f'{scale * peak:.4g}' for scale in weaker)} g too."
+            )
         values = self.solver, self.analysis.law, high * peak, high, low * peak, lowest, runs, message
         return dict(zip(self.COLUMNS, values, strict=True))

@@ -25,12 +25,13 @@ Build = Callable[[float], Analysis]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class IncrementalAnalysis:
-    """The peaks of every record at every scale.
+    """The peaks of every record at every scale. Masonry overturns when a block falls.
 
     Args:
         records: names of the records.
         scales: the scales, in the unit that `build` takes, shape (scales,).
-        peaks: largest rotation over alpha, infinite where the wall overturned [-], shape (records, scales).
+        peaks: largest rotation over alpha, infinite where the wall overturned [-], shape (records, scales). Of masonry
+            the largest rotation of a block [rad].
         rows: the row of the store for each run, by record and scale.
     """
 
@@ -169,7 +170,7 @@ def overturning_intensity(
     if peaks[1] < math.inf:
         raise ValueError(
             f"high = {high:g}: the wall does not overturn at that scale, its largest rotation is "
-            f"{peaks[1]:.4g} alpha; give a higher one"
+            f"{peaks[1]:.4g} {'rad' if build(high).PEAK.endswith('_rad') else 'alpha'}; give a higher one"
         )
     return halved(falls, low, high, tolerance)[1]
 

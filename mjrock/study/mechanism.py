@@ -1,21 +1,23 @@
 """The check of a local mechanism on its push-over curve, after the Italian commentary C8.7.1.2.1, clause by clause.
 
-The clauses are those of Circolare 21 gennaio 2019 n. 7. The single rigid block of a case is the mechanism. It stands at
-ground level and has no vibration of its own before it opens.
+The clauses are those of Circolare 21 gennaio 2019 n. 7. The single rigid block of a case is the mechanism. It stands on
+the ground, or on a floor whose spectrum or motion is the demand, and has no vibration of its own before it opens.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
 from ..problem.ground.motion import GroundMotion
-from ..problem.ground.spectrum import SHORTEST, response_spectrum
+from ..problem.ground.oscillator import SHORTEST
+from ..problem.ground.spectrum import response_spectrum
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import moment_at_strength
+from ..problem.wall.ties_on_wall import moment_at_strength, pulled
 from ..quantities import GRAVITY, Array, require_kind, require_real, require_within, shown
 from .pushover import pushover
 
@@ -30,8 +32,8 @@ BEHAVIOUR = 2.0
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 
-Demand = GroundMotion | Callable[[float, float], float]
-"""A record, or an elastic displacement spectrum S_De(T, xi) [m]."""
+Demand = GroundMotion | CodeSpectrum | FloorSpectrum | Callable[[float, float], float]
+"""A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +69,8 @@ class MechanismCheck:
         a: spectral accelerations [m/s2], shape (n,).
         d_0: displacement at which the acceleration falls to zero [m].
         states: the limit states SLV and SLC.
+        peak: peak acceleration of the demand, where the wall stands [m/s2]; None of a displacement spectrum.
+        yielding, breaking: displacement at which each tie yields and breaks [m], by name, of those that do up to d_0.
     """
 
     alpha_0: float
@@ -77,6 +81,9 @@ class MechanismCheck:
     a: Array
     d_0: float
     states: dict[str, LimitState]
+    peak: float | None = None
+    yielding: Mapping[str, float] = field(default_factory=dict)
+    breaking: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def a_0(self) -> float:
@@ -92,6 +99,15 @@ class MechanismCheck:
     def linear_tied(self) -> float | None:
         """The same with the ties at their strength [m/s2]; None without ties."""
         return None if self.alpha_tied is None else BEHAVIOUR * self._acceleration(self.alpha_tied)
+
+    @property
+    def linear_ratio(self) -> float | None:
+        """Capacity over demand of the linear check of the SLV [-], with the ties at their strength; None where the peak
+        acceleration of the demand is not known."""
+        if self.peak is None:
+            return None
+        capacity = self.linear if self.linear_tied is None else self.linear_tied
+        return capacity / self.peak if self.peak > 0 else math.inf
 
     def _acceleration(self, multiplier: float) -> float:
         """Spectral acceleration of a multiplier [m/s2], equation C8.7.1.8."""
@@ -109,7 +125,12 @@ class MechanismCheck:
         if self.alpha_tied is not None and self.linear_tied is not None:
             rows.append(("alpha_0, ties at their strength", f"{self.alpha_tied:.4f}", "C8.7.1.1"))
             rows.append(("linear SLV, ties at their strength [g]", f"{self.linear_tied / GRAVITY:.4f}", "C8.7.1.2.1.7"))
+        if self.peak is not None:
+            rows.append(("peak of the demand, a_g S or a_Z [g]", f"{self.peak / GRAVITY:.4f}", "C8.7.1.2.1.7"))
+            rows.append(("capacity over demand SLV, linear", f"{self.linear_ratio:.2f}", ""))
         rows.append(("d_0 [m]", f"{self.d_0:.4f}", "C8.7.1.4"))
+        rows += [(f"{tie} yields at d [m]", f"{d:.4f}", "") for tie, d in self.yielding.items()]
+        rows += [(f"{tie} breaks at d [m]", f"{d:.4f}", "") for tie, d in self.breaking.items()]
         for name, state in self.states.items():
             rows += [
                 (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
@@ -136,11 +157,13 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     they break. In the linear check they stand twice: slack, as they are where rocking starts, and at their strength, a
     stabilising force on the mechanism in the equation of virtual work, for ties that are tensioned or have no slack. Of
     the two conditions of C8.7.1.2.1.6 only the share of d_0 is looked at: whether a beam loses its seat before is for
-    the user. Amplification above the ground (C8.7.1.2.1.4) is not in it.
+    the user. A mechanism on a floor (C8.7.1.2.1.4) takes `spectrum.at_height(...)` or `motion.through_building(...)` as
+    its demand. The linear check compares 2 a_0 with the peak acceleration of the demand, where that is known.
 
     Args:
         case: the wall and its effects; its release and its motion play no part.
-        demand: a record, or a function S_De(T, xi) that gives the elastic displacement [m] of a spectrum.
+        demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
+            [m] of a spectrum.
         confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
 
     Raises:
@@ -149,6 +172,7 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     require_kind("case", case, Case)
     if not isinstance(demand, GroundMotion) and not callable(demand):
         raise TypeError(f"demand = {shown(demand)} is neither a GroundMotion nor a function S_De(T, xi)")
+    peak = demand.peak if isinstance(demand, GroundMotion | CodeSpectrum | FloorSpectrum) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
     curve = pushover(case)
     if not math.isfinite(curve.end):
@@ -169,7 +193,23 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     alpha_0, tied = float(curve.multiplier[0]), None
     if case.pulls:
         tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
-    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states)
+    yielding, breaking = _reached(case, curve.rotation, d)
+    return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
+
+
+def _reached(case: Case, rotation: Array, d: Array) -> tuple[dict[str, float], dict[str, float]]:
+    """Displacements of the oscillator at which each tie yields and breaks along the curve [m], of those that do."""
+    fine = np.linspace(rotation[0], rotation[-1], 20_001)
+    yielding: dict[str, float] = {}
+    breaking: dict[str, float] = {}
+    ties = [name for name, tie in case.springs.items() if tie.law.holds]
+    for name, pull in zip(ties, case.pulls, strict=True):
+        elongation = pulled(pull, fine, 1.0)[0]
+        for at, further in ((yielding, 0.0), (breaking, pull.ultimate)):
+            beyond = np.flatnonzero(elongation > pull.strength / pull.stiffness + further)
+            if beyond.size:
+                at[name] = float(np.interp(fine[beyond[0]], rotation, d))
+    return yielding, breaking
 
 
 def _masses(case: Case) -> tuple[Array, Array]:
@@ -185,6 +225,8 @@ def _asked(demand: Demand, period: float, damping: float) -> float:
     if isinstance(demand, GroundMotion):
         periods = np.geomspace(min(0.05, period), max(period, SHORTEST), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
+    if isinstance(demand, CodeSpectrum | FloorSpectrum):
+        return float(demand.displacement(period, damping))
     try:
         asked = require_real("demand(T, xi)", demand(period, damping))
     except (TypeError, ValueError) as error:

@@ -151,8 +151,8 @@ def sensitivity(
         base: the settings of the base. A varied setting that it leaves out has its first value.
         vary: the values to try of each setting.
         store: the SQLite file; None keeps no rows.
-        measure: the column of the rows to look at; None is `peak_over_alpha` of an `Analysis`, `capacity_g` of a
-            `Capacity`.
+        measure: the column of the rows to look at; None is `peak_over_alpha` of an `Analysis`, the
+            `largest_rotation_rad` of a block of masonry, `capacity_g` of a `Capacity`.
         together: whether every combination of the values runs too, those of the base among them. Their number is the
             product over the settings.
         options: those of `campaign`, such as `workers`.

@@ -20,8 +20,7 @@ from ..result.rocking import Impact, Rocking
 from ..result.samples import intervals, required_spacing
 from ..result.stopwatch import Stopwatch
 from ..result.ties import Plastic, told_of_ties, warn_of_ties
-from .forced import rock_forced
-from .free import rock_freely
+from .arcs import rock
 from .motion import RigidMotion, RockingMotion
 
 
@@ -30,7 +29,6 @@ def solve_analytical(
     e: Restitution,
     *,
     rtol: float = 1e-10,
-    atol: float = 1e-12,
     output_step: float | None = None,
     rest: float = 1e-9,
 ) -> Response:
@@ -47,8 +45,7 @@ def solve_analytical(
         case: the wall, its release, its sides, its ground motion. With a side stop `e.lumped` rules and theta >= 0,
             without one `e.base`.
         e: the coefficients of restitution.
-        rtol, atol: tolerances of the integration of free arcs (scipy, DOP853), on rotation [rad] and velocity [rad/s];
-            `rtol` sets the longest step of forced ones, see `mjrock.theory.forced`.
+        rtol: error of the integration, about, over alpha in a fall from alpha/2 [-]. It sets the longest step.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. They are
             evenly spaced, and the last is the end of the run.
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
@@ -56,8 +53,6 @@ def solve_analytical(
     Raises:
         ValueError: for a tolerance or step out of range, a side stop from which the wall does not rebound, or a
             vertical motion that lifts the wall off its base.
-        RuntimeError: if the integration fails.
-
     Warns:
         Implausible: if the restitution was made for another wall or another side stop.
         UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
@@ -65,7 +60,6 @@ def solve_analytical(
     require_kind("case", case, Case)
     require_kind("e", e, Restitution)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
-    atol = require_within("atol", atol, 1e-16, 0.1)
     spacing = required_spacing(output_step, case.duration)
     rest = require_within("rest", rest, 1e-30, 0.1)
     require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
@@ -73,7 +67,7 @@ def solve_analytical(
     if unlike := e.doubt(case.wall, case.stop_top):
         warnings.warn(unlike, Implausible, stacklevel=2)
     watch = Stopwatch()
-    motion = _rocking(case, e, rtol, atol, rest)
+    motion = _rocking(case, e, rtol, rest)
     outcome = _outcome(case, motion)
     t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
     samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
@@ -94,9 +88,7 @@ def solve_analytical(
         stats={
             **watch.took(),
             "evaluations": motion.evaluations,
-            "arcs": motion.arcs,
             "rtol": rtol,
-            "atol": atol,
         },
     )
 
@@ -132,16 +124,14 @@ def _require_solvable(case: Case, e: Restitution) -> None:
         )
 
 
-def _rocking(case: Case, e: Restitution, rtol: float, atol: float, rest: float) -> RockingMotion:
-    """The motion from impact to impact, free or forced."""
+def _rocking(case: Case, e: Restitution, rtol: float, rest: float) -> RockingMotion:
+    """The motion from impact to impact."""
     restitution = e.lumped if case.side_stop else e.base
     shaken = case.motion is not None or case.vertical is not None
     outer, inner = case.restoring
     weaker = outer if case.side_stop or outer.P <= inner.P else inner
     least = rest * (float(weaker.energy(weaker.alpha)) if shaken else case.release_energy)
-    if shaken or case.pulls:
-        return rock_forced(case, restitution, least, rtol)
-    return rock_freely(case, restitution, least, rtol, atol)
+    return rock(case, restitution, least, rtol)
 
 
 def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:

@@ -20,8 +20,7 @@ class RockingMotion:
         t, theta: time and rotation at the end [s, rad].
         fell: whether the wall lies on its face.
         at_rest: whether the wall rests upright.
-        sample: rotation [rad] and angular velocity [rad/s] at increasing times [s].
-        arcs: how many arcs, or steps, the motion is made of.
+        sample: rotation [rad] and angular velocity [rad/s] at n increasing times [s], shape (2, n).
         evaluations: evaluations of Eq. 1.
         plastic: times [s] and elongations that ties have yielded by then [m], infinite once they have broken, shapes
             (n,) and (n, ties); or None.
@@ -33,8 +32,7 @@ class RockingMotion:
     theta: float
     fell: bool
     at_rest: bool
-    sample: Callable[[Array], tuple[Array, Array]]
-    arcs: int
+    sample: Callable[[Array], Array]
     evaluations: int
     plastic: tuple[Array, Array] | None = None
 

@@ -7,12 +7,14 @@ tasks, one call of this version after one of the other, so that a machine that i
 from __future__ import annotations
 
 import io
+import math
 import os
 import statistics
 import subprocess
 import sys
 import tarfile
 import tempfile
+import time
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -59,6 +61,21 @@ def another_wall() -> mr.Response:
 
 another_wall.count = 0  # type: ignore[attr-defined]
 
+
+def set_up(blocks: int) -> float:
+    """Processor seconds from nothing to the first explicit step of a wall in running bond; NaN in a version without."""
+    if not hasattr(mr, "solve_explicit"):
+        return math.nan
+    set_up.count += 1  # type: ignore[attr-defined]
+    rows, density = round((blocks / 2) ** 0.5), 2000.0 + set_up.count  # type: ignore[attr-defined]
+    begun = time.process_time()
+    wall = mr.Masonry.running_bond(0.5 * round(blocks / rows), 0.25 * rows, (0.5, 0.25), density=density, k_s=1e10)
+    answer = mr.solve_explicit(mr.MasonryCase(wall, 1e-6), output_step=1e-6)
+    return time.process_time() - begun - float(answer.stats["stepping_processor_time"])
+
+
+set_up.count = 0  # type: ignore[attr-defined]
+
 ONE_SIDED = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 3.0)
 TWO_SIDED = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 6.0, side_stop=False)
 UNDER_RECORD = mr.Case(FIGURE_3, 0.0, 12.0, motion=MOTION)
@@ -67,6 +84,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "two-sided, 6 s, fitted steps": lambda: mr.simulate(TWO_SIDED, CONTACTS),
     "one-sided, a new wall each time": another_wall,
     "10 s record, MuJoCo, fitted steps": lambda: mr.simulate(UNDER_RECORD, CONTACTS),
+    "one-sided, 3 s, rocking theory": lambda: mr.solve_analytical(ONE_SIDED, E_THEORY),
+    "two-sided, 6 s, rocking theory": lambda: mr.solve_analytical(TWO_SIDED, E_THEORY),
     "10 s record, rocking theory": lambda: mr.solve_analytical(UNDER_RECORD, E_THEORY),
     "10 s record, rocking theory, output_step 0.05 s": lambda: mr.solve_analytical(
         UNDER_RECORD, E_THEORY, output_step=0.05
@@ -74,6 +93,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "one-sided, 3 s, fixed step 0.1 ms": lambda: mr.simulate(ONE_SIDED, CONTACTS, 1e-4),
 }
 CAMPAIGNS = {"campaign, rocking theory, a wall": "analytical", "campaign, MuJoCo, a wall": "MuJoCo"}
+SET_UPS = {f"set-up of {count} blocks, explicit steps": count for count in (50, 1000, 2000, 4000)}
+"""Processor time of each; the first one warms up, and is the only one of the quick mode."""
 SIZES = {"analytical": (2000, 100), "MuJoCo": (160, 8)}
 """Walls of a campaign, in full and in the quick mode."""
 
@@ -83,7 +104,10 @@ def serve() -> None:
     warnings.simplefilter("ignore", UserWarning)
     for line in sys.stdin:
         name, size = line.rstrip("\n").split("\t")
-        seconds = campaign(int(size), CAMPAIGNS[name]) if name in CAMPAIGNS else cli.seconds(CALLS[name])
+        if name in SET_UPS:
+            seconds = set_up(SET_UPS[name])
+        else:
+            seconds = campaign(int(size), CAMPAIGNS[name]) if name in CAMPAIGNS else cli.seconds(CALLS[name])
         print(f"{seconds!r}", flush=True)
 
 
@@ -139,9 +163,19 @@ DEPENDENCIES = "mujoco, numpy, tqdm, scipy.integrate, scipy.interpolate, scipy.o
 FIRST = """
 import time, mjrock as mr
 w = mr.Block(b=0.3, h=2.1)
+e, case = mr.Restitution.from_geometry(w), mr.Case(w, 0.07, 1.0)
 c = mr.Contacts.from_damping(w, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.01)
-s = time.perf_counter(); mr.simulate(mr.Case(w, 0.07, 1.0), c); print(time.perf_counter() - s)
+s = time.process_time(); {}; print(time.process_time() - s)
 """
+FIRST_RUNS = {
+    "rocking theory": "mr.solve_analytical(case, e)",
+    "a wall in MuJoCo": "mr.simulate(case, c)",
+    "a wall in MuJoCo at a fixed step": "mr.simulate(case, c, 1e-3)",
+    "masonry of the plane by explicit steps": "mr.solve_explicit(mr.MasonryCase(mr.Masonry.arch(5.0, 0.75), 0.01))",
+    "masonry of space by explicit steps": "mr.solve_explicit(mr.MasonryCase(mr.Masonry.column(1.0, 3.0, 2), 0.01))",
+    "masonry of space in MuJoCo": "mr.simulate(mr.MasonryCase(mr.Masonry.column(1.0, 3.0, 2), 0.01))",
+}
+"""First runs, one after the other: each compiles what those before have not."""
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -173,21 +207,25 @@ def main(argv: Sequence[str] | None = None) -> None:
                         version.seconds(task)
                 found = [[version.seconds(task, size) for version in versions] for _ in range(count)]
                 row(task, *map(list, zip(*found, strict=True)))
+            for task in list(SET_UPS)[: 1 if args.quick else None]:
+                found = [[version.seconds(task) for version in versions] for _ in range(1 if args.quick else 2)]
+                row(task, *map(list, zip(*found, strict=True)))
             fresh = range(1 if args.quick else 7)
             imports = [[version.run(IMPORT.format("mjrock")) for version in versions] for _ in fresh]
             row("import mjrock", *map(list, zip(*imports, strict=True)))
             alone = [versions[0].run(IMPORT.format(DEPENDENCIES)) for _ in fresh]
-            stored = [versions[0].run(FIRST) for _ in fresh]
-            cache = str(Path(folder) / "cache")
-            compiling = 0.0 if args.quick else versions[0].run(FIRST, NUMBA_CACHE_DIR=cache)
+            stored = [versions[0].run(FIRST.format(FIRST_RUNS["a wall in MuJoCo"])) for _ in fresh]
+            cache = {} if args.quick else {"NUMBA_CACHE_DIR": str(Path(folder) / "cache")}
+            firsts = {name: versions[0].run(FIRST.format(run), **cache) for name, run in FIRST_RUNS.items()}
         finally:
             for version in versions:
                 version.close()
     text = cli.table(["task", "before [ms]", "now [ms]", "times as fast"], rows)
     text += f"\n\nimport of the dependencies of before alone: {statistics.median(alone) * 1e3:.0f} ms"
     text += f"\nfirst run of a process, loops stored on disk: {statistics.median(stored):.2f} s"
-    if not args.quick:
-        text += f"\nfirst run of an installation, which compiles the loops: {compiling:.1f} s"
+    text += "\nfirst runs of an installation, which compile the loops, of one core [s], each after those before:\n"
+    text += "\n".join(f"  {name}: {seconds:.1f}" for name, seconds in firsts.items())
+    text += f"\n  all: {sum(firsts.values()):.1f}"
     cli.report(out / "speed", text)
 
 

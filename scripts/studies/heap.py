@@ -33,8 +33,8 @@ def drawn(answer: mr.Response) -> Figure:
     """The wall at some times of its fall, seen from the ground."""
     masonry = answer.case.masonry
     length, height = np.concatenate([masonry.blocks[i].corners for i in masonry.free]).max(axis=0)
-    limits = [(-0.5 * length, 1.5 * length), (-0.5, height + 0.4)]
-    figure = Figure(figsize=(11, 2.6), layout="constrained")
+    limits = [(-0.5 * length, 2.2 * length), (-0.5, height + 0.4)]
+    figure = Figure(figsize=(13, 2.2), layout="constrained")
     for ax, row in zip(figure.subplots(1, FRAMES), np.linspace(0, len(answer.t) - 1, FRAMES).astype(int), strict=True):
         plotting.blocks(ax, masonry, answer.pose[row], joints=False, limits=limits)
         ax.set(title=f"{answer.t[row]:.1f} s", xlabel="x [m]")
@@ -46,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run the study."""
     args = cli.parser(__doc__, "out/heap").parse_args(argv)
     out = cli.folder(args.out)
-    answer = heap(1.0, 1.0, 0.5) if args.quick else heap(2.0, 2.0, 3.0)
+    answer = heap(1.0, 1.0, 0.5) if args.quick else heap(2.0, 2.0, 4.0)
     assert answer.ledger is not None
     moved = float(np.abs(answer.ledger.kinetic).max())
     gap = float(np.abs(answer.ledger.residual).max())

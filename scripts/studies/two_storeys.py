@@ -31,6 +31,8 @@ SOIL = 0.8
 """Frequency of the soil under the record [Hz]."""
 OPEN = 0.002
 """Width of the head joints [m]."""
+REACH = 0.6
+"""How far the ground goes on at either side, over the length of the wall [-]."""
 BEARING = 0.4
 """Length on which a lintel bears at either side [m]."""
 
@@ -70,7 +72,7 @@ class Study:
 
 WINDOWS = (Opening(2.0, 3.2, 1.0, 2.2), Opening(10.8, 12.0, 1.0, 2.2))
 UPPER = tuple(Opening(left, left + 1.2, 4.0, 5.2) for left in (2.0, 6.4, 10.8))
-FULL = Study(14.0, 6.4, (*WINDOWS, Opening(6.4, 7.6, 0.0, 2.2), *UPPER), 3.0, 4.0, (2.5, 16.0), 1.0, 12.5, 70.0)
+FULL = Study(14.0, 6.4, (*WINDOWS, Opening(6.4, 7.6, 0.0, 2.2), *UPPER), 3.0, 6.0, (2.5, 16.0), 1.0, 12.5, 70.0)
 QUICK = Study(2.8, 1.4, (Opening(1.0, 1.8, 0.4, 0.8),), 1.0, 0.2, (2.5, 16.0), 1.0, 12.5, 30.0)
 
 
@@ -96,7 +98,7 @@ def wall(study: Study) -> mr.Masonry:
         corners = [(left, low), (right, low), (right, high), (left, high)]
         return mr.Polygon(corners, length=THICKNESS)
 
-    left, right = -0.15 * study.length, 1.15 * study.length
+    left, right = -REACH * study.length, (1 + REACH) * study.length
     ground = [(left, -0.4), (right, -0.4), (right, 0.0), (left, 0.0)]
     blocks = [mr.Polygon(ground, length=THICKNESS, fixed=True, name="ground")]
     for course in range(round(study.height / UNIT[1])):
@@ -127,7 +129,7 @@ def drawn(study: Study, answers: Sequence[mr.Response]) -> Figure:
         figure.subplots(1, 3, sharey=True), titles, (None, *(one.pose[-1] for one in answers)), strict=True
     ):
         plotting.blocks(ax, masonry, pose, joints=False)
-        ax.set(title=title, xlim=(-0.15 * study.length, 1.15 * study.length), ylim=(-0.4, 1.12 * study.height))
+        ax.set(title=title, xlim=(-REACH * study.length, (1 + REACH) * study.length), ylim=(-0.4, 1.12 * study.height))
         ax.label_outer()
     return figure
 

@@ -13,7 +13,7 @@ from mjrock.distinct import reading, setup
 from mjrock.result import ledger
 
 G = mr.GRAVITY
-PHASES = np.linspace(0.8, 1.2, 17)
+PHASES = np.linspace(0.8, 1.2, 9)
 """Velocities at which a block leaves the ground [m/s], so that it meets it again anywhere in a step."""
 K_N = 1e8
 """Stiffness of all joints here [N/m3]."""
@@ -28,9 +28,9 @@ def block(in_space, xi, size=(0.8, 0.5)):
 
 
 def bounced(masonry, speed, **options):
-    """The block leaves the ground with a velocity and hops."""
+    """The block leaves the ground with a velocity, lands, and is on its way down again at the end."""
     velocity = [(0, 0, speed, 0, 0, 0) if masonry.in_space else (0, speed, 0)]
-    case = mr.MasonryCase(masonry, 0.45, velocity=velocity)
+    case = mr.MasonryCase(masonry, 3.5 * speed / G, velocity=velocity)
     return mr.solve_explicit(case, **options)
 
 
@@ -73,12 +73,13 @@ def test_dashpots_at_short_steps_are_of_second_order(in_space):
     """They look half a step ahead."""
     masonry, error = block(in_space, 0.3), {}
     limit = bounced(masonry, 1.0, output_step=0.1).stats["stable_timestep"]
-    for share in (0.1, 0.05):
+    for share in (0.2, 0.1, 0.05):
         run = bounced(masonry, 1.0, timestep=share * limit, output_step=1e-4)
         height = run.pose[:, 0, 2 if in_space else 1]
         landed = int(np.argmax((height < 0) & (run.t > 0.1)))
         down, up = (part.max() for part in (height[:landed], height[landed:]))
         error[share] = math.sqrt(up / down) / rebound(masonry, math.sqrt(2 * G * down)) - 1
+    assert abs(error[0.2]) < 8e-3
     assert abs(error[0.1]) < 3e-3
     assert abs(error[0.05]) < 1e-3
 
@@ -102,7 +103,7 @@ def landing(in_space, xi, angle, height, timestep=None):
 def test_a_corner_impact_at_the_default_step_is_that_of_short_steps(in_space, xi):
     """The corner leaves the ground again with the speed that it has at steps a hundred times shorter."""
     spin, up = (4, 2) if in_space else (2, 1)
-    for height in 0.2 + np.linspace(0, 0.02, 17 if not in_space else 5):
+    for height in 0.2 + np.linspace(0, 0.02, 5 if in_space else 7):
         runs = [landing(in_space, xi, 0.25, height, step) for step in (None, 5e-6)]
         long, short = (run.velocity[-1, 0] for run in runs)
         assert abs(short[spin]) > 0.5
@@ -150,7 +151,7 @@ def thrown(height, timestep, duration=0.32, spin=(0.0, 0.0, 0.0), output_step=No
 
 @pytest.mark.parametrize("share", [0.4, 0.1])
 def test_a_bounce_keeps_its_energy_wherever_the_touches_lie_in_their_steps(share):
-    steps = share * STABLE * np.linspace(0.8, 1.0, 12)
+    steps = share * STABLE * np.linspace(0.8, 1.0, 8)
     runs = [thrown(0.05 + 0.3 * i * steps[-1] * THROWN, h) for i, h in enumerate(steps)]
     assert runs[-1].stats["share"] == pytest.approx(share)
     assert max(np.ptp(run.energy) / run.energy[0] for run in runs) < 1e-4

@@ -8,7 +8,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.engine import loop
-from mjrock.theory import forced
+from mjrock.theory import arcs
 
 SCRIPT = """
 import hashlib, os, signal, sys, threading, time, warnings
@@ -16,6 +16,7 @@ import numpy as np
 import mjrock as mr
 
 warnings.simplefilter("ignore")
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests run in the background
 wall = mr.Block.from_size(0.6, 4.2)
 e = mr.Restitution.from_geometry(wall)
 contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05, k_side=5e8, xi_side=0.012)
@@ -66,7 +67,7 @@ def test_compiled_loops_return_plain_tuples():
     mr.simulate(case, contacts)
     mr.simulate(case, contacts, 1e-3)
     mr.solve_analytical(case, mr.Restitution.from_geometry(wall))
-    for compiled in (loop.fitted_loop, loop.fixed_loop, forced.forced_loop):
+    for compiled in (loop.fitted_loop, loop.fixed_loop, arcs.rocking_loop):
         assert compiled.nopython_signatures
         for signature in compiled.nopython_signatures:
             parts = [signature.return_type, *signature.return_type]

@@ -23,6 +23,7 @@ E = mr.Restitution.from_geometry(WALL)
 CONTACTS = mr.Contacts.from_law(WALL, E, 5e8, 5e8)
 SHORT = mr.Case(WALL, 0.05, 0.02)
 MOTION = mr.GroundMotion.half_sine(3.0, 0.1)
+SPECTRUM = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")
 RESPONSE = mr.simulate(SHORT, CONTACTS)
 ROWS = mr.contact_parameters(1.5e8, 5e5, timestep=1e-3, inverse_weight=2 / (3 * WALL.mass))
 PAIRED = mujoco.MjModel.from_xml_string(
@@ -123,12 +124,15 @@ CALLS = OF_NUMBERS | {
         mr.simulate,
         {
             "case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "accuracy": 1e-3, "newmark_beta": 0.25,
-            "output_step": 1e-3, "ledger": False, "start": RESPONSE.end,
+            "output_step": 1e-3, "ledger": False, "forces": True, "start": RESPONSE.end,
         },
     ),
     "simulate, fitted": (mr.simulate, {"case": SHORT, "contacts": CONTACTS, "accuracy": 1e-2, "output_step": 1e-3}),
     "solve_analytical": (mr.solve_analytical, {"case": SHORT, "e": E, "rtol": 1e-8, "output_step": 1e-3, "rest": 1e-9}),
-    "solve_explicit": (mr.solve_explicit, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-4, "output_step": 1e-3}),
+    "solve_explicit": (
+        mr.solve_explicit,
+        {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-4, "output_step": 1e-3, "forces": True},
+    ),
     "solve_compliant": (mr.solve_compliant, {"case": SHORT, "contacts": CONTACTS, "rtol": 1e-6, "output_step": 1e-3}),
     "compare": (mr.compare, {"reference": RESPONSE, "candidate": RESPONSE}),
     "wall_mjcf": (mr.wall_mjcf, {"case": SHORT, "contacts": CONTACTS, "timestep": 1e-3, "newmark_beta": 0.25}),
@@ -162,6 +166,22 @@ CALLS = OF_NUMBERS | {
     "rocking_spectrum": (
         mr.rocking_spectrum, {"motion": MOTION, "R": [2.0], "slenderness": 7.0, "side_stop": True, "rtol": 1e-4},
     ),
+    "scaled_together": (
+        mr.scaled_together,
+        {"motions": (MOTION, MOTION), "periods": [0.5, 1.0], "target": [2.0, 1.0], "damping": 0.05},
+    ),
+    "code_spectrum": (
+        mr.code_spectrum,
+        {"code": "NTC 2018", "ag": 2.0, "soil": "C", "F0": 2.4, "Tc": 0.3, "topography": "T1", "damping": 0.05},
+    ),
+    "spectrum": (SPECTRUM, {"T": [0.0, 0.5], "damping": 0.05}),
+    "spectrum.at_height": (
+        SPECTRUM.at_height, {"period": [0.3, 0.1], "damping": 0.05, "participation": [1.2, 0.3], "height": [0.5, -0.2]},
+    ),
+    "through_building": (
+        MOTION.through_building, {"period": [0.3], "damping": 0.05, "participation": [1.2], "height": [0.5]},
+    ),
+    "records_in": (mr.records_in, {"folder": ".", "pattern": "*.none"}),
     "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
     "matched_contacts": (
@@ -196,8 +216,14 @@ CALLS = OF_NUMBERS | {
         },
     ),
     "Polyhedron.prism": (mr.Polyhedron.prism, {"polygon": COLUMN.blocks[1], "middle": 0.0}),
-    "collapse_multiplier": (mr.collapse_multiplier, {"masonry": COLUMN, "direction": 1, "angle": None}),
-    "collapse_multiplier, space": (mr.collapse_multiplier, {"masonry": BOX, "direction": (1.0, 0.3), "angle": None}),
+    "collapse_multiplier": (
+        mr.collapse_multiplier,
+        {"masonry": COLUMN, "direction": 1, "angle": None, "associated": True, "loads": {"block_0": (1.0, 0.0)}},
+    ),
+    "collapse_multiplier, space": (
+        mr.collapse_multiplier,
+        {"masonry": BOX, "direction": (1.0, 0.3), "angle": None, "associated": True, "loads": {"block": (1.0, 0, 0)}},
+    ),
     "Masonry, space": (
         mr.Masonry,
         {
@@ -265,7 +291,7 @@ CALLS = OF_NUMBERS | {
         mr.simulate,
         {
             "case": mr.MasonryCase(COLUMN, 0.02), "contacts": None, "timestep": None, "accuracy": 1e-2,
-            "newmark_beta": 0.25, "output_step": 1e-3, "ledger": False, "start": None,
+            "newmark_beta": 0.25, "output_step": 1e-3, "ledger": False, "forces": False, "start": None,
         },
     ),
     "Plan": (mr.Plan, {name: getattr(PLAN, name) for name in inspect.signature(mr.Plan).parameters}),
@@ -366,7 +392,7 @@ def test_every_public_entry_is_tried():
         "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
-        "MeasuredContact", "SpaceJoint", "Collapse",
+        "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -33,6 +33,18 @@ assert not [name for name in sys.modules if name.startswith(("numba", "scipy.opt
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
 
 
+def test_steps_import_no_optimiser():
+    """What only filters, hulls and limit analysis take is imported with the first of them."""
+    code = """
+import sys
+import mjrock as mr
+solvers = mr.simulate, mr.solve_analytical, mr.solve_explicit, mr.Case, mr.Contacts, mr.Masonry, mr.MasonryCase
+late = "scipy.signal", "scipy.stats", "scipy.optimize", "scipy.spatial", "scipy.integrate", "scipy.interpolate"
+assert not [name for name in sys.modules if name.startswith(late)]
+"""
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
+
+
 @pytest.mark.parametrize("version", ["3.12.0", "3.8.1", "2.3.7"])
 def test_an_older_mujoco_is_refused_by_name(version):
     with pytest.raises(ImportError, match=f"needs MuJoCo 4.0 or newer, and {version} is installed"):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from everyday import slow
 
 from scripts.peers import peers
 
@@ -58,7 +59,7 @@ def test_a_trembling_peak_counts_once_and_a_fallen_wall_does_not_rebound(two_sid
 
 
 @pytest.mark.skipif(peers.SICONOS in peers.missing(), reason=peers.missing().get(peers.SICONOS, ""))
-@pytest.mark.parametrize(("side_stop", "step", "error"), [(False, 1e-3, 6e-3), (True, 5e-4, 6e-3)])
+@pytest.mark.parametrize(("side_stop", "step", "error"), [(False, 1e-3, 6e-3), slow((True, 5e-4, 6e-3))])
 def test_siconos_rebounds_as_theory_does(side_stop, step, error):
     problem = peers.Problem("wall", side_stop=side_stop, quick=True)
     point = peers.theirs(problem, setup_of("Siconos, restitution typed in"), step)

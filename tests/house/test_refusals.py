@@ -170,6 +170,8 @@ def test_numbers_of_numpy_are_options_too(tmp_path):
         (lambda: plotting.tornado(2, 2), "ax = 2 of type int is not a Axes"),
         (lambda: plotting.save(3, "x.png"), "figure = 3 of type int is not a Figure"),
         (lambda: plotting.save(plotting.single(lambda ax: ax), "0.5"), r"path = '0.5' ends in none of .*\.png"),
+        (lambda: plotting.thrust(1, ANSWER), "ax = 1 of type int is not a Axes"),
+        (lambda: plotting.animate(COLUMN, "a.gif"), "response = .* is not a Response"),
         (lambda: plotting.blocks(1, COLUMN), "ax = 1 of type int is not a Axes"),
         (lambda: plotting.history(ANSWER, title=object()), "title = .* of type object is not a str"),
         (lambda: mr.Grid(analysis, i=3), "the axis i = 3 of type int is not a row of values"),

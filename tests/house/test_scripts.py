@@ -40,11 +40,14 @@ WRITES = {
     "cracked_facade": {f"cracked_facade.{ending}" for ending in ("png", "csv", "txt")},
     "drums": {f"drums.{ending}" for ending in ("png", "csv", "txt", "sqlite")},
     "low_stop": {"low_stop.txt"},
+    "limit_analysis": {f"limit_analysis.{ending}" for ending in ("png", "csv", "txt")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
+    "thrust_lines": {"thrust_lines.png", "thrust_lines.txt"},
     "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
+    "collapse": {"collapse.csv", "collapse.txt"},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
     | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
     "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
@@ -140,6 +143,7 @@ def main_of(name):
 LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
     "sensitivity",
     "low_stop",
+    "limit_analysis",
     "fragility_coverage",
     "agreement",
     "polarity",

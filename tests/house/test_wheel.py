@@ -24,7 +24,7 @@ if __name__ == "__main__":
     from pathlib import Path
 
     import mjrock.engine.loop
-    import mjrock.theory.forced
+    import mjrock.theory.arcs
     from mjrock.study.fragility import fit_fragility
 
     installed = Path(mr.__file__).resolve()
@@ -32,7 +32,7 @@ if __name__ == "__main__":
     assert mr.__version__ == {version!r}, mr.__version__
     assert {{law.name for law in (mr.CALIBRATED, mr.CALIBRATED_BED)}} == {{"CALIBRATED", "CALIBRATED_BED"}}
     assert (installed.parent / "py.typed").is_file()
-    compiled = [value for value in vars(mjrock.theory.forced).values() if hasattr(value, "signatures")]
+    compiled = [value for value in vars(mjrock.theory.arcs).values() if hasattr(value, "signatures")]
     assert any(one.signatures for one in compiled), "no loop was compiled"
     assert Path("rock.gif").stat().st_size and Path("rock.png").stat().st_size and Path("walls.sqlite").stat().st_size
     print("all of it ran")

@@ -51,6 +51,27 @@ def test_a_sketch_shows_the_wall_filled_in_section_and_elevation(thickness, open
     assert area_of(figure, elevation, STONE) == pytest.approx(5.0 * 4.0 - openings_area, rel=0.08)
 
 
+def test_a_gable_and_a_rose_window_are_drawn():
+    rose = mr.Opening(1.2, 1.2, 2.0, round=True, at=-0.6)
+    wall = mr.Block.from_size(0.8, 5.0, 5.0, openings=[rose], gable=mr.Gable(1.5, top=1.0))
+    figure = plotting.sketch(mr.Case(wall, 0.0, 1.0, side_stop=False), "title")
+    area = 5.0 * 3.5 + 0.5 * (5.0 + 1.0) * 1.5 - np.pi * 0.36
+    assert area_of(figure, figure.axes[1], STONE) == pytest.approx(area, rel=0.08)
+
+
+def test_spectra_their_mean_and_their_target():
+    """The mean of motions that are scaled to the target lies on it in the mean of the periods."""
+    target, T = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"), np.geomspace(0.1, 2.0, 12)
+    motions = [mr.scaled_to_spectrum(mr.GroundMotion.synthetic(3.0, 8.0, seed=i), T, target) for i in range(3)]
+    ax = plotting.spectra(Figure().subplots(), motions, T, target)
+    *single, mean, asked = [line.get_ydata() for line in ax.lines]
+    np.testing.assert_allclose(mean, np.mean(single, axis=0))
+    np.testing.assert_allclose(asked, target(T) / mr.GRAVITY)
+    assert np.exp(np.log(mean / asked).mean()) == pytest.approx(1.0, abs=0.1)
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["records", "mean of 3", "target"]
+    assert heights_of(ax.figure, ax, "#f0a35e")[1] == pytest.approx(asked.max(), rel=0.05)
+
+
 def on_a_jack(in_space):
     """A block on a slab that is raised by 0.3 m within 0.5 s, followed to the end."""
     if in_space:

@@ -10,6 +10,8 @@ from masonry_blocks import GROUND, box, columns
 import mjrock as mr
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import gap
+from mjrock.problem.masonry import joints
+from mjrock.problem.masonry.joints import neighbours
 from mjrock.problem.masonry.lines import rates
 from mjrock.scene.masonry import standing_masonry
 
@@ -236,3 +238,29 @@ def test_the_lowest_block_may_be_the_ground():
     masonry = mr.Masonry.stack([mr.Block(0.3, 1.0)] * 2, 5e8, ground=False)
     assert len(masonry.blocks) == 2
     assert masonry.free == (1,)
+
+
+@pytest.mark.parametrize("upright", [True, False])
+def test_neighbours_are_the_pairs_whose_boxes_touch(upright):
+    rng, blocks = np.random.default_rng(4), [box(-9, 9, -9, 9, name="ground", fixed=True)]
+    for i in range(60):
+        low, size = rng.uniform((0, 0), (3, 20) if upright else (20, 3)), rng.uniform(0.1, 2, 2)
+        blocks.append(box(low[0], low[0] + size[0], low[1], low[1] + size[1], name=f"b{i}", fixed=i % 7 == 0))
+    ends = [(block.corners.min(axis=0) - 1e-3, block.corners.max(axis=0) + 1e-3) for block in blocks]
+    wanted = [
+        [i, j]
+        for i in range(len(blocks))
+        for j in range(i + 1, len(blocks))
+        if (ends[i][0] <= ends[j][1]).all() and (ends[j][0] <= ends[i][1]).all()
+        if not (blocks[i].fixed and blocks[j].fixed)
+    ]
+    assert neighbours(blocks, 1e-3).tolist() == wanted
+
+
+def test_joints_of_many_pairs_are_those_of_a_few(monkeypatch):
+    blocks = mr.Masonry.running_bond(3.2, 1.5, (0.5, 0.25)).blocks
+    every = mr.Masonry(blocks).joints
+    monkeypatch.setattr(joints, "TOGETHER", 7)
+    assert mr.Masonry(blocks).joints == every
+    with pytest.raises(ValueError, match=r"unit_1_0 and extra overlap by 0\.15 m"):
+        mr.Masonry([*blocks, box(0.1, 0.3, 0.3, 0.5, name="extra")])

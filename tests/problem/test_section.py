@@ -68,6 +68,65 @@ def test_added_masses_move_the_centroid():
         assert wall.restoring.towards(side).alpha == pytest.approx(math.atan2(d, wall.centroid_height))
 
 
+def test_a_gable_is_a_rectangle_and_a_triangle():
+    """Volumes, first and second moments of a rectangle of 6 x 6 m below a triangle 3 m high, thickness 0.55 m."""
+    wall = mr.Block.from_size(0.55, 9.0, 6.0, 1600.0, gable=mr.Gable(3.0))
+    below, above = 1600 * 0.55 * 36.0, 1600 * 0.55 * 9.0
+    mass, z = below + above, (below * 3.0 + above * 7.0) / (below + above)
+    inertia = mass * 0.55**2 / 12 + below * (6**2 / 12 + (z - 3) ** 2) + above * (3**2 / 18 + (z - 7) ** 2)
+    np.testing.assert_allclose(parts(wall), (mass, 0.0, z, inertia), rtol=1e-13, atol=1e-13)
+    assert math.tan(wall.alpha) == pytest.approx(0.275 / z)
+    full = mr.Block.from_size(0.55, 9.0, 6.0, 1600.0, gable=mr.Gable(3.0, top=6.0))
+    np.testing.assert_allclose(parts(full), parts(PLAIN), rtol=1e-13, atol=1e-13)
+    assert wall.base_length == 6.0
+    assert "gable of 3 m" in repr(wall)
+
+
+def test_a_trapezium_that_tapers_is_the_limit_of_many_storeys():
+    profile = [(0, 0.6), (2, 0.6), (6, 0.4)]
+    wall = mr.Block.from_size(0.6, 6.0, 4.0, 2000.0, profile=profile, gable=mr.Gable(3.0, top=1.0))
+    z = (np.arange(6000) + 0.5) / 1000
+    t, length = np.interp(z, [0, 2, 6], [0.6, 0.6, 0.4]), np.interp(z, [3, 6], [4.0, 1.0])
+    pieces = np.column_stack([2000 * length * t * 1e-3, -0.3 + t / 2, z, t, np.full(6000, 1e-3)])
+    np.testing.assert_allclose(parts(wall), lump(pieces.tolist()), rtol=1e-6)
+
+
+@pytest.mark.parametrize("profile", [None, [(0, 0.55), (7, 0.55), (9, 0.45)]], ids=["plain", "tapered across it"])
+def test_a_rose_window_is_a_disc(profile):
+    """Where the thickness is the same, by the closed form; where it changes, against thin slices."""
+    rose = mr.Opening(2.0, 2.0, 6.0, round=True)
+    wall = mr.Block.from_size(0.55, 9.0, 6.0, 1600.0, openings=[rose], profile=profile)
+    bare = mr.Block.from_size(0.55, 9.0, 6.0, 1600.0, profile=profile)
+    if profile is None:
+        assert bare.mass - wall.mass == pytest.approx(1600 * 0.55 * math.pi, rel=1e-13)
+        disc = 1600 * 0.55 * math.pi * (0.55**2 / 12 + 1 / 4 + 7.0**2)
+        gone = bare.inertia + bare.mass * 4.5**2 - wall.inertia - wall.mass * wall.centroid_height**2
+        assert gone == pytest.approx(disc, rel=1e-12)
+    z = 6.0 + (np.arange(20000) + 0.5) / 10000
+    t, width = np.interp(z, *np.transpose(profile or [(0, 0.55), (9, 0.55)])), 2 * np.sqrt(1 - (z - 7) ** 2)
+    mass = 1600 * t * width * 1e-4
+    assert bare.mass - wall.mass == pytest.approx(mass.sum(), rel=1e-6)
+    assert bare.mass * bare.centroid_height - wall.mass * wall.centroid_height == pytest.approx(mass @ z, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("parts", "complaint"),
+    [
+        ({"gable": mr.Gable(10.0)}, "gable, height = 10 m is outside the valid range 0.01 to 9 m"),
+        ({"gable": mr.Gable(3.0, top=7.0)}, "gable, top = 7 m is outside the valid range 0 to 6 m"),
+        ({"gable": 3.0}, "gable = 3.0 of type float is not a Gable or None"),
+        (
+            {"gable": mr.Gable(3.0), "openings": [mr.Opening(3.0, 1.0, 7.0)]},
+            "openings at a height of 7.5 m are 3 m wide together; the valid range is less than 3 m",
+        ),
+        ({"openings": [mr.Opening(4.0, 4.0, 1.0, round=True), mr.Opening(4.0, 4.0, 3.0, round=True)]}, "wide together"),
+    ],
+)
+def test_gables_and_round_openings_that_cannot_be(parts, complaint):
+    with pytest.raises((ValueError, TypeError), match=complaint):
+        mr.Block.from_size(0.55, 9.0, 6.0, 1600.0, **parts)
+
+
 def test_parts_that_change_nothing_leave_the_plain_wall():
     full = mr.Block.from_size(0.55, 9.0, 6.0, 1600.0, profile=[(0, 0.55), (4, 0.55), (9, 0.55)])
     np.testing.assert_allclose(parts(full), parts(PLAIN), rtol=1e-12, atol=1e-12)

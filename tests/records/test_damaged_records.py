@@ -16,6 +16,8 @@ from record_files import AT2, FORMATS, HEADS, NUMBERS, READ, SAMPLES, body, writ
 @FORMATS
 def test_what_is_no_number(tmp_path, ending, value):
     """In the first, a middle and the last row."""
+    if ending == "txt" and "," in value:
+        pytest.skip("a comma sets columns apart, and there is one")
     rows = body(ending).splitlines()
     start = HEADS[ending].count("\n") + 1
     for i in (0, 2, 5):
@@ -123,7 +125,8 @@ def test_an_empty_file(tmp_path, ending, content):
 @FORMATS
 def test_a_file_of_another_format(tmp_path, ending, content):
     with pytest.raises(
-        ValueError, match=rf"a\.{ending}: .*(not an AT2 file|not the plain text of a SAC|needed|only CR)"
+        ValueError,
+        match=rf"a\.{ending}: .*(not an? (AT2|ESM or ITACA) file|not the plain text of a SAC|needed|only CR)",
     ):
         READ[ending](written(tmp_path / f"a.{ending}", content))
 
@@ -138,5 +141,7 @@ def test_utf_16_is_named(tmp_path, ending):
 def test_a_unit_off_by_a_thousand_warns(tmp_path, ending):
     scale = 1e3 if ending == "at2" else 1e5
     lines = (f"{0.01 * i:.2f},{scale * x:g}" if ending == "csv" else f"{scale * x:g}" for i, x in enumerate(SAMPLES))
-    with pytest.warns(UserWarning, match=r"a peaks at [\d.]+ m/s2 = [\d.]+ g; accelerations are in m/s2"):
+    with pytest.warns(
+        UserWarning, match=r"(a|IT AMT HGE EMSC.*) peaks at [\d.]+ m/s2 = [\d.]+ g; accelerations are in m/s2"
+    ):
         READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + "\n".join(lines)))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import synthetic_records
-from record_files import AT2, HEADS, NUMBERS, READ, READERS, SAMPLES, body, written
+from record_files import AT2, HEADS, NUMBERS, READ, READERS, SAMPLES, body, esm, written
 
 import mjrock as mr
 
@@ -157,6 +157,54 @@ def test_columns_that_are_none(tmp_path, content, unit, complaint):
     path.write_text(content)
     with pytest.raises(ValueError, match=rf"bad\.csv: .*{complaint}"):
         mr.GroundMotion.from_csv(path, unit)
+
+
+def test_one_column_needs_its_step(tmp_path):
+    path = written(tmp_path / "a.txt", "# one column\n0\n1\n-2\n")
+    for dt, unit in ((0.005, "s"), (5.0, "ms")):
+        motion = mr.GroundMotion.from_csv(path, "m/s2", dt=dt, time_unit=unit)
+        np.testing.assert_array_equal(motion.accel, [0.0, 1.0, -2.0])
+        assert motion.dt == pytest.approx(0.005, rel=1e-12)
+    with pytest.raises(ValueError, match=r"line 2 has 1 columns, '0'; two are needed, .*; one column needs its .* dt"):
+        mr.GroundMotion.from_csv(path, "m/s2")
+    with pytest.raises(ValueError, match=r"dt = 5 s is outside the valid range"):
+        mr.GroundMotion.from_csv(path, "m/s2", dt=5.0)
+    with pytest.raises(ValueError, match="line 1 has 2 columns, '0,1'; one is needed, the acceleration"):
+        mr.GroundMotion.from_csv(written(tmp_path / "b.csv", "0,1\n1,2\n"), "m/s2", dt=0.01)
+
+
+class TestEsm:
+    """Files of the European and the Italian data base."""
+
+    def test_its_samples_and_its_header(self, tmp_path):
+        motion = mr.GroundMotion.from_esm(written(tmp_path / "IT.AMT..HGE.D.ASC", esm() + body("esm")))
+        np.testing.assert_allclose(motion.accel, SAMPLES, rtol=1e-14)
+        assert motion.dt == 0.01
+        assert motion.name == "IT AMT HGE EMSC-20160824_0000006"
+        assert motion.header["MAGNITUDE_W"] == "6.0"
+        for made in (motion.scaled(2.0), motion.scaled(peak=1.0), motion.reversed(), motion.resampled(0.005)):
+            assert made.header == motion.header
+
+    @pytest.mark.parametrize(("unit", "scale"), [("cm/s^2", 0.01), ("m/s^2", 1.0), ("g", 9.81)])
+    def test_its_unit_is_that_of_the_header(self, tmp_path, unit, scale):
+        path = written(tmp_path / "a.asc", esm(UNITS=unit) + "0\n1\n-2\n1\n0\n0\n")
+        np.testing.assert_allclose(mr.GroundMotion.from_esm(path).accel, scale * np.array([0, 1, -2, 1, 0, 0]))
+
+    @pytest.mark.parametrize(
+        ("other", "complaint"),
+        [
+            ({"NDATA": "7"}, "6 samples; the header states 7 in line 11"),
+            ({"NDATA": "many"}, "NDATA is 'many'; it has to be the number of samples"),
+            ({"NDATA": ""}, "the header has no NDATA"),
+            ({"SAMPLING_INTERVAL_S": "0.0"}, "line 10: time step dt = 0 s is outside"),
+            ({"SAMPLING_INTERVAL_S": "fine"}, "line 10: 'fine' is not a finite number"),
+            ({"UNITS": "cm"}, r"UNITS is 'cm'; the valid ones are cm/s\^2, m/s\^2, g"),
+            ({"DATA_TYPE": "VELOCITY"}, "DATA_TYPE is 'VELOCITY'; the record has to be one of ACCELERATION"),
+        ],
+    )
+    def test_what_its_header_must_state(self, tmp_path, other, complaint):
+        with pytest.raises(ValueError, match=rf"a\.asc: {complaint}"):
+            mr.GroundMotion.from_esm(written(tmp_path / "a.asc", esm(**other) + body("esm")))
 
 
 def test_an_unknown_unit_of_time(tmp_path):

@@ -109,8 +109,8 @@ def test_what_cannot_be_reported(changed, complaint, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_masonry_has_no_report(tmp_path):
+def test_masonry_is_not_of_the_wall(tmp_path):
     column = mr.Masonry.stack([mr.Block(0.3, 2.1)], 5e8)
     answer = mr.simulate(mr.MasonryCase(column, 0.05))
-    with pytest.raises(TypeError, match=r"responses\[0\] is that of masonry"):
+    with pytest.raises(ValueError, match=r"responses\[0\] is of masonry, and the case of <Block 0.6 x 4.2 m"):
         mr.report(CASE, answer, tmp_path / "a.html")

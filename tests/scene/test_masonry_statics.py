@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 from everyday import slow
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 from scenes import unbalanced
 
 import mjrock as mr
+from mjrock.problem.masonry import polyhedron
 from mjrock.problem.masonry.effects import applied
 from mjrock.problem.masonry.statics import falling, friction_lacking
 from mjrock.scene.masonry import require_standing, standing_masonry
@@ -175,3 +177,16 @@ def test_a_wall_with_openings_settles(height, storeys, gap, monkeypatch):
     assert np.abs(missing).max() < 1e-9 * mr.GRAVITY * scene.bodies.mass.max()
     assert beyond.max() < 1e-9 * mr.GRAVITY * scene.bodies.mass.max()
     assert np.abs(scene.at_rest).max() < 0.01
+
+
+def test_what_is_found_at_rest_stands_without_a_linear_programme(monkeypatch):
+    """By the safe theorem: joints push, friction is within its limit, and nothing is unbalanced. Nor is a hull sought
+    for blocks of the plane."""
+
+    def refused(*_):
+        raise AssertionError
+
+    monkeypatch.setattr(scipy.optimize, "linprog", refused)
+    monkeypatch.setattr(polyhedron, "hull_of", refused)
+    for masonry in (mr.Masonry.running_bond(2.0, 1.0, (0.5, 0.25), k_s=1e10), mr.Masonry.arch(5.0, 0.8, k_s=1e10)):
+        assert mr.solve_explicit(mr.MasonryCase(masonry, 1e-3)).stats["steps"] > 1

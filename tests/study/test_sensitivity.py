@@ -192,7 +192,7 @@ def test_capacities_that_cannot_be(arguments, complaint, build):
 
 def test_a_case_without_motion_has_no_capacity(wall, e):
     still = mr.Analysis(mr.Case(wall, 0.05, 1.0), "analytical", e=e)
-    with pytest.raises(ValueError, match=r"analysis = .* has no wall with a horizontal motion to scale"):
+    with pytest.raises(ValueError, match=r"analysis = .* has no horizontal motion to scale"):
         mr.Capacity(still)
 
 

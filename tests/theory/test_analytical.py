@@ -68,7 +68,7 @@ def test_alpha_as_printed_in_the_paper_fails(wall):
 
 def test_tolerances_govern_the_error(two_sided, e):
     exact = 0.7075650625339
-    errors = [abs(mr.solve_analytical(two_sided, e, rtol=r, atol=r).impacts[0].t - exact) for r in (1e-4, 1e-7, 1e-11)]
+    errors = [abs(mr.solve_analytical(two_sided, e, rtol=r).impacts[0].t - exact) for r in (1e-4, 1e-7, 1e-11)]
     assert errors[0] > errors[2]
     assert errors[2] < 1e-10
 
@@ -126,7 +126,7 @@ def test_leaning_the_other_way_is_the_mirror_image(wall, e):
     np.testing.assert_array_equal(left.theta, -right.theta)
 
 
-@pytest.mark.parametrize("values", [{"rtol": 0}, {"atol": -1}, {"output_step": math.nan}, {"rest": 0}])
+@pytest.mark.parametrize("values", [{"rtol": 0}, {"output_step": math.nan}, {"rest": 0}])
 def test_bad_tolerances(two_sided, e, values):
     with pytest.raises(ValueError, match="outside the valid range"):
         mr.solve_analytical(two_sided, e, **values)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
@@ -28,7 +28,19 @@ from ...quantities import (
     require_within,
     spelt,
 )
-from .records import COARSEST, FINEST, ReadRecord, checked, parse_at2, parse_columns, parse_sac, read
+from .oscillator import acceleration, building_modes, steps_of
+from .records import (
+    COARSEST,
+    FINEST,
+    ReadRecord,
+    checked,
+    esm_header,
+    parse_at2,
+    parse_columns,
+    parse_esm,
+    parse_sac,
+    read,
+)
 
 SUSPICIOUS = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
@@ -36,6 +48,8 @@ FAINT = 1e-3 * GRAVITY
 """A file whose peak acceleration is below this is probably in another unit [m/s2]."""
 DRIFT = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
+NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
+"""Fields of a header that name its record."""
 LARGEST = 1e4
 """Bound of the amplitude of a pulse [m/s2]."""
 
@@ -51,6 +65,7 @@ class GroundMotion:
         accel: accelerations [m/s2], shape (n,), n at least 2.
         dt: time step of the samples [s], 1e-5 to 1.
         name: what it is called in tables and pictures.
+        header: the fields of the header of its file, such as the event and the station, where that has some.
 
     Raises:
         TypeError, ValueError: for accelerations, a step or a name that are not valid.
@@ -63,11 +78,15 @@ class GroundMotion:
     accel: Array
     dt: float
     name: str = field(default="ground motion", compare=False)
+    header: Mapping[str, str] = field(default_factory=dict, compare=False)
 
-    def __init__(self, accel: ArrayLike, dt: float, name: str = "ground motion") -> None:
+    def __init__(
+        self, accel: ArrayLike, dt: float, name: str = "ground motion", header: Mapping[str, str] | None = None
+    ) -> None:
         require_kind("name", name, str)
+        require_kind("header", header, Mapping, type(None))
         values, step = checked(accel, dt)
-        keep(self, accel=values, dt=step, name=name)
+        keep(self, accel=values, dt=step, name=name, header=dict(header or {}))
         if self.peak > SUSPICIOUS:
             warnings.warn(
                 f"{name} peaks at {self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g; accelerations are in m/s2",
@@ -165,15 +184,15 @@ class GroundMotion:
             )
         if peak is None:
             multiple = require_within("factor", factor, -1e6, 1e6)
-            return GroundMotion(multiple * self.accel, self.dt, f"{self.name} x {multiple:g}")
+            return GroundMotion(multiple * self.accel, self.dt, f"{self.name} x {multiple:g}", self.header)
         peak = require_within("peak", peak, 0.0, 1e3, "m/s2")
         if self.peak == 0:
             raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")
-        return GroundMotion(peak / self.peak * self.accel, self.dt, f"{self.name} to {peak:g} m/s2")
+        return GroundMotion(peak / self.peak * self.accel, self.dt, f"{self.name} to {peak:g} m/s2", self.header)
 
     def reversed(self) -> GroundMotion:
         """The motion of the other polarity."""
-        return GroundMotion(-self.accel, self.dt, f"{self.name}, reversed")
+        return GroundMotion(-self.accel, self.dt, f"{self.name}, reversed", self.header)
 
     def resampled(self, dt: float) -> GroundMotion:
         """The motion at another time step `dt` [s], as long as before within half of it, linear between its samples.
@@ -196,7 +215,38 @@ class GroundMotion:
         if new > self.dt:
             low_pass = scipy.signal.butter(8, 0.7 * self.dt / new, output="sos")
             accel = scipy.signal.sosfiltfilt(low_pass, accel, padlen=min(last, math.ceil(10 * new / self.dt)))
-        return GroundMotion(np.interp(new * np.arange(steps + 1), self._times, accel), new, name)
+        return GroundMotion(np.interp(new * np.arange(steps + 1), self._times, accel), new, name, self.header)
+
+    def through_building(
+        self, period: ArrayLike, damping: float = 0.05, *, participation: ArrayLike = 1.0, height: ArrayLike = 1.0
+    ) -> GroundMotion:
+        """The motion of a floor of a building that vibrates in one or some modes.
+
+        Each mode is a linear oscillator that is solved exactly. What the modes do not account for moves with the
+        ground. The motion is followed until the slowest mode has fallen to 1 % of its amplitude.
+
+        Args:
+            period: of the modes T_k [s], 0.01 to 100, shape (k,) or one.
+            damping: of the building [-], 0.005 to 0.3.
+            participation: gamma_k of each mode [-], -3 to 3; 3 n / (2 n + 1) for n equal storeys in the first mode.
+            height: psi_k, the shape of each mode at the floor over that at the top [-], -1 to 1; z / H for a straight
+                first mode.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or shapes that differ.
+        """
+        periods, xi, motions = building_modes(period, damping, participation, height)
+        parts = steps_of(self.dt, float(periods.min()))
+        h, rings = self.dt / parts, math.log(100.0) * float(periods.max()) / (2 * math.pi * xi)
+        steps = parts * (len(self.accel) - 1 + math.ceil(rings / self.dt))
+        require_size(
+            f"the number of samples of {steps * h:g} s at dt = {h:g} s", steps + 1, "leave out the short periods"
+        )
+        ground = self(h * np.arange(steps + 1, dtype=float))
+        floor = (1 - motions.sum()) * ground
+        for Tk, motion in zip(periods.tolist(), motions.tolist(), strict=True):
+            floor = floor + motion * acceleration(ground, h, Tk, xi)
+        return GroundMotion(floor, h, f"{self.name} on a floor", self.header)
 
     @classmethod
     def sine(cls, amplitude: float, period: float, cycles: float = 1.0, samples: int = 400) -> Self:
@@ -337,8 +387,30 @@ class GroundMotion:
         return cls._from_file(path, parse_at2)
 
     @classmethod
-    def from_csv(cls, path: str | PathLike[str], unit: str, *, time_unit: str = "s") -> GroundMotion:
+    def from_esm(cls, path: str | PathLike[str]) -> GroundMotion:
+        """A record of the European ESM or the Italian ITACA data base, a file .ASC of accelerations.
+
+        It is named after network, station, component and event. `header` keeps all fields of the header.
+
+        Raises:
+            OSError: if the file cannot be read.
+            ValueError: for another format or unit, another number of samples than is stated, or no finite number.
+        """
+        header: dict[str, str] = {}
+
+        def parse(lines: list[str]) -> ReadRecord:
+            header.update(esm_header(lines))
+            return parse_esm(lines)
+
+        return cls._from_file(path, parse, header)
+
+    @classmethod
+    def from_csv(
+        cls, path: str | PathLike[str], unit: str, *, time_unit: str = "s", dt: float | None = None
+    ) -> GroundMotion:
         """A record of two columns, time and acceleration, named after its file; its first row is time zero.
+
+        With `dt` it is a record of one column, the accelerations.
 
         Commas, semicolons, or blanks and tabs set the columns apart; a header and lines that begin with #, % or // are
         skipped; between semicolons a comma is a decimal point.
@@ -347,13 +419,14 @@ class GroundMotion:
             path: the file.
             unit: of the accelerations: "m/s2", "cm/s2", "mm/s2", "g" (9.81 m/s2) or "ft/s2".
             time_unit: "s" or "ms".
+            dt: time step of a record of one column, in the time unit; None for a record with a column of times.
 
         Raises:
             OSError: if the file cannot be read.
             ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step), or what is
                 not two finite numbers a line.
         """
-        return cls._from_file(path, lambda lines: parse_columns(lines, unit, time_unit))
+        return cls._from_file(path, lambda lines: parse_columns(lines, unit, time_unit, dt))
 
     @classmethod
     def from_sac(cls, path: str | PathLike[str]) -> GroundMotion:
@@ -366,8 +439,16 @@ class GroundMotion:
         return cls._from_file(path, parse_sac)
 
     @classmethod
-    def _from_file(cls, path: str | PathLike[str], parse: Callable[[list[str]], ReadRecord]) -> GroundMotion:
-        motion = cls(*read(path, parse), name := Path(path).stem)
+    def _from_file(
+        cls,
+        path: str | PathLike[str],
+        parse: Callable[[list[str]], ReadRecord],
+        header: Mapping[str, str] | None = None,
+    ) -> GroundMotion:
+        """The record of a file, named after its header or its file, with what makes one doubt its unit or baseline."""
+        record = read(path, parse)  # fills the header
+        named = [header[field] for field in NAMING if header.get(field)] if header else []
+        motion = cls(*record, name := " ".join(named) or Path(path).stem, header)
         peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
         if peak < FAINT:
             warnings.warn(

@@ -1,4 +1,4 @@
-"""Text of recorded accelerations: PEER AT2, columns of time and acceleration, the plain text of a SAC set.
+"""Text of recorded accelerations: ESM and ITACA, PEER AT2, columns of time and acceleration, plain text of a SAC set.
 
 Each parser takes the lines of a file and returns its accelerations [m/s2], shape (n,), and its time step [s]. A number
 has ASCII digits and may have a Fortran exponent, 1.5D-02. A ValueError with the line says where the header is another,
@@ -41,6 +41,10 @@ AT2_UNIT = re.compile(
 )
 AT2_HEAD = re.compile(rf"\s*npts\s*=\s*{COUNT}[\s,]*dt\s*=\s*{STEP}(\s*(s|sec|seconds))?[\s.,]*", AS_ASCII)
 AT2_OLD_HEAD = re.compile(rf"\s*{COUNT}[\s,]+{STEP}[\s,]+npts[\s,]+dt[\s,]*", AS_ASCII)
+ESM_FIELD = re.compile(r"([A-Z0-9_/^]+):[ \t]*(.*)", AS_ASCII)
+ESM_LINES = 64
+"""Lines of the header of an ESM or ITACA file, one field in each."""
+ESM_UNITS = {"cm/s^2": 1e-2, "m/s^2": 1.0, "g": GRAVITY}
 SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
 BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
 """A control character, which could hide a row at the end of a header or comment."""
@@ -88,6 +92,38 @@ def text_lines(path: Path) -> list[str]:
     return re.split(r"\r\n|\r|\n", text)
 
 
+def esm_header(lines: Sequence[str]) -> dict[str, str]:
+    """The fields of the header of an ESM or ITACA file, by name: EVENT_ID, STATION_CODE, STREAM, UNITS and so on."""
+    fields = [ESM_FIELD.fullmatch(line.rstrip()) for line in lines[:ESM_LINES]]
+    for place, field in enumerate(fields, 1):
+        if field is None:
+            raise ValueError(
+                f"line {place} is {_short(lines[place - 1])}: not an ESM or ITACA file, whose first {ESM_LINES} lines "
+                "are fields such as STATION_CODE: AMT"
+            )
+    return {field[1].upper(): field[2] for field in fields if field is not None}
+
+
+def parse_esm(lines: Sequence[str]) -> ReadRecord:
+    """The record of an ESM or ITACA file: header lines with unit, step and number of samples, then one value a line."""
+    head = esm_header(lines)
+    for name in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"):
+        if not head.get(name):
+            raise ValueError(f"the header has no {name}; an ESM or ITACA file of accelerations states it")
+    if (kind := head.get("DATA_TYPE", "ACCELERATION").upper()) != "ACCELERATION":
+        raise ValueError(f"DATA_TYPE is {_short(kind)}; the record has to be one of ACCELERATION")
+    if (unit := head["UNITS"].lower()) not in ESM_UNITS:
+        raise ValueError(f"UNITS is {_short(head['UNITS'])}; the valid ones are {', '.join(ESM_UNITS)}")
+    if not re.fullmatch(COUNT, head["NDATA"]):
+        raise ValueError(f"NDATA is {_short(head['NDATA'])}; it has to be the number of samples")
+    place = list(head).index("SAMPLING_INTERVAL_S") + 1
+    dt = require_within(
+        f"line {place}: time step dt", _number(head["SAMPLING_INTERVAL_S"], place), FINEST, COARSEST, "s"
+    )
+    values = _samples(lines, ESM_LINES, int(head["NDATA"]), list(head).index("NDATA") + 1)
+    return ESM_UNITS[unit] * values, dt
+
+
 def parse_at2(lines: Sequence[str]) -> ReadRecord:
     """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
@@ -111,14 +147,18 @@ def parse_sac(lines: Sequence[str]) -> ReadRecord:
     return UNITS["cm/s2"] * _samples(lines, 2, int(head[1])), _step(head[2], 2)
 
 
-def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> ReadRecord:
+def parse_columns(lines: Sequence[str], unit: str, time_unit: str, dt: float | None = None) -> ReadRecord:
     """The record of two columns, time and acceleration, set apart by commas, semicolons, or blanks and tabs.
+
+    With a time step dt [s] it is one column, the accelerations.
 
     Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped. Between
     semicolons a comma is a decimal point. A ValueError says where a unit is unknown, a control character stands, or
     times are uneven.
     """
     scale, time_scale = _factor("unit", unit, UNITS), _factor("time_unit", time_unit, TIME_UNITS)
+    what = "time and acceleration" if dt is None else "the acceleration"
+    wanted, said = (2, "two are") if dt is None else (1, "one is")
     rows: list[list[float]] = []
     places: list[int] = []
     for place, line in enumerate(lines, 1):
@@ -127,16 +167,19 @@ def parse_columns(lines: Sequence[str], unit: str, time_unit: str) -> ReadRecord
                 raise ValueError(f"line {place} has a {hidden[0]!a}; only CR, LF and CR LF end a line")
             continue
         row = _columns(line)
-        if len(row) != 2:
-            raise ValueError(
-                f"line {place} has {len(row)} columns, {_short(line)}; two are needed, time and acceleration"
-            )
+        if len(row) != wanted:
+            remedy = "; one column needs its time step: give dt" if dt is None and len(row) == 1 else ""
+            raise ValueError(f"line {place} has {len(row)} columns, {_short(line)}; {said} needed, {what}{remedy}")
         rows.append([_number(word, place) for word in row])
         places.append(place)
     if len(rows) < 2:
         raise ValueError(
-            f"{len(rows)} rows of time and acceleration in {len(lines)} lines, the first of them {_short(lines[0])}; "
+            f"{len(rows)} rows of {what} in {len(lines)} lines, the first of them {_short(lines[0])}; "
             "at least 2 rows are needed"
+        )
+    if dt is not None:
+        return scale * np.array(rows)[:, 0], time_scale * require_within(
+            "dt", dt, FINEST / time_scale, COARSEST / time_scale, time_unit
         )
     time, accel = np.array(rows).T
     return scale * accel, _even_step(time_scale * time, places)
@@ -170,10 +213,10 @@ def _factor(name: str, unit: str, units: dict[str, float]) -> float:
     return units[unit]
 
 
-def _samples(lines: Sequence[str], header: int, count: int) -> Array:
+def _samples(lines: Sequence[str], header: int, count: int, stated: int | None = None) -> Array:
     values = [x for place, line in enumerate(lines[header:], header + 1) for x in _numbers(line, place)]
     if len(values) != count:
-        raise ValueError(f"{len(values)} samples; the header states {count} in line {header}")
+        raise ValueError(f"{len(values)} samples; the header states {count} in line {stated or header}")
     return np.array(values)
 
 

@@ -7,15 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ...quantities import Array, require_kind, require_reals, require_row, require_within
+from .code_spectrum import CodeSpectrum, FloorSpectrum
 from .motion import GroundMotion
-
-FINENESS = 20
-"""Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
-SHORTEST, LONGEST = 0.01, 100.0
-"""Bounds of a period [s]."""
+from .oscillator import LONGEST, SHORTEST, displacement, steps_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,15 +69,10 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
 
 def _largest(motion: GroundMotion, period: float, damping: float) -> float:
     """The largest displacement of an oscillator relative to the ground [m]."""
-    parts = math.ceil(FINENESS * motion.dt / period)
+    parts = steps_of(motion.dt, period)
     h = motion.dt / parts
     steps = parts * (len(motion.accel) - 1) + math.ceil(period / h)
-    omega = 2 * math.pi / period
-    rates = np.array([[0.0, 1.0], [-(omega**2), -2 * damping * omega]])
-    system = rates, np.array([[0.0], [-1.0]]), np.array([[1.0, 0.0]]), np.array([[0.0]])
-    A, B, C, D, _ = cont2discrete(system, h, method="foh")
-    upper, lower = ss2tf(A, B, C, D)
-    return float(np.abs(lfilter(upper[0], lower, motion(h * np.arange(steps + 1, dtype=float)))).max())
+    return float(np.abs(displacement(motion(h * np.arange(steps + 1, dtype=float)), h, period, damping)).max())
 
 
 def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float = 0.05) -> GroundMotion:
@@ -101,7 +92,10 @@ def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float 
 
 
 def scaled_to_spectrum(
-    motion: GroundMotion, periods: ArrayLike, target: ArrayLike, damping: float = 0.05
+    motion: GroundMotion,
+    periods: ArrayLike,
+    target: ArrayLike | CodeSpectrum | FloorSpectrum,
+    damping: float = 0.05,
 ) -> GroundMotion:
     """The motion scaled so that the geometric mean of its Sa over that of a target spectrum is one.
 
@@ -110,13 +104,15 @@ def scaled_to_spectrum(
     Args:
         motion: the ground motion.
         periods: periods [s], 0.01 to 100, shape (n,).
-        target: pseudo-accelerations Sa of the target at them [m/s2], 1e-6 to 1e4, shape (n,).
+        target: pseudo-accelerations Sa of the target at them [m/s2], 1e-6 to 1e4, shape (n,), or a spectrum of a code.
         damping: damping ratio [-], 0 to 0.9.
 
     Raises:
         TypeError, ValueError: for a value outside its range, shapes that differ, or a motion at rest.
     """
     spectrum = response_spectrum(motion, periods, damping)
+    if isinstance(target, CodeSpectrum | FloorSpectrum):
+        target = target(spectrum.period, damping)
     asked = require_row("target", target, "pseudo-acceleration [m/s2]")
     for value in asked:
         require_within("target", value, 1e-6, 1e4, "m/s2")

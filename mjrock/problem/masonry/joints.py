@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from ...quantities import Array
+from ...quantities import Array, Integers
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 
@@ -16,6 +17,8 @@ SHORTEST = 10.0
 """Length of the shortest joint, over the tolerance [-]. Blocks that share less than this touch at a corner only."""
 PARALLEL = 0.05
 """Largest sine of the angle between two edges that make a joint [-]."""
+TOGETHER = 512
+"""Pairs of blocks whose joints are found at once."""
 LEVEL = 1e-6
 """Largest |x| of the normal of a bed joint, and largest |z| of that of a head joint [-]."""
 
@@ -81,17 +84,146 @@ def names_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[str, ...]:
     return tuple(block.name or f"block_{i}" for i, block in enumerate(blocks))
 
 
+class Edges(NamedTuple):
+    """Edges of all blocks, one block after the other.
+
+    Args:
+        start, end: corners [m], shape (edges, 2) each.
+        normal: unit normals out of the blocks, shape (edges, 2).
+        first, number: where those of each block begin, and how many there are, shape (blocks,) each.
+    """
+
+    start: Array
+    end: Array
+    normal: Array
+    first: Integers
+    number: Integers
+
+    @classmethod
+    def of(cls, blocks: Sequence[Polygon]) -> Edges:
+        """The edges of blocks."""
+        count = np.array([len(block.corners) for block in blocks])
+        return cls(
+            np.concatenate([block.corners for block in blocks]),
+            np.concatenate([block.corners[[*range(1, len(block.corners)), 0]] for block in blocks]),
+            np.concatenate([block.normals for block in blocks]),
+            np.cumsum(count) - count,
+            count,
+        )
+
+    def paired(self, pairs: Integers) -> tuple[Integers, Integers, Integers]:
+        """Every edge of one block with every edge of another, for pairs of blocks of the shape (pairs, 2).
+
+        Returns:
+            The number of the pair, of the edge of the first block and of that of the second, shape (n,) each.
+        """
+        counts = self.number[pairs]
+        sizes = counts.prod(axis=1)
+        pair = np.repeat(np.arange(len(pairs)), sizes)
+        edge, other = np.divmod(np.arange(len(pair)) - np.repeat(np.cumsum(sizes) - sizes, sizes), counts[pair, 1])
+        return pair, self.first[pairs[pair, 0]] + edge, self.first[pairs[pair, 1]] + other
+
+    def sunk(self, pairs: Integers) -> Array:
+        """How deep the second block of each pair reaches behind an edge of the first [m], the least over its edges."""
+        _, edge, other = self.paired(pairs)
+        behind = _dot(self.start[edge] - self.start[other], self.normal[edge])
+        deepest = np.maximum.reduceat(behind, np.flatnonzero(np.diff(edge, prepend=-1)))
+        counts = self.number[pairs[:, 0]]
+        return np.asarray(np.minimum.reduceat(deepest, np.cumsum(counts) - counts))
+
+
+class Meetings(NamedTuple):
+    """Edges that lie on one another.
+
+    Args:
+        pair: numbers of the two blocks, shape (n, 2).
+        ends: of the joint, along the edge of the first block [m], shape (n, 2, 2).
+        normal: out of the first block, shape (n, 2).
+        travel: as of a `Joint`, shape (n, 2).
+    """
+
+    pair: Integers
+    ends: Array
+    normal: Array
+    travel: Array
+
+
 def joints_in_plane(blocks: Sequence[Polygon], tolerance: float) -> tuple[Joint, ...]:
     """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
     Two edges make a joint where they overlap along a line and are nowhere farther apart than the tolerance [m], which
     is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
-    names, found = names_of(blocks), []
-    for i, j in neighbours(blocks, tolerance):
-        require_apart(names[i], names[j], _overlap(blocks[i], blocks[j]), tolerance)
-        found += list(_between(blocks, (i, j), names, tolerance))
-    return tuple(found)
+    names, edges, pairs = names_of(blocks), Edges.of(blocks), neighbours(blocks, tolerance)
+    joints: list[Joint] = []
+    for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)):
+        depth = np.minimum(edges.sunk(some), edges.sunk(some[:, ::-1]))
+        for worst in np.flatnonzero(depth > tolerance)[:1]:
+            i, j = some[worst].tolist()
+            require_apart(names[i], names[j], float(depth[worst]), tolerance)
+        joints += _joints(blocks, edges, meetings(edges, some, tolerance), names, tolerance)
+    return tuple(joints)
+
+
+def meetings(edges: Edges, pairs: Integers, tolerance: float) -> Meetings:
+    """Where edges of the blocks of pairs lie on one another, no farther apart than the tolerance [m]."""
+    pair, edge, other = edges.paired(pairs)
+    facing = _dot(edges.normal[edge], edges.normal[other]) <= 0
+    facing &= np.abs(_cross(edges.normal[edge], edges.normal[other])) <= PARALLEL
+    pair, edge, other = pair[facing], edge[facing], other[facing]
+    a, b, c, d = edges.start[edge], edges.end[edge], edges.start[other], edges.end[other]
+    way, n = (b - a) / np.hypot(*(b - a).T)[:, None], edges.normal[edge]
+    first, last, long = _dot(d - a, way), _dot(c - a, way), _dot(b - a, way)  # the other outline runs the other way
+    span = np.column_stack([np.maximum(0.0, first), np.minimum(long, last)])
+    rise = _dot(c - d, n) / (last - first)
+    apart = _dot(d - a, n)[:, None] + rise[:, None] * (span - first[:, None])
+    lie = (span[:, 1] - span[:, 0] > SHORTEST * tolerance) & (np.abs(apart) <= tolerance).all(axis=1)
+    # ends are corners, without rounding, moved to the middle between the edges
+    starts = np.where((first > 0)[:, None], d, a) + (np.where(first > 0, -0.5, 0.5) * apart[:, 0])[:, None] * n
+    stops = np.where((last < long)[:, None], c, b) + (np.where(last < long, -0.5, 0.5) * apart[:, 1])[:, None] * n
+    # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
+    travel = np.column_stack([long - first, last])
+    return Meetings(pairs[pair[lie]], np.stack([starts, stops], axis=1)[lie], n[lie], travel[lie])
+
+
+def _joints(
+    blocks: Sequence[Polygon], edges: Edges, met: Meetings, names: Sequence[str], tolerance: float
+) -> Iterator[Joint]:
+    """The joints of edges that lie on one another."""
+    n, fixed = met.normal, np.array([block.fixed for block in blocks])
+    upwards = np.where(np.abs(n[:, 1]) > LEVEL, n[:, 1], n[:, 0]) > 0  # across a vertical joint, the right is above
+    turned = np.where(upwards, fixed[met.pair[:, 1]], ~fixed[met.pair[:, 0]])
+    pairs = np.where(turned[:, None], met.pair[:, ::-1], met.pair)  # below, above
+    along = met.ends[:, 1] - met.ends[:, 0]
+    back = np.where(turned, -1.0, 1.0) * _cross(along, n) < 0
+    ends = np.where(back[:, None, None], met.ends[:, ::-1], met.ends)
+    counts = edges.number[pairs[:, 1]]
+    joint = np.repeat(np.arange(len(pairs)), counts)
+    corner = np.arange(len(joint)) + np.repeat(edges.first[pairs[:, 1]] - np.cumsum(counts) + counts, counts)
+    away = np.hypot(*(edges.start[corner, None] - ends[joint]).transpose(2, 0, 1))
+    near = np.minimum.reduceat(away, np.cumsum(counts) - counts) < SHORTEST * tolerance if len(pairs) else away
+    rows = zip(pairs.tolist(), ends.tolist(), met.travel.tolist(), near.tolist(), strict=True)
+    for (below, above), (start, end), (back_by, on_by), (first, last) in rows:
+        yield Joint(
+            below=below,
+            above=above,
+            start=tuple(start),
+            end=tuple(end),
+            length=min(blocks[below].length, blocks[above].length),
+            travel=(back_by, on_by),
+            corners=(first, last),
+            name=f"{names[below]}|{names[above]}",
+        )
+
+
+def _dot(a: Array, b: Array) -> Array:
+    """Products of vectors, shape (n,)."""
+    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Products across of vectors, shape (n,)."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def require_apart(name: str, other: str, deep: float, tolerance: float) -> None:
@@ -101,70 +233,21 @@ def require_apart(name: str, other: str, deep: float, tolerance: float) -> None:
         raise ValueError(f"{overlap}; the valid range is up to the tolerance, {tolerance:g} m")
 
 
-def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> list[tuple[int, int]]:
-    """Pairs of blocks, not both fixed, whose bounding boxes touch."""
+def neighbours(blocks: Sequence[Polygon | Polyhedron], tolerance: float) -> Integers:
+    """Pairs of blocks, not both fixed, whose bounding boxes touch, in the order of the blocks, shape (pairs, 2).
+
+    Along the longest axis the blocks are sorted by where they begin. Of those that begin before one ends, the rest of
+    the box is compared.
+    """
     low = np.array([block.corners.min(axis=0) for block in blocks]) - tolerance
     high = np.array([block.corners.max(axis=0) for block in blocks]) + tolerance
-    pairs: list[tuple[int, int]] = []
-    for i, block in enumerate(blocks):
-        near = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(axis=1)
-        others = (i + 1 + np.flatnonzero(near)).tolist()
-        pairs += [(i, j) for j in others if not (block.fixed and blocks[j].fixed)]
-    return pairs
-
-
-def _overlap(block: Polygon, other: Polygon) -> float:
-    """Depth by which two blocks overlap [m], negative where they are apart: least over the normals."""
-    depths = [
-        (a.corners @ a.normals.T).max(axis=0) - (b.corners @ a.normals.T).min(axis=0)
-        for a, b in ((block, other), (other, block))
-    ]
-    return float(np.concatenate(depths).min())
-
-
-def _between(
-    blocks: Sequence[Polygon],
-    pair: tuple[int, int],
-    names: Sequence[str],
-    tolerance: float,
-) -> Iterator[Joint]:
-    """The joints between two blocks."""
-    i, j = pair
-    (p, normals), (q, others) = ((blocks[number].corners, blocks[number].normals) for number in pair)
-    sine = np.abs(np.outer(normals[:, 0], others[:, 1]) - np.outer(normals[:, 1], others[:, 0]))
-    for edge, other in np.argwhere((normals @ others.T <= 0) & (sine <= PARALLEL)).tolist():
-        a, b, n = p[edge], p[(edge + 1) % len(p)], normals[edge]
-        c, d = q[other], q[(other + 1) % len(q)]
-        way = (b - a) / np.hypot(*(b - a))
-        first, last = (d - a) @ way, (c - a) @ way  # the other outline runs the other way
-        long = float((b - a) @ way)
-        low, high = max(0.0, first), min(long, last)
-        if high - low <= SHORTEST * tolerance:
-            continue
-        rise = (c - d) @ n / (last - first)
-        apart = np.array([(d - a) @ n + rise * (s - first) for s in (low, high)])
-        if np.abs(apart).max() > tolerance:
-            continue
-        corners = (d, -0.5) if first > 0 else (a, 0.5), (c, -0.5) if last < long else (b, 0.5)  # without rounding
-        ends = [corner + share * gap * n for (corner, share), gap in zip(corners, apart, strict=True)]
-        # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
-        travel = (long - float(first), float(last))
-        upwards = n[1] if abs(n[1]) > LEVEL else n[0]  # across a vertical joint, the block on the right counts as above
-        below, above = (i, j) if upwards > 0 else (j, i)
-        if blocks[above].fixed:
-            below, above = above, below
-        start, end = ends
-        normal = n if below == i else -n
-        if normal @ np.array([-(end - start)[1], (end - start)[0]]) < 0:
-            start, end = end, start
-        near = [np.hypot(*(blocks[above].corners - place).T).min() < SHORTEST * tolerance for place in (start, end)]
-        yield Joint(
-            below=below,
-            above=above,
-            start=(float(start[0]), float(start[1])),
-            end=(float(end[0]), float(end[1])),
-            travel=travel,
-            length=min(blocks[i].length, blocks[j].length),
-            corners=(bool(near[0]), bool(near[1])),
-            name=f"{names[below]}|{names[above]}",
-        )
+    axis = int(np.ptp(low, axis=0).argmax())
+    order = np.argsort(low[:, axis], kind="stable")
+    low, high, fixed = low[order], high[order], np.array([block.fixed for block in blocks])[order]
+    pairs = []
+    for i, last in enumerate(np.searchsorted(low[:, axis], high[:, axis], side="right").tolist()):
+        near = ((low[i] <= high[i + 1 : last]) & (low[i + 1 : last] <= high[i])).all(axis=1)
+        others = i + 1 + np.flatnonzero(near & ~(fixed[i] & fixed[i + 1 : last]))
+        pairs.append(np.column_stack([np.full(len(others), i), others]))
+    found = np.sort(order[np.concatenate(pairs)], axis=1)
+    return np.asarray(found[np.lexsort(found.T[::-1])])

@@ -125,7 +125,7 @@ def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[Spa
     normals = [block.normals for block in blocks]
     offsets = [np.array([face.offset for face in sides]) for sides in faces]
     joints: list[SpaceJoint] = []
-    for i, j in neighbours(blocks, tolerance):
+    for i, j in neighbours(blocks, tolerance).tolist():
         deep = min(
             float((offsets[i] - (blocks[j].corners @ normals[i].T).min(axis=0)).min()),
             float((offsets[j] - (blocks[i].corners @ normals[j].T).min(axis=0)).min()),

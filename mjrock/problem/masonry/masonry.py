@@ -196,6 +196,12 @@ class Masonry:
         if self.in_space:
             raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
 
+    def require_dry(self, what: str) -> None:
+        """Raise a ValueError that says what takes joints without bonds alone, if some have one."""
+        if any(self.bonds):
+            held = named([joint.name for joint, bond in zip(self.joints, self.bonds, strict=True) if bond is not None])
+            raise ValueError(f"bond of {held}: {what} takes joints that push only; solve_explicit takes bonds")
+
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Name of each block: its own, or `block_` and its number."""

@@ -8,10 +8,10 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.spatial import cKDTree
 
-from ...geometry.hull import Bulk, Hull, bulk_of, hull_of
+from ...geometry.hull import Bulk, Hull, bulk_of, hull_of, unlike_ways
 from ...quantities import Array, frozen, keep, require_array, require_flag, require_kind, require_within
 from .polygon import FARTHEST, Polygon, checked_name, required_vertices
 
@@ -125,9 +125,7 @@ class Polyhedron:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
         pairs = {(min(i, j), max(i, j)) for face in self.faces for i, j in zip(face, face[1:] + face[:1], strict=True)}
         ways = np.array([self.corners[j] - self.corners[i] for i, j in sorted(pairs)])
-        ways /= np.linalg.norm(ways, axis=1)[:, None]
-        apart = np.abs(ways @ ways.T) < 1 - 1e-12
-        return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
+        return unlike_ways(ways / np.linalg.norm(ways, axis=1)[:, None])
 
     @cached_property
     def _bulk(self) -> Bulk:
@@ -181,7 +179,7 @@ def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull,
     extent = float(np.ptp(points, axis=0).max())
     if not extent > 1e-3:
         raise ValueError(f"vertices extend over {extent:.3g} m; the valid range begins at 0.001 m")
-    if pairs := cKDTree(points).query_pairs(max(1e-9 * extent, 1e-7)):
+    if pairs := scipy.spatial.cKDTree(points).query_pairs(max(1e-9 * extent, 1e-7)):
         i, j = min(pairs)
         raise ValueError(f"vertices {i} and {j} coincide at {points[i].tolist()} m")
     try:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
 from ...linear import loose
@@ -120,14 +120,19 @@ def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = 
     The friction is that of each joint [-], shape (joints,). The edges begin at the first of the directions `across`
     along the faces, which are those of `Lines.across` unless others are given.
     """
-    lines, count = masonry.lines, EDGES if masonry.in_space else 2
+    lines = masonry.lines
     pressing = rates(masonry.blocks, lines, lines.normal)
-    rubbing = [rates(masonry.blocks, lines, along) for along in across or lines.across]
-    turns = 2 * math.pi * np.arange(count) / count
-    spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(rubbing)]
     rubbed = diags_array(shear_limit(Law(friction=friction[lines.joint]), 1.0))  # along the face, of a unit pressure
-    rows = [pressing + rubbed @ sum(share * along for share, along in zip(e, rubbing, strict=True)) for e in spread]
+    rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in edges_of(across or lines.across)]
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
+
+
+def edges_of(across: tuple[Array, ...]) -> Array:
+    """Directions along the faces of the edges of the cones of lines, both ways in the plane, shape (edges, m, d)."""
+    count = 2 if len(across) == 1 else EDGES
+    turns = 2 * math.pi * np.arange(count) / count
+    spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(across)]
+    return np.asarray(np.einsum("ea,amd->emd", spread, np.stack(across)))
 
 
 def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None) -> Any:
@@ -147,7 +152,9 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     missing = eye_array(len(weight))
     columns = hstack([*edges, missing, -missing])
     prices = np.concatenate([*cost, np.ones(2 * len(weight))])
-    return linprog(prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry))
+    return scipy.optimize.linprog(
+        prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry)
+    )
 
 
 def _stands(answer: Any) -> bool:

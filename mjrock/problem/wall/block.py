@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -24,8 +24,9 @@ from ...quantities import (
     shown,
 )
 from .effects import AddedMass
+from .in_space import LATER
 from .restoring_moment import Restoring, of_force, pose_of
-from .section import Moments, Opening, Profile, moments, require_openings, require_profile
+from .section import Front, Gable, Moments, Opening, Profile, moments, require_profile
 
 HEAVIEST = 4000.0
 """Density above which that of a wall is taken for a weight [kg/m3]; basalt and iron ore have 3,000 to 4,000."""
@@ -47,6 +48,8 @@ class Block:
         profile: pairs of height and thickness [m] from the base to the top, for a wall that tapers or has storeys of
             different thickness; linear in between. The inner face is straight. None is a constant thickness.
         masses: masses that move with the wall.
+        gable: the upper part of a wall whose length falls towards its top; the height counts up to there. None is a
+            rectangle as seen from outside.
 
     Raises:
         ValueError: for a value outside its range, a wall that is thicker than it is high, or one whose centroid does
@@ -61,6 +64,7 @@ class Block:
     openings: tuple[Opening, ...] = ()
     profile: Profile | None = None
     masses: tuple[AddedMass, ...] = ()
+    gable: Gable | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
         keep(
@@ -97,7 +101,8 @@ class Block:
             for i, part in enumerate(parts):
                 require_kind(f"{name}[{i}]", part, kind)
             keep(self, **{name: tuple(parts)})
-        require_openings(self.openings, self.length, 2 * self.h)
+        require_kind("gable", self.gable, Gable, type(None))
+        self.front.require()
         if self.profile is not None:
             keep(self, profile=require_profile(self.profile, 2 * self.b, 2 * self.h))
         for i, mass in enumerate(self.masses):
@@ -115,11 +120,13 @@ class Block:
         openings: Sequence[Opening] = (),
         profile: Sequence[tuple[float, float]] | None = None,
         masses: Sequence[AddedMass] = (),
+        *,
+        gable: Gable | None = None,
     ) -> Block:
         """The wall of full sizes `thickness` 2b at the base, `height` 2h and `length` [m]; the rest as for `Block`."""
         thickness = require_within("thickness", thickness, 2e-3, 20.0, "m")
         height = require_within("height", height, max(1e-2, thickness), min(200.0, 200 * thickness), "m")
-        parts = {"openings": openings, "profile": profile, "masses": masses}
+        parts = {"openings": openings, "profile": profile, "masses": masses, "gable": gable}
         return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]
 
     @classmethod
@@ -137,6 +144,8 @@ class Block:
             parts.append(f"inset {self.inset:.6g} m")
         if self.profile:
             parts.append(f"{self.profile[-1][1]:.6g} m thick at the top")
+        if self.gable:
+            parts.append(f"gable of {self.gable.height:.6g} m")
         for name, many in (("opening", self.openings), ("added mass", self.masses)):
             if many:
                 parts.append(f"{len(many)} {name}{'' if len(many) == 1 else 's' if name == 'opening' else 'es'}")
@@ -152,11 +161,16 @@ class Block:
         """Length of the base along the wall, without its doors [m]."""
         return self.length - sum(opening.width for opening in self.openings if opening.sill == 0)
 
+    @property
+    def front(self) -> Front:
+        """The wall as seen from outside."""
+        return Front(self.length, 2 * self.h, self.openings, self.gable)
+
     @cached_property
     def _parts(self) -> Moments:
         """Mass and its moments of all that is not a plain rectangle [kg, kg m, kg m2]."""
         profile = self.profile or ((0.0, 2 * self.b), (2 * self.h, 2 * self.b))
-        total = [self.density * value for value in moments(profile, self.length, self.openings)]
+        total = [self.density * value for value in moments(profile, self.front)]
         for added in self.masses:
             x, z = added.offset, added.height
             for i, value in enumerate((1.0, x, z, x * x, z * z)):
@@ -166,7 +180,7 @@ class Block:
     @property
     def is_plain(self) -> bool:
         """Whether the wall is a full rectangle without parts."""
-        return not (self.openings or self.profile or self.masses)
+        return not (self.openings or self.profile or self.masses or self.gable)
 
     @property
     def centroid_height(self) -> float:

@@ -22,9 +22,9 @@ LATER = {"later": True}
 
 
 def written(effect: Any) -> str:
-    """An effect as it would be written, without what is said in space alone where it is not said."""
+    """An effect as it would be written, without what may be said by keyword and is not."""
     shown = ((field, getattr(effect, field.name)) for field in fields(effect))
-    said = (f"{field.name}={value!r}" for field, value in shown if not (field.kw_only and value is None))
+    said = (f"{field.name}={value!r}" for field, value in shown if not (field.kw_only and value == field.default))
     return f"{type(effect).__name__}({', '.join(said)})"
 
 

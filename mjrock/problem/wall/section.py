@@ -1,23 +1,32 @@
-"""The section of a wall: openings, a thickness that changes with the height, and the moments that follow.
+"""The shape of a wall: openings, a gable, a thickness that changes with the height, and the moments that follow.
 
-A wall is cut into slabs at every height where its thickness or the width of its openings changes. Within a slab the
-thickness is linear in the height and the length is constant, so that each moment is exact.
+A wall is cut into slabs at every height where its thickness, its length or the width of its openings has a corner.
+Within a slab thickness and length are linear in the height, and round openings have the width of a chord, so that
+Gauss's rule makes each moment exact to rounding.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
 
-from ...quantities import keep, require_within, shown
+import numpy as np
 
+from ...quantities import Array, keep, require_flag, require_within, shown
+from .in_space import LATER, written
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
+"""Gauss's rule on -1 to 1: with 24 points chords of a circle are exact to 1e-15."""
+LOOKS = 201
+"""Heights at which it is made sure that something is left beside the openings."""
 Profile = tuple[tuple[float, float], ...]
 """Height [m] and thickness [m] from the base to the top, linear in between. Two at one height are a step."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Opening:
     """A door or a window through the whole thickness of the wall.
 
@@ -27,6 +36,9 @@ class Opening:
         width: along the wall [m], 0.01 to 1000.
         height: its own height [m], 0.01 to 200.
         sill: height of its lower edge above the base [m], 0 for a door, which shortens the base too.
+        round: whether it is a circle, or an ellipse where width and height differ, such as a rose window.
+        at: where its middle lies along the wall, from the middle of the wall [m], for pictures. None draws openings of
+            one sill at equal distances.
 
     Raises:
         ValueError: for a value outside its range.
@@ -35,8 +47,15 @@ class Opening:
     width: float
     height: float
     sill: float = 0.0
+    round: bool = field(default=False, kw_only=True, metadata=LATER)
+    at: float | None = field(default=None, kw_only=True, metadata=LATER)
+
+    __repr__ = written
 
     def __post_init__(self) -> None:
+        require_flag("round of the opening", self.round)
+        if self.at is not None:
+            keep(self, at=require_within("at of the opening", self.at, -500.0, 500.0, "m"))
         keep(
             self,
             width=require_within("width of the opening", self.width, 0.01, 1000.0, "m"),
@@ -48,6 +67,36 @@ class Opening:
     def head(self) -> float:
         """Height of its upper edge above the base [m]."""
         return self.sill + self.height
+
+    def across(self, z: Array) -> Array:
+        """Its width at heights above the base [m], shape (n,)."""
+        if not self.round:
+            return np.where((self.sill < z) & (z < self.head), self.width, 0.0)
+        up = (z - self.sill) / (0.5 * self.height) - 1
+        return self.width * np.sqrt(np.maximum(1 - up**2, 0.0))
+
+
+@dataclass(frozen=True)
+class Gable:
+    """The upper part of a wall, whose length falls from that of the wall to that of its top.
+
+    Args:
+        height: of the gable alone, from the eaves to the top of the wall [m], 0.01 to 200.
+        top: length of the wall at its top [m], 0 for a triangle, more for a trapezium, 0 to 1000.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    height: float
+    top: float = 0.0
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            height=require_within("height of the gable", self.height, 0.01, 200.0, "m"),
+            top=require_within("top of the gable", self.top, 0.0, 1000.0, "m"),
+        )
 
 
 class Moments(NamedTuple):
@@ -81,55 +130,83 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
     return tuple(pairs)
 
 
-def require_openings(openings: Sequence[Opening], length: float, height: float) -> None:
-    """Raise ValueError unless the openings lie within the wall and leave some of it at every height."""
-    for i, opening in enumerate(openings):
-        if opening.head > height * (1 + 1e-12):
-            raise ValueError(
-                f"openings[{i}] reaches from {opening.sill:g} to {opening.head:g} m; "
-                f"the valid range is 0 to {height:g} m, the height of the wall"
-            )
-    for opening in openings:
-        z = opening.sill + 1e-9 * height  # just above the sill
-        across = sum(other.width for other in openings if other.sill <= z < other.head)
-        if not across < length * (1 - 1e-9):
-            raise ValueError(
-                f"the openings at a height of {opening.sill:.4g} m are {across:g} m wide together; the valid range is "
-                f"less than {length:g} m, the length of the wall"
-            )
+class Front(NamedTuple):
+    """The wall as seen from outside.
+
+    Args:
+        length: length along the wall [m].
+        height: whole height [m].
+        openings: doors and windows.
+        gable: its upper part, or None where the length is the same up to the top.
+    """
+
+    length: float
+    height: float
+    openings: tuple[Opening, ...] = ()
+    gable: Gable | None = None
+
+    @property
+    def eaves(self) -> float:
+        """Height at which the gable begins, or that of the wall [m]."""
+        return self.height - (0.0 if self.gable is None else self.gable.height)
+
+    def long(self, z: Array) -> Array:
+        """Length of the wall at heights above the base, its openings not taken off [m], shape (n,)."""
+        if self.gable is None:
+            return np.full(np.shape(z), self.length)
+        return np.interp(z, [self.eaves, self.height], [self.length, self.gable.top])
+
+    def left(self, z: Array) -> Array:
+        """Length of what is left beside the openings at heights above the base [m], shape (n,)."""
+        gone = [opening.across(z) for opening in self.openings]
+        return np.asarray(self.long(z) - sum(gone, np.zeros(np.shape(z))))
+
+    @property
+    def corners(self) -> set[float]:
+        """Heights at which its length has a corner [m]."""
+        return {self.eaves, *(z for opening in self.openings for z in (opening.sill, opening.head))}
+
+    def require(self) -> None:
+        """Raise ValueError unless gable and openings lie within the wall and leave some of it at every height."""
+        if self.gable is not None:
+            require_within("gable, height", self.gable.height, 0.01, self.height, "m")
+            require_within("gable, top", self.gable.top, 0.0, self.length, "m")
+        for i, opening in enumerate(self.openings):
+            if opening.head > self.height * (1 + 1e-12):
+                raise ValueError(
+                    f"openings[{i}] reaches from {opening.sill:g} to {opening.head:g} m; "
+                    f"the valid range is 0 to {self.height:g} m, the height of the wall"
+                )
+        edge = 1e-9 * self.height
+        ends = [z for opening in self.openings for z in (opening.sill + edge, opening.head - edge)]
+        places = {*ends, *np.linspace(min(ends), max(ends), LOOKS).tolist()} if ends else set()
+        for z in sorted(places):
+            at = np.array(z)
+            across, length = sum(float(opening.across(at)) for opening in self.openings), float(self.long(at))
+            if not across < length * (1 - 1e-9):
+                raise ValueError(
+                    f"the openings at a height of {z:.4g} m are {across:g} m wide together; the valid range is less "
+                    f"than {length:g} m, the length of the wall there"
+                )
 
 
-def moments(profile: Profile, length: float, openings: Sequence[Opening]) -> Moments:
-    """Volume and moments of a wall of a length [m], without its openings.
+def moments(profile: Profile, front: Front) -> Moments:
+    """Volume and moments of a wall.
 
     The thickness of its profile is measured from the straight inner face, which stands half the lowest thickness behind
     the middle of the base.
     """
     inner = -0.5 * profile[0][1]
-    total = [0.0] * 5
+    total = np.zeros(5)
     for (low, t_low), (high, t_high) in pairwise(profile):
-        cuts = {low, high} | {z for opening in openings for z in (opening.sill, opening.head) if low < z < high}
+        cuts = {low, high} | {z for z in front.corners if low < z < high}
         for z0, z1 in pairwise(sorted(cuts)):
-            middle = 0.5 * (z0 + z1)
-            left = length - sum(opening.width for opening in openings if opening.sill < middle < opening.head)
-            t0, t1 = (t_low + (t_high - t_low) * (z - low) / (high - low) for z in (z0, z1))
-            for i, value in enumerate(_slab(inner, z0, z1, t0, t1)):
-                total[i] += left * value
-    return Moments(*total)
-
-
-def _slab(inner: float, z0: float, z1: float, t0: float, t1: float) -> tuple[float, ...]:
-    """Area and moments of a trapezium from z0 to z1 whose thickness from x = inner outwards goes from t0 to t1.
-
-    Each integrand is a polynomial of at most the third degree in z, which Simpson's rule integrates exactly.
-    """
-    area, x, z, xx, zz = 0.0, 0.0, 0.0, 0.0, 0.0
-    for weight, at, t in ((1, z0, t0), (4, 0.5 * (z0 + z1), 0.5 * (t0 + t1)), (1, z1, t1)):
-        share = weight * (z1 - z0) / 6
-        outer = inner + t
-        area += share * t
-        x += share * 0.5 * (outer**2 - inner**2)
-        z += share * t * at
-        xx += share * (outer**3 - inner**3) / 3
-        zz += share * t * at**2
-    return area, x, z, xx, zz
+            # z = sin of an angle between the ends, which makes the chords of a circle smooth there
+            angle = 0.5 * math.pi * NODES
+            z = 0.5 * (z0 + z1) + 0.5 * (z1 - z0) * np.sin(angle)
+            weight = WEIGHTS * 0.25 * math.pi * (z1 - z0) * np.cos(angle) * front.left(z)
+            t = t_low + (t_high - t_low) * (z - low) / (high - low)
+            outer = inner + t
+            terms = (t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2)
+            total += [float(weight @ term) for term in terms]
+    return Moments(*total.tolist())

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from ...quantities import keep, require_real, require_within
+from ...quantities import keep, require_array, require_real, require_whole, require_within
 from .effect import Anchored, LinkLaw
 from .in_space import HIGHEST, LATER, Point, keep_place
 
@@ -76,6 +76,57 @@ class Tie(Anchored):
                     "never breaks; give it a strength [N], or leave ultimate out"
                 )
 
+    @classmethod
+    def of_bar(
+        cls,
+        height: float,
+        diameter: float,
+        yield_stress: float,
+        length: float,
+        *,
+        plate: float | tuple[float, float],
+        thickness: float,
+        shear_strength: float,
+        compressive_strength: float,
+        elastic_modulus: float = 210e9,
+        number: int = 1,
+        **options: Any,
+    ) -> Tie:
+        """Ties of round steel bars with anchor plates on a wall, from what is known of them.
+
+        The stiffness is E A / L. The strength is the least of three [N]:
+
+            bar       f_y A
+            punching  f_v0 2 t (a + b + 2 t), a prism of masonry whose sides run outwards at 45 degrees from the plate,
+                      cut at half the thickness t
+            bearing   f_m a b
+
+        `strengths_of_bar` has all three. `ultimate` is not known from these: give it for bars that
+        break or pull through.
+
+        Args:
+            height: where they hold the wall [m].
+            diameter: of a bar [m], 0.004 to 0.2.
+            yield_stress: f_y of the steel [Pa], 50e6 to 2e9.
+            length: free length L of a bar, from the inner face to its anchor [m], 0.01 to 1000.
+            plate: side of a square plate, or its two sides a and b [m], 0.02 to 3.
+            thickness: of the wall behind the plate t [m], 0.05 to 10.
+            shear_strength: f_v0 of the masonry [Pa], 1e3 to 5e6.
+            compressive_strength: f_m of the masonry [Pa], 1e5 to 1e8.
+            elastic_modulus: E of the steel [Pa], 5e10 to 3e11.
+            number: of equal ties at this height, 1 to 1000.
+            options: other fields of `Tie`, such as `slack` and `ultimate`.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range.
+        """
+        strengths = strengths_of_bar(diameter, yield_stress, plate, thickness, shear_strength, compressive_strength)
+        length = require_within("length of the tie", length, 0.01, 1000.0, "m")
+        count = require_whole("number of ties", number, 1, 1000)
+        E = require_within("elastic_modulus of the bar", elastic_modulus, 5e10, 3e11, "Pa")
+        stiffness = count * E * area_of_bar(diameter) / length
+        return cls(height, stiffness, length=length, strength=count * min(strengths.values()), **options)
+
     @property
     def rise(self) -> float:
         """How much higher the anchor is than the point that is held [m]."""
@@ -109,3 +160,31 @@ class Tie(Anchored):
         if self.strength < math.inf:
             said += f",\nyields at {self.strength / 1e3:g} kN"
         return said if self.ultimate is None else f"{said}, breaks at {1e3 * self.ultimate:g} mm"
+
+
+def area_of_bar(diameter: float) -> float:
+    """Section of a round bar [m2]."""
+    return 0.25 * math.pi * require_within("diameter of the bar", diameter, 0.004, 0.2, "m") ** 2
+
+
+def strengths_of_bar(
+    diameter: float,
+    yield_stress: float,
+    plate: float | tuple[float, float],
+    thickness: float,
+    shear_strength: float,
+    compressive_strength: float,
+) -> dict[str, float]:
+    """Strength of one tie by what gives way, see `Tie.of_bar`: its bar, punching and bearing of the masonry [N]."""
+    steel = require_within("yield_stress of the bar", yield_stress, 50e6, 2e9, "Pa")
+    a, b = (plate, plate) if isinstance(plate, int | float) else require_array("plate", plate, (2,)).tolist()
+    for side in (a, b):
+        require_within("plate", side, 0.02, 3.0, "m")
+    t = require_within("thickness of the wall", thickness, 0.05, 10.0, "m")
+    shear = require_within("shear_strength of the masonry", shear_strength, 1e3, 5e6, "Pa")
+    pressed = require_within("compressive_strength of the masonry", compressive_strength, 1e5, 1e8, "Pa")
+    return {
+        "bar": steel * area_of_bar(diameter),
+        "punching": shear * 2 * t * (a + b + 2 * t),
+        "bearing": pressed * a * b,
+    }

@@ -1,8 +1,9 @@
-"""Forced rocking: Eq. 1 over a shaken base or with ties, in compiled steps that end at every sample of the record.
+"""Rocking from impact to impact: Eq. 1 over a base at rest or shaken, in compiled steps.
 
-Between two samples the acceleration of the ground is linear, so that each step of Nystroem's fourth-order method
-integrates a smooth function. (A general integrator would be restarted at each of thousands of samples.) A step also
-ends where a tie goes taut, yields, breaks or goes slack. The wall rests until the moment about a free toe turns it.
+Steps end where the wall turns, meets the upright position or lies on its face, where a tie goes taut, yields, breaks or
+goes slack, and at every sample of a record. Between two samples the acceleration of the ground is linear, so that each
+step of Nystroem's fourth-order method integrates a smooth function. (A general integrator would be restarted at each of
+thousands of samples.) The wall rests until the moment about a free toe turns it.
 """
 
 from __future__ import annotations
@@ -23,9 +24,11 @@ from .motion import RockingMotion
 HALVINGS = 50
 """Halvings of a step in the search of the time at which a tie changes."""
 NYSTROEM = 50.0
-"""(p h)^4 of a forced step over rtol. Nystroem's method then errs by about rtol alpha in a fall from alpha/2."""
+"""(p h)^4 of the longest step over rtol. Nystroem's method then errs by about rtol alpha in a fall from alpha/2."""
 NEWTON = 60
 """Most iterations of a root, of which bisection alone would need 53."""
+UPRIGHT, TURNED, LYING = 0, 1, 2
+"""Where an arc ends: the rotation is zero, the velocity is zero, or the wall lies on its face."""
 CHUNK = 4096
 """Room for knots, and for a quarter as many impacts and peaks, which is emptied when it is full."""
 
@@ -125,7 +128,8 @@ class ArcRoom(NamedTuple):
     """Arrays that a run of the loop fills.
 
     Args:
-        knots: time [s], rotation [rad] and velocity [rad/s] before and after each step and each impact, shape (n, 3).
+        knots: time [s], rotation [rad], velocity [rad/s] and acceleration [rad/s2] at both ends of each step, shape
+            (n, 4).
         impacts: the numbers of each impact, as in `mjrock.result.history.Impact`, shape (n, 5).
         peaks: rotation maxima |theta| [rad], shape (n,).
         counts: how many of each there are, shape (3,).
@@ -168,24 +172,26 @@ def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple
 
 
 @jitable
-def root(which: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
-    """When within the next `h` rotation (0) or velocity (1) becomes zero [s].
+def root(end: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
+    """When within the next `h` the wall is at an end of its arc: UPRIGHT, TURNED or LYING [s].
 
     Newton's method, from the root at a constant acceleration, held by bisection. The other arguments are those of
     `nystroem`.
     """
     k1 = acceleration(toe, ties, push.x, push.z, theta, math.sin(theta), math.cos(theta))
-    if which == 0:
-        closing = math.copysign(math.sqrt(max(0.0, omega * omega - 2 * k1 * theta)), theta)
-        start, over, under = theta, 2 * theta, closing - omega
-    else:
+    goal = toe.side * ON_ITS_FACE if end == LYING else 0.0
+    if end == TURNED:
         start, over, under = omega, -omega, k1
+    else:
+        start = theta - goal
+        closing = math.copysign(math.sqrt(max(0.0, omega * omega - 2 * k1 * start)), start)
+        over, under = 2 * start, closing - omega
     low, high, tau = 0.0, h, over / under if under != 0 else 0.0
     if not low < tau < high:
         tau = 0.5 * h
     for _ in range(NEWTON):
         at, speed, _, pulling = nystroem(toe, ties, push, theta, omega, tau)
-        value, slope = (at, speed) if which == 0 else (speed, pulling)
+        value, slope = (speed, pulling) if end == TURNED else (at - goal, speed)
         if start * value > 0:
             low = tau
         else:
@@ -198,10 +204,10 @@ def root(which: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: 
 
 
 @jitable
-def noted(room: ArcRoom, t: float, theta: float, omega: float) -> None:
+def noted(room: ArcRoom, t: float, theta: float, omega: float, pulling: float) -> None:
     """Write a knot."""
-    n = room.counts[0]
-    room.knots[n, 0], room.knots[n, 1], room.knots[n, 2] = t, theta, omega
+    knot = room.knots[room.counts[0]]
+    knot[0], knot[1], knot[2], knot[3] = t, theta, omega, pulling
     room.counts[0] += 1
 
 
@@ -219,7 +225,7 @@ def met(room: ArcRoom, law: RockingLaw, rules: Rules, t: float, side: float, ome
 
 
 @compiled
-def forced_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -> tuple[Any, ...]:
+def rocking_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -> tuple[Any, ...]:
     """Follow the wall until the room is nearly full, or until it lies on its face or the time is over.
 
     Returns the values of the clock, see `compiled`.
@@ -229,13 +235,12 @@ def forced_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -
     while room.counts[0] + 4 < len(room.knots) and max(room.counts[1], room.counts[2]) < len(room.peaks) and not ended:
         if at_rest:
             lifted, towards = uplift(law, rules.one_sided, t, rules.duration)
-            noted(room, t, 0.0, 0.0)
+            noted(room, t, 0.0, 0.0, 0.0)
             if lifted >= rules.duration:
                 t, ended = rules.duration, True
-                noted(room, t, 0.0, 0.0)
+                noted(room, t, 0.0, 0.0, 0.0)
                 break
             t, theta, omega, side, at_rest = lifted, 0.0, 0.0, towards, False
-        noted(room, t, theta, omega)
         toe = law.outer if side > 0 else law.inner
         push, stop = pushed(law.x, law.z, t)
         h = until_change(toe, ties, push, theta, omega, min(rules.longest, stop - t, rules.duration - t))
@@ -244,22 +249,24 @@ def forced_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -
             middle = h * k1 / (k1 - k3)  # of the step's extreme velocity
             if middle > 1e-6 * h and nystroem(toe, ties, push, theta, omega, middle)[1] * new_omega < 0:
                 h = middle  # the wall turns, and turns again within the step
-                new_theta, new_omega, _, _ = nystroem(toe, ties, push, theta, omega, h)
+                new_theta, new_omega, _, k3 = nystroem(toe, ties, push, theta, omega, h)
         turned = omega * new_omega < 0
         if turned:
-            h = root(1, toe, ties, push, theta, omega, h)
-            new_theta, new_omega = nystroem(toe, ties, push, theta, omega, h)[0], 0.0
-        hit = side * new_theta <= 0
-        if hit:
-            h = root(0, toe, ties, push, theta, omega, h)
-            new_theta, new_omega = 0.0, nystroem(toe, ties, push, theta, omega, h)[1]
+            h = root(TURNED, toe, ties, push, theta, omega, h)
+            new_theta, _, _, k3 = nystroem(toe, ties, push, theta, omega, h)
+            new_omega = 0.0
+        hit, fell = side * new_theta <= 0, side * new_theta >= ON_ITS_FACE
+        if hit or fell:
+            h = root(UPRIGHT if hit else LYING, toe, ties, push, theta, omega, h)
+            _, new_omega, _, k3 = nystroem(toe, ties, push, theta, omega, h)
+            new_theta = 0.0 if hit else side * ON_ITS_FACE
         elif turned and side * omega > 0:
             room.peaks[room.counts[2]] = abs(new_theta)
             room.counts[2] += 1
         take_changes(toe, ties, new_theta, turned)
+        noted(room, t, theta, omega, k1)
         t, theta, omega = t + h, new_theta, new_omega
-        noted(room, t, theta, omega)
-        fell = side * theta > ON_ITS_FACE
+        noted(room, t, theta, omega, k3)
         if hit:
             omega = met(room, law, rules, t, side, omega)
             at_rest = room.impacts[room.counts[1] - 1, 4] <= rules.rest
@@ -268,29 +275,34 @@ def forced_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) -
     return t, theta, omega, side, at_rest, fell, ended
 
 
-def rock_forced(case: Case, e: float, least: float, rtol: float) -> RockingMotion:
-    """Rocking over a shaken base, or with ties; `e` and `least` as in `rock_freely`, `rtol` sets the longest step, see
-    NYSTROEM."""
+def rock(case: Case, e: float, least: float, rtol: float) -> RockingMotion:
+    """Rocking of the wall of a case.
+
+    Args:
+        case: the wall, its release, its ties and its ground motion.
+        e: restitution of an impact [-], as the root of the energy that is left; negative where the wall leaves to the
+            side that it came from.
+        least: an impact that leaves less energy than this leaves the wall at rest [J].
+        rtol: sets the longest step, see NYSTROEM.
+    """
     law = RockingLaw.of(case)
     rules = Rules(case.one_sided, e, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = ArcClock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
         take_changes(Toe.of(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     few = CHUNK // 4
-    room, parts = ArcRoom(np.empty((CHUNK, 3)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64)), []
+    room, parts = ArcRoom(np.empty((CHUNK, 4)), np.empty((few, 5)), np.empty(few), np.zeros(3, dtype=np.int64)), []
     while not clock.ended:
         room.counts[:] = 0
-        clock = ArcClock(*forced_loop(law, rules, clock, room))
+        clock = ArcClock(*rocking_loop(law, rules, clock, room))
         parts.append(room.filled())
     knots, impacts, peaks = map(np.concatenate, zip(*parts, strict=True))
-    t, theta, omega = np.ascontiguousarray(knots.T)
+    t, theta = knots[:, 0].copy(), knots[:, 1]
 
-    def sample(times: Array) -> tuple[Array, Array]:
-        rotations, velocities = interpolated(t, theta[:, None], omega[:, None], times)
-        return rotations[:, 0], velocities[:, 0]
+    def sample(times: Array) -> Array:
+        return interpolated(t, knots[:, 1:3].copy(), knots[:, 2:].copy(), times)[0].T
 
-    steps = len(t) // 2
     plastic = yielded(case.pulls, theta) if case.pulls else np.empty((len(t), 0))
     return RockingMotion(
-        impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, steps, 3 * steps, (t, plastic)
+        impacts, peaks, clock.t, clock.theta, clock.fell, clock.at_rest, sample, 3 * (len(t) // 2), (t, plastic)
     )

@@ -1,0 +1,60 @@
+"""Forces that are kept at a sample: of joints, of fixed blocks and of links.
+
+A row keeps the force along its normal and that of its friction in the last step. They are gathered when all forces of
+the step have acted, those of rigid friction and of touches too.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import inlined, jitable
+from ..geometry.vectors import Vector, components, increase, moment, plus, scaled, spin_components
+from ..quantities import Array
+from .contact import meeting, where_friction_rubs
+from .friction import as_vector, last_friction
+from .rows import Row
+from .system import Samples, System
+from .touches import was_open
+
+
+@inlined
+def whole_friction(system: System, line: Row, axes: tuple[int, ...]) -> Vector:
+    """Friction of a line in the last step, along its face [N]. One that sticks rigidly is dragged as it leaves."""
+    dragged = spin_components(line.dragged, axes)
+    if line.k_s < math.inf:
+        return dragged
+    return plus(dragged, last_friction(system.bodies, line, dragged))
+
+
+@inlined
+def add_moment(load: Array, factor: float, place: Vector, force: Vector) -> None:
+    """Add a force at a place to a force and its moment about the origin of the world [N, N m]."""
+    increase(load, scaled(factor, force))
+    increase(load[len(force) :], scaled(factor, moment(place, force)))
+
+
+@jitable
+def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+    """Keep the forces of the last step at a sample, where there is room for them."""
+    loads, held, pulled, ties = samples.loads[row], samples.held[row], samples.pulled[row], len(system.ties)
+    if len(held) == 0:
+        return
+    for p in range(len(system.lines)):
+        line, bonded = system.lines[p], p < len(system.bonds) and system.bonds[p].k > 0
+        if was_open(line) and not bonded:
+            continue
+        meet = where_friction_rubs(meeting(system, line, axes))
+        push, drag = line.push, whole_friction(system, line, axes)
+        if bonded:
+            push += system.bonds[p].push
+            drag = plus(drag, spin_components(system.bonds[p].dragged, axes))
+        force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
+        if line.group < len(loads):
+            body = system.bodies[line.body]
+            place = plus(components(body.rest, axes), plus(components(body.place, axes), meet.arm))
+            add_moment(loads[line.group], line.sense, place, force)
+        if line.fixed >= 0:
+            increase(held[line.fixed], force)
+    for i in range(len(pulled)):
+        pulled[i] = system.ties[i].pulled if i < ties else system.dampers[i - ties].pulled

@@ -1,0 +1,99 @@
+"""Forces of contacts, links and fixed blocks in steps that were made, from poses and half-step velocities.
+
+What a row of the engine pushed follows from the record: along the normal from the gap, its rate and the acceleration of
+the step, and along the face from the slip that was left after it. The loops keep nothing for this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import compiled
+from ..geometry.frames import place
+from ..geometry.kinematics import meeting, over_face, where_friction_acts
+from ..geometry.vectors import increase, moment, plus, scaled, vector
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
+from ..quantities import Array, Integers
+from ..result.forces import Forces, Gathered, JointFrames, forces_of
+from ..result.ties import Plastic, motion_of_ties
+from ..scene.scene import Scene
+from .energy_work import LedgerRoom, pressed_in, take_rows, take_step
+from .points import Points, points_of
+from .record import Record, StepKinds, Steps, Windows
+from .rows import Step
+from .sliding import slip_of
+
+
+class Loads(NamedTuple):
+    """What is gathered of the contacts, and of what.
+
+    Args:
+        steps: numbers of the steps, shape (n,).
+        joint, sense: the joint of each contact, and 1 where its body is above that or -1, shape (m,).
+        fixed: number of the fixed block below each joint, or -1, shape (joints,).
+        rest: centroids of the bodies at rest [m].
+        loads, held: see `Gathered`.
+    """
+
+    steps: Integers
+    joint: Integers
+    sense: Array
+    fixed: Integers
+    rest: Array
+    loads: Array
+    held: Array
+
+
+def kept_forces(
+    case: Case | MasonryCase, scene: Scene, steps: Steps, t: Array, plastic: Mapping[str, Plastic]
+) -> Forces:
+    """The forces at samples: those of the steps in whose windows the samples lie, see `record.Windows`.
+
+    Args:
+        case, scene, steps: the run.
+        t: times of the samples [s].
+        plastic: what ties have yielded.
+    """
+    chosen, sample = np.unique(np.searchsorted(steps.windows.t, t, side="right") - 1, return_inverse=True)
+    frames, contacts, d = JointFrames.of(case), scene.contacts, scene.freedom.translations
+    room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
+    sense = np.where(frames.above[contacts.joint] == contacts.body, 1.0, -1.0)
+    loads = Loads(chosen, contacts.joint, sense, frames.fixed, frames.rest, *room)
+    points = points_of(scene, steps.method)
+    _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.of(scene), loads)
+    pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
+    ties = motion_of_ties(case, steps.t, pose, plastic)
+    of = chosen[sample]
+    pulled = {name: ties[name].force[of] for name in scene.links.sprung.names}
+    pulled |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))
+    return forces_of(case, frames, Gathered(steps.t[of], pose[of], loads.loads[sample], loads.held[sample], pulled))
+
+
+@compiled
+def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, into: Loads) -> None:
+    places, axes = points.places, points.places.axes
+    for row in range(len(into.steps)):
+        n = into.steps[row]
+        take_step(record, windows, axes, n, room)
+        kind = kinds.kind[n]
+        step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
+        impratio = take_rows(points, step, room)
+        for i in range(len(points.law.k)):
+            now = pressed_in(points, record, step, room, impratio, n, i)
+            if not kinds.released_on[i] if n == 0 else now.gap >= 0:
+                continue
+            meets = where_friction_acts(places, meeting(places, i, room.frames))
+            slipping = room.middle if now.coulomb else record.after[n]
+            way = slip_of(meets.normal, over_face(places, i, meets, room.frames, slipping)).way
+            force = plus(scaled(now.row, meets.normal), scaled(now.along, way))
+            body, joint = places.body[i], into.joint[i]
+            at = plus(vector(into.rest, body, axes), plus(place(room.frames, body, axes), meets.arm))
+            load = into.loads[row, joint]
+            increase(load, scaled(into.sense[i], force))
+            increase(load[len(axes) :], scaled(into.sense[i], moment(at, force)))
+            if into.fixed[joint] >= 0:
+                increase(into.held[row, into.fixed[joint]], force)

@@ -1,0 +1,153 @@
+"""Forces of joints on pictures of blocks: the line of thrust, or a bar at each joint."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
+
+from ..quantities import Array, require_within, shown
+from ..result.response import Response
+from .section import FORCE, Update
+
+SHOWN = ("thrust", "bars")
+"""How forces are shown."""
+WIDEST, BAR = 5.0, 2.5
+"""Width of the line of thrust at a large force, and of a bar [point]."""
+LONGEST = 0.12
+"""Length of the bar of a large force, over the extent of the joints [-]."""
+LARGE = 2.0
+"""Force over that of the scale beyond which a line grows no more [-]. In a film impacts would hide the rest."""
+NOTHING = 1e-6
+"""Force over that of the scale below which nothing is drawn [-]."""
+
+
+class Strokes(LineCollection):
+    """Lines in the plane or in space, which are drawn over the blocks."""
+
+    ends: Array = np.zeros((0, 2, 2))
+    """Both ends of each [m], shape (n, 2, d)."""
+
+    def put(self, ends: Array, widths: Array | float) -> None:
+        """Draw these."""
+        self.ends = ends
+        self.set_linewidth(widths)  # type: ignore[arg-type]
+        if ends.shape[2] == 2:
+            self.set_segments(list(ends))
+        elif getattr(self.axes, "M", None) is not None:
+            self.do_3d_projection()
+
+    def do_3d_projection(self) -> float:
+        """Bring the lines into the plane of the picture, whenever the axes are drawn."""
+        space: Any = self.axes
+        x, y, _ = proj_transform(*self.ends.reshape(-1, 3).T, space.M)
+        self.set_segments(list(np.stack([x, y], axis=-1).reshape(-1, 2, 2)))
+        return 0.0
+
+
+def require_shown(name: str, value: object, response: Response) -> None:
+    """Raise a ValueError unless it is one of `SHOWN`, and an AttributeError unless the response has kept its forces."""
+    if not isinstance(value, str) or value not in SHOWN:
+        raise ValueError(f"{name} = {shown(value)} is not one of {', '.join(SHOWN)}")
+    _ = response.forces
+
+
+def sample_at(response: Response, at: float | None) -> int:
+    """Number of the last sample of a response up to a time [s], or of the last of all.
+
+    Raises:
+        ValueError: if the response does not reach that time.
+    """
+    first, last = float(response.t[0]), float(response.t[-1])
+    at = last if at is None else require_within("at", at, first, last, "s")
+    return int(np.searchsorted(response.t, at * (1 + 1e-12), side="right")) - 1
+
+
+class Moving(NamedTuple):
+    """Bodies of a picture: times of its frames [s], poses as of a `Response`, and the factor on displacements [-]."""
+
+    t: Array
+    poses: Array
+    magnify: float
+
+
+class Acting:
+    """The forces of the joints of a response where bodies are drawn.
+
+    Args:
+        response: a run that has kept its forces.
+        bodies: where the bodies are.
+    """
+
+    def __init__(self, response: Response, bodies: Moving) -> None:
+        self.forces, self.case, self.bodies = response.forces, response.case, bodies
+        self.frames = self.forces.frames
+        self.sample = np.maximum(np.searchsorted(response.t, bodies.t * (1 + 1e-12), side="right") - 1, 0)
+        normal, shear = self.forces.normal[self.sample], self.forces.shear[self.sample]
+        along = np.concatenate([normal[..., None], shear.reshape(*normal.shape, -1)], axis=-1)
+        self.along = np.where(normal[..., None] > 0, along, 0.0)
+        self.size = np.linalg.norm(self.along, axis=-1)
+        self.scale = float(np.median(self.size.max(axis=1))) or 1.0
+
+    @property
+    def extent(self) -> float:
+        """Extent of joints and centroids at rest [m]."""
+        return float(np.ptp(np.concatenate([self.frames.middle, self.frames.rest]), axis=0).max())
+
+    def placed(self, frame: int) -> tuple[Array, Array]:
+        """Where the force of each joint acts in a frame [m], and the force over the scale, shape (j, d) each."""
+        bodies, frames = self.bodies, self.frames
+        middle, axes = frames.placed(self.case, bodies.t[frame : frame + 1], bodies.poses[frame : frame + 1])
+        middle = frames.middle + bodies.magnify * (middle[0] - frames.middle)
+        off = np.nan_to_num(self.forces.eccentricity[self.sample[frame]]).reshape(len(middle), -1)
+        place = middle + (off[..., None] * axes[0, :, 1:]).sum(axis=1)
+        return place, (self.along[frame][..., None] * axes[0]).sum(axis=1) / self.scale
+
+    def thrust(self, frame: int) -> tuple[Array, Array]:
+        """The line of thrust in a frame: ends of its pieces [m], shape (n, 2, d), and their widths [point].
+
+        In each block it goes from joint to joint by way of the mean of their places, in proportion to their forces. So
+        it is straight between two. A block with one joint that presses has its other end at its centroid.
+        """
+        place, share = self.placed(frame)
+        frames, share = self.frames, np.linalg.norm(share, axis=1)
+        joint = np.tile(np.flatnonzero(share > NOTHING), 2)
+        body = np.concatenate([side[joint[: len(joint) // 2]] for side in (frames.below, frames.above)])
+        joint, body = joint[body >= 0], body[body >= 0]
+        count = len(frames.rest)
+        sums = [np.bincount(body, weights=share[joint] * column, minlength=count) for column in place[joint].T]
+        weight = np.bincount(body, weights=share[joint], minlength=count)
+        node = np.stack(sums, axis=-1) / np.where(weight > 0, weight, 1.0)[:, None]
+        alone = np.bincount(body, minlength=count) == 1
+        d = place.shape[1]
+        node[alone] = (frames.rest + self.bodies.magnify * self.bodies.poses[frame, :, :d])[alone]
+        return np.stack([place[joint], node[body]], axis=1), WIDEST * np.minimum(share[joint], LARGE)
+
+    def bars(self, frame: int) -> tuple[Array, float]:
+        """A bar through the place of each joint's force along it, as long as the force is large, and their width."""
+        place, share = self.placed(frame)
+        size = np.linalg.norm(share, axis=1)
+        half = 0.5 * LONGEST * self.extent * share * np.minimum(LARGE / np.maximum(size, 1e-300), 1.0)[:, None]
+        return np.stack([place - half, place + half], axis=1)[size > NOTHING], BAR
+
+
+def forces_on(ax: Axes, response: Response, bodies: Moving, how: str, *, animated: bool = True) -> Update:
+    """Draw the forces of the joints on blocks that are drawn already, and say what a large one is."""
+    acting = Acting(response, bodies)
+    strokes = Strokes([], colors=FORCE, zorder=7, animated=animated, capstyle="round")
+    ax.add_collection(strokes, autolim=False)
+    said = f"line {WIDEST:g} pt wide" if how == "thrust" else f"bar {LONGEST * acting.extent:.2g} m long"
+    said = f"{said}: {acting.scale / 1e3:.3g} kN"
+    if acting.frames.middle.shape[1] == 2:
+        ax.set_xlabel(f"{ax.get_xlabel()}\n{said}")
+    else:
+        ax.annotate(said, (0.99, 0.99), xycoords="axes fraction", fontsize=8, ha="right", va="top")
+    drawn = acting.thrust if how == "thrust" else acting.bars
+
+    def update(frame: int) -> None:
+        strokes.put(*drawn(frame))
+
+    return update

@@ -1,0 +1,100 @@
+"""Sets of records: the components of each station in a folder, and one factor for the components of a record."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Callable, Sequence
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...quantities import require_kind, require_path, require_row, shown
+from .code_spectrum import CodeSpectrum, FloorSpectrum
+from .motion import GroundMotion
+from .spectrum import scaled_to_spectrum
+
+COMPONENTS = ("ENZ", "XYZ", "12Z", "123", "LTV", "XYV")
+"""Letters that tell the components of a record apart in the names of its files: two horizontal ones, the vertical."""
+
+
+def records_in(
+    folder: str | PathLike[str], read: Callable[[Path], GroundMotion] = GroundMotion.from_esm, pattern: str = "*"
+) -> dict[str, tuple[GroundMotion, ...]]:
+    """The records of a folder, as data bases and REXEL write them: a file for each component.
+
+    The names of the files of one record differ in one letter alone, E, N and Z, X, Y and Z, or 1, 2 and 3. The two
+    horizontal components come first, the vertical one last where there is one. A file that stands alone is a record of
+    one component.
+
+    Args:
+        folder: where the files are.
+        read: reads one file, such as `GroundMotion.from_at2`.
+        pattern: which files, such as "*.ASC".
+
+    Returns:
+        The components of each record, by the name of its files with ? in place of the letter, in order.
+
+    Raises:
+        OSError: if the folder cannot be read.
+        ValueError: for a folder without such files, names that go together in more than one way, or a file that is not
+            what it should be.
+    """
+    folder = require_path("folder", folder)
+    files = {path.name: path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")}
+    names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
+    if not names:
+        raise ValueError(f"{folder} has no file that fits the pattern {shown(pattern)}")
+    return {key: tuple(read(files[name]) for name in members) for key, members in _grouped(names).items()}
+
+
+def _grouped(names: Sequence[str]) -> dict[str, list[str]]:
+    """Names that differ in the letter of the component, by the name with ? in its place."""
+    found: dict[str, list[str]] = {}
+    for name in names:
+        for i, letter in enumerate(name):
+            for letters in COMPONENTS:
+                if letter.upper() in letters:
+                    fits = [
+                        name[:i] + one + name[i + 1 :] for one in (letters if letter.isupper() else letters.lower())
+                    ]
+                    members = [other for other in fits if other in names]
+                    if len(members) > 1 and members[0] == name:
+                        found.setdefault(f"{name[:i]}?{name[i + 1 :]}", members)
+    for name in names:
+        keys = [key for key, members in found.items() if name in members]
+        if len(keys) > 1:
+            raise ValueError(f"{name} goes with other files in more than one way: {', '.join(keys)}; give a pattern")
+        if not keys:
+            found[name] = [name]
+    return dict(sorted(found.items()))
+
+
+def scaled_together(
+    motions: Sequence[GroundMotion],
+    periods: ArrayLike,
+    target: ArrayLike | CodeSpectrum | FloorSpectrum,
+    damping: float = 0.05,
+) -> tuple[GroundMotion, ...]:
+    """The components of a record scaled by one factor to a spectrum, a vertical one by the same.
+
+    The factor is that of `scaled_to_spectrum` for the geometric mean of the spectra of the first two components, or of
+    the only one.
+
+    Args:
+        motions: the components, the horizontal ones first, at least one.
+        periods, target, damping: as `scaled_to_spectrum` takes them.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range, or a motion at rest.
+    """
+    if not isinstance(motions, Sequence) or not motions:
+        raise TypeError(f"motions = {shown(motions)} is not a sequence of at least one GroundMotion")
+    for i, motion in enumerate(motions):
+        require_kind(f"motions[{i}]", motion, GroundMotion)
+    horizontal = motions[:2]
+    alone = [scaled_to_spectrum(motion, periods, target, damping) for motion in horizontal]
+    factors = [made.peak / motion.peak for made, motion in zip(alone, horizontal, strict=True)]
+    factor = float(np.exp(np.log(require_row("factors", factors, "factor")).mean()))
+    return tuple(motion.scaled(factor) for motion in motions)

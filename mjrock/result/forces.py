@@ -1,0 +1,225 @@
+"""Forces of joints, of links and of what stands fixed, at the samples of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.poses import rotations
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects import laden
+from ..problem.masonry.joints_in_space import SpaceJoint
+from ..problem.masonry.lines import free_numbers
+from ..problem.wall.case import Case
+from ..quantities import Array, Integers, require_size
+from .ties import across
+
+ANCHORS = "anchors"
+"""Name of the reaction of all links whose anchors are on no block."""
+
+
+class JointFrames(NamedTuple):
+    """Joints at rest, in the order of their names, and what they join.
+
+    Args:
+        names: of the j joints.
+        middle: of each [m], shape (j, d).
+        axes: unit vectors, the normal out of what is below and then those along the joint, shape (j, d, d).
+        below, above: numbers of the two bodies, -1 for what is fixed, shape (j,).
+        fixed: number of the fixed block below, -1 where what is below is free, shape (j,).
+        blocks: names of the fixed blocks.
+        rest: centroids of the bodies at rest [m], shape (bodies, d).
+    """
+
+    names: tuple[str, ...]
+    middle: Array
+    axes: Array
+    below: Integers
+    above: Integers
+    fixed: Integers
+    blocks: tuple[str, ...]
+    rest: Array
+
+    @classmethod
+    def of(cls, case: Case | MasonryCase) -> JointFrames:
+        """Those of masonry, or the base and the side stop of a wall."""
+        if isinstance(case, Case):
+            sides = 1 if case.stop_top is None else 2
+            middle = np.array([(0.0, 0.0), (-case.wall.b, 0.5 * (case.stop_top or 0.0))])[:sides]
+            axes = np.array([[(0.0, 1.0), (1.0, 0.0)], [(1.0, 0.0), (0.0, -1.0)]])[:sides]
+            names, numbers = ("base", "side")[:sides], np.arange(sides)
+            rest = np.array([[case.wall.centroid_offset, case.wall.centroid_height]])
+            return cls(names, middle, axes, 0 * numbers - 1, 0 * numbers, numbers, names, rest)
+        masonry = case.masonry
+        number, fixed = free_numbers(masonry.blocks), np.array([block.fixed for block in masonry.blocks])
+        below, above = np.array([(joint.below, joint.above) for joint in masonry.joints]).T
+        along = [j.axes if isinstance(j, SpaceJoint) else j.along[None] for j in masonry.joints]
+        axes = np.array([[j.normal, *ways] for j, ways in zip(masonry.joints, along, strict=True)])
+        of_fixed = np.where(fixed, np.cumsum(fixed) - 1, -1)
+        return cls(
+            tuple(joint.name for joint in masonry.joints),
+            np.array([joint.middle for joint in masonry.joints]),
+            axes,
+            number[below],
+            number[above],
+            of_fixed[below],
+            tuple(name for name, held in zip(masonry.names, fixed, strict=True) if held),
+            laden(masonry, case.effects)[1][list(masonry.free)],
+        )
+
+    @property
+    def _from_body(self) -> Array:
+        """Of each joint on a body the vector from its centroid to the middle [m], and the axes, shape (j, 1 + d, d)."""
+        arm = self.middle - np.where(self.below[:, None] < 0, 0.0, self.rest[self.below])
+        return np.concatenate([arm[:, None], self.axes], axis=1)
+
+    def placed(self, case: Case | MasonryCase, t: Array, pose: Array) -> tuple[Array, Array]:
+        """Middles [m] and axes of the joints where what is below them is, shapes (n, j, d) and (n, j, d, d).
+
+        Args:
+            case: the case, for the supports that move.
+            t: times [s], shape (n,).
+            pose: of a `Response` at these times.
+        """
+        d, on_body = self.middle.shape[1], self.below >= 0
+        middle, axes = (np.repeat(part[None], len(t), axis=0) for part in (self.middle, self.axes))
+        of = self.below[on_body]
+        turned = np.matmul(self._from_body[on_body], np.swapaxes(rotations(pose)[:, of], 2, 3))
+        middle[:, on_body], axes[:, on_body] = self.rest[of] + pose[:, of, :d] + turned[:, :, 0], turned[:, :, 1:]
+        for support in case.supports if isinstance(case, MasonryCase) else ():
+            middle[:, self.fixed == self.blocks.index(support.block)] += support.at(t)[:, None]
+        return middle, axes
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Forces:
+    """Forces at the samples of a run that was asked to keep them.
+
+    A force is the one that acts at the pose of its sample, with dashpots and friction. The steps of a solver let it act
+    from half a step before the pose to half a step after it: the sum of the reactions and of the constant forces is the
+    mass of all bodies times their mean acceleration in that time, with gravity and the acceleration of the ground.
+
+    A joint is that of the drawing, in the order of `masonry.joints`; those of a wall are "base" and, where it has one,
+    "side". Its axes turn with the block below it: the normal out of that block, in the plane the direction a quarter
+    turn to the right of it, which is x on a bed joint, and in space `SpaceJoint.axes`. Forces are those on the block
+    above. A joint that explicit steps have handed over to contacts found where blocks are has none any more.
+
+    Args:
+        frames: the joints at rest.
+        normal: normal force, positive where it presses [N], shape (n, joints).
+        shear: force along the joint [N], shape (n, joints), and in space along its two axes, (n, joints, 2).
+        eccentricity: distance from the middle of the joint to where the resultant passes through its plane, along the
+            joint [m], of the shape of `shear`; NaN where nothing presses.
+        links: what each tie, damper or other link pulls with, negative where it pushes [N], shape (n,), by its name.
+        reactions: forces on the masonry by each fixed block, moved or not, along x and z and in space x, y and z [N],
+            shape (n, 2) or (n, 3), by its name: of all its contacts, whether of joints or found where blocks are, and
+            of the links that are anchored on it. "anchors" is that of all links anchored on no block. Of a wall those
+            of "base", "side" and "anchors".
+    """
+
+    frames: JointFrames
+    normal: Array
+    shear: Array
+    eccentricity: Array
+    links: Mapping[str, Array]
+    reactions: Mapping[str, Array]
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints, in their order."""
+        return self.frames.names
+
+    @property
+    def largest_reaction(self) -> float:
+        """The largest reaction of a fixed block, or of the base or the side of a wall, among the samples [N]."""
+        own = [np.linalg.norm(force, axis=1).max() for name, force in self.reactions.items() if name != ANCHORS]
+        return float(max(own))
+
+    def columns(self) -> dict[str, Array]:
+        """All of them as columns of a table, with their units, shape (n,) each."""
+        d = self.frames.middle.shape[1]
+        columns: dict[str, Array] = {}
+        for name, force in self.reactions.items():
+            columns |= {
+                f"reaction {axis} of {name} [N]": force[:, i] for i, axis in enumerate("xz" if d == 2 else "xyz")
+            }
+        for i, name in enumerate(self.joints):
+            columns[f"normal force of {name} [N]"] = self.normal[:, i]
+            for what, values, unit in (("shear", self.shear, "N"), ("eccentricity", self.eccentricity, "m")):
+                along = values[:, i].reshape(len(values), -1).T
+                labels = ("",) if d == 2 else (" 1", " 2")
+                columns |= {f"{what}{k} of {name} [{unit}]": row for k, row in zip(labels, along, strict=True)}
+        return columns | {f"pull of {name} [N]": pulled for name, pulled in self.links.items()}
+
+    def __repr__(self) -> str:
+        return f"<Forces of {len(self.joints)} joints, largest reaction {self.largest_reaction:.4g} N>"
+
+
+class Gathered(NamedTuple):
+    """What a solver has gathered at some poses.
+
+    Args:
+        t: times [s], shape (n,).
+        pose: as of a `Response`.
+        loads: of each joint the force on what is above it [N] and its moment about the origin of the world [N m], shape
+            (n, joints, 3), in space (n, joints, 6).
+        held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
+        pulled: what each link pulls with [N], by its name, shape (n,).
+    """
+
+    t: Array
+    pose: Array
+    loads: Array
+    held: Array
+    pulled: Mapping[str, Array]
+
+
+def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered) -> Forces:
+    """The forces of a run from what was gathered."""
+    d = frames.middle.shape[1]
+    middle, axes = frames.placed(case, gathered.t, gathered.pose)
+    force, about = gathered.loads[..., :d], gathered.loads[..., d:]
+    along = np.matmul(axes, force[..., None])[..., 0]
+    normal, shear = along[..., 0], along[..., 1:]
+    if d == 2:
+        about = about[..., 0] - (middle[..., 1] * force[..., 0] - middle[..., 0] * force[..., 1])
+        arm = -about[..., None]
+    else:
+        about = np.matmul(axes, (about - np.cross(middle, force))[..., None])[..., 0]
+        arm = np.stack([-about[..., 2], about[..., 1]], axis=-1)
+    presses = (normal > 0)[..., None]
+    eccentricity = np.where(presses, arm, np.nan) / np.where(presses, normal[..., None], 1.0)
+    reactions = {name: gathered.held[:, i].copy() for i, name in enumerate(frames.blocks)}
+    add_links(case, gathered, reactions)
+    if d == 2:
+        shear, eccentricity = shear[..., 0], eccentricity[..., 0]
+    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions)
+
+
+def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
+    """Add what links do to the reactions of the blocks that they are anchored on, and to that of all anchors."""
+    for name, pulled in gathered.pulled.items():
+        link = case.links[name]
+        way, anchor = across(case, link, gathered.t, gathered.pose), ANCHORS
+        if isinstance(case, MasonryCase) and link.anchor_block is not None:
+            if link.anchor_block in case.masonry.free:
+                continue
+            anchor = case.masonry.names[link.anchor_block]
+        force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
+        reactions[anchor] = reactions.get(anchor, 0.0) + force
+
+
+def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int]:
+    """How many joints, fixed blocks and links a case has.
+
+    Raises:
+        ValueError: if their forces at so many samples do not fit into memory.
+    """
+    frames = JointFrames.of(case)
+    d, counts = frames.middle.shape[1], (len(frames.names), len(frames.blocks), len(case.links))
+    numbers = samples * (counts[0] * (2 * d - 1) + counts[1] * d + counts[2])
+    require_size("the forces of this answer", numbers, "raise output_step, or leave the forces out")
+    return counts

@@ -1,0 +1,128 @@
+"""Six walls of the literature by limit analysis, with associated friction and without dilatancy.
+
+The walls are those of Ferris and Tin-Loi, International Journal of Mechanical Sciences 43 (2001) 209: blocks of 0.4 m
+by 0.175 m with a coefficient of friction of 0.65 on a fixed base, and a horizontal force of lambda times the weight on
+each block. Prints the multipliers beside the published ones, and draws how the walls fail without dilatancy.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+from tqdm import tqdm
+
+import mjrock as mr
+from mjrock import plotting
+from scripts.shared import cli
+
+LENGTH, HEIGHT, FRICTION = 0.4, 0.175, 0.65
+"""Of a whole block [m], and of the joints [-]."""
+WALLS: dict[int, tuple[str, dict[str, list[float]]]] = {
+    1: ("ababab", {"a": [0.5, 1, 1, 1, 1, 0.5], "b": [1, 1, 1, 1, 1]}),
+    2: ("ababababab", {"a": [0.5, 1, 1, 1, 1, 0.5], "b": [1, 1, 1, 1, 1]}),
+    3: (
+        "abadcdcdaba",
+        {"a": [1, 1, 1, 1], "b": [0.5, 1, 1, 1, 0.5], "c": [1, 0.5, -1, 0.5, 1], "d": [0.5, 1, -1, 1, 0.5]},
+    ),
+    4: (
+        "abadcdcdaba",
+        {
+            "a": [0.5, 1, 1, 1, 1, 0.5],
+            "b": [1, 1, 1, 1, 1],
+            "c": [0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5],
+            "d": [1, -1, 1, -1, 1],
+        },
+    ),
+    5: (
+        "abadcdcdabadcdcdaba",
+        {"a": [0.5, 1, 1, 0.5], "b": [1, 1, 1], "c": [0.5, 0.5, -1, 0.5, 0.5], "d": [1, -1, 1]},
+    ),
+    6: (
+        "ababdcdcdbabdcdcdbaba",
+        {
+            "a": [0.5, 1, 1, 1, 1, 1, 1, 0.5],
+            "b": [1, 1, 1, 1, 1, 1, 1],
+            "c": [1, 0.5, -1, 0.5, 1, 0.5, -1, 0.5, 1],
+            "d": [0.5, 1, -1, 1, 1, -1, 1, 0.5],
+        },
+    ),
+}
+"""Courses of each wall from the lowest upwards, and the lengths of their blocks over a whole one; negative: a gap."""
+PUBLISHED = {
+    1: (0.643, 0.640),
+    2: (0.580, 0.563),
+    3: (0.404, 0.356),
+    4: (0.332, 0.264),
+    5: (0.240, 0.215),
+    6: (0.347, 0.297),
+}
+"""Multipliers with associated friction and without dilatancy [-]."""
+
+
+def rectangles(courses: Sequence[Sequence[float]]) -> list[tuple[float, float, float, float]]:
+    """Left, lower, right and upper side of each block [m]."""
+    found = []
+    for i, course in enumerate(courses):
+        x = 0.0
+        for share in course:
+            if share > 0:
+                found.append((x * LENGTH, i * HEIGHT, (x + share) * LENGTH, (i + 1) * HEIGHT))
+            x += abs(share)
+    return found
+
+
+def masonry_of(courses: Sequence[Sequence[float]], friction: float = FRICTION) -> mr.Masonry:
+    """Courses of blocks on a fixed base."""
+    long = LENGTH * sum(abs(share) for share in courses[0])
+    corners = [(-1.0, -0.5, long + 1.0, 0.0), *rectangles(courses)]
+    blocks = [
+        mr.Polygon([(a, b), (c, b), (c, d), (a, d)], fixed=i == 0, name="base" if i == 0 else None)
+        for i, (a, b, c, d) in enumerate(corners)
+    ]
+    return mr.Masonry(blocks, k_n=1e10, friction=friction)
+
+
+def wall(number: int) -> mr.Masonry:
+    """One of the six walls."""
+    order, courses = WALLS[number]
+    return masonry_of([courses[name] for name in order])
+
+
+def drawn(found: dict[int, mr.Collapse]) -> Figure:
+    """How each wall fails without dilatancy."""
+    rows = 1 if len(found) < 3 else 2
+    figure = Figure(figsize=(9.6, 3.6 * rows), layout="constrained")
+    axes = figure.subplots(rows, -(-len(found) // rows), squeeze=False).ravel()
+    for ax, (number, collapse) in zip(axes, found.items(), strict=True):
+        plotting.mechanism(ax, collapse)
+        ax.set_title(rf"wall {number}, $\lambda$ = {collapse.multiplier:.3f}", fontsize=10)
+    return figure
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Ask limit analysis, print the table and draw."""
+    args = cli.parser(__doc__, "limit_analysis").parse_args(argv)
+    out, found, rows = cli.folder(args.out), {}, []
+    for number in tqdm([1, 4] if args.quick else list(WALLS), desc="walls", disable=None, leave=False):
+        masonry = wall(number)
+        begun = time.perf_counter()
+        bound = mr.collapse_multiplier(masonry).multiplier
+        half = time.perf_counter()
+        found[number] = mr.collapse_multiplier(masonry, associated=False)
+        spent = half - begun, time.perf_counter() - half
+        cells: list[object] = [number, len(masonry.free)]
+        for one, published in zip((bound, found[number].multiplier), PUBLISHED[number], strict=True):
+            cells += [published, round(one, 4), round(100 * (one / published - 1), 1) + 0.0]
+        others = " ".join(f"{other:.4f}" for other in found[number].others)
+        rows.append([*cells, others, *(f"{one:.2f} s" for one in spent)])
+    plotting.save(drawn(found), out / "limit_analysis.png")
+    header = ["wall", "blocks", "associated, published", "associated", "error [%]", "without dilatancy, published"]
+    header += ["without dilatancy", "its error [%]", "others found", "time", "its time"]
+    cli.report(out / "limit_analysis", cli.table(header, rows), header[:-2], [row[:-2] for row in rows])
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

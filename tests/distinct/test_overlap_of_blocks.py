@@ -1,0 +1,54 @@
+"""The volume that two blocks have in common: against closed forms, and however thin it is."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import mjrock as mr
+from mjrock.distinct.overlap import common_volume
+from mjrock.distinct.solids import Solids
+
+
+def common(first, second, place=(0.0, 0.0, 0.0), turn=None):
+    """Of a block and another at a place, both turned together."""
+    about = [np.mean(block.corners, axis=0) for block in (first, second)]
+    solids = Solids.about([first, second], np.array(about))
+    change = np.zeros((2, 3, 3)) if turn is None else np.array([turn.as_matrix() - np.eye(3)] * 2)
+    apart = np.array([[0.0, 0.0, 0.0], place])
+    return common_volume(solids.moved(apart if turn is None else turn.apply(apart), change), 0, 1)
+
+
+BOX = mr.Polyhedron.box((0.4, 0.2, 0.2))
+TURNS = [None, *Rotation.random(20, random_state=np.random.default_rng(1))]
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("deep", [1e-1, 1e-3, 2e-5, 1e-7, 1e-9])
+def test_boxes_that_lie_inside_each_other_by_a_little(deep, turn):
+    """Side by side, overlapping by a depth along x; and at a corner, by a depth along each axis."""
+    volume = common(BOX, BOX, (0.4 - deep, 0.05, 0.0), turn)
+    assert volume == pytest.approx(deep * 0.15 * 0.2, rel=1e-6, abs=1e-16)
+    at_corner = common(BOX, BOX, (0.4 - deep, 0.2 - deep, 0.2 - deep), turn)
+    assert at_corner == pytest.approx(deep**3, rel=1e-5, abs=1e-17)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_faces_that_lie_in_one_plane_count_once(turn):
+    assert common(BOX, BOX, turn=turn) == pytest.approx(BOX.volume)
+    assert common(BOX, BOX, (0.1, 0.0, 0.0), turn) == pytest.approx(0.3 * 0.2 * 0.2)
+    assert common(BOX, mr.Polyhedron.box((0.2, 0.2, 0.1)), turn=turn) == pytest.approx(0.2 * 0.2 * 0.1)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_blocks_that_only_touch_or_stand_apart_have_nothing_in_common(turn):
+    for place in ((0.4, 0.0, 0.0), (0.4, 0.2, 0.2), (0.4 + 1e-9, 0.0, 0.0), (1.0, 1.0, 1.0)):
+        assert common(BOX, BOX, place, turn) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_slightly_turned_blocks_that_overlap_by_some_hundredths_of_a_millimetre():
+    """Half of a wedge: one end of the upper block lies 0.1 mm inside the lower one."""
+    angle = 1e-4 / 0.4
+    tilted = mr.Polyhedron([(x, y, z + angle * (x - 0.2)) for x, y, z in BOX.corners])
+    lower = mr.Polyhedron(BOX.corners - (0.0, 0.0, 0.2))
+    solids = Solids.about([lower, tilted], np.zeros((2, 3)))
+    assert common_volume(solids, 0, 1) == pytest.approx(0.5 * 0.4 * 1e-4 * 0.2, rel=1e-3)

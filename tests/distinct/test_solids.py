@@ -1,0 +1,29 @@
+"""Blocks of the plane as solids."""
+
+import math
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock.distinct.solids import prism
+from mjrock.geometry.hull import area_vector
+
+SIDES = {
+    "rectangle": [(0, 0), (0.5, 0), (0.5, 0.2), (0, 0.2)],
+    "triangle": [(0, 0), (0.5, -0.1), (0.2, 0.4)],
+    "pentagon": [(math.cos(a), math.sin(a)) for a in 0.3 + 2 * math.pi * np.arange(5) / 5],
+}
+
+
+@pytest.mark.parametrize("of", SIDES)
+def test_a_prism_is_the_hull_of_its_corners(of):
+    block, half = mr.Polygon(SIDES[of]), 0.35
+    solid, hull = prism(block, half), mr.Polyhedron(prism(block, half).corners)
+    assert sorted(map(sorted, solid.faces)) == sorted(map(sorted, hull.faces))
+    for face, normal in zip(solid.faces, solid.normals, strict=True):  # counterclockwise as seen from outside
+        turned = area_vector(solid.corners[list(face)])
+        np.testing.assert_allclose(turned / np.linalg.norm(turned), normal, atol=1e-12)
+    assert len(solid.edges) == len(hull.edges)
+    np.testing.assert_allclose(np.abs(solid.edges @ hull.edges.T).max(axis=1), 1.0, rtol=1e-12)
+    assert solid.volume == pytest.approx(hull.volume, rel=1e-12)

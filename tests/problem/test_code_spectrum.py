@@ -1,0 +1,203 @@
+"""Spectra of codes against values worked out by hand, continuity, and the motion of floors beside the formula."""
+
+import math
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+
+G = mr.GRAVITY
+
+
+def ntc(soil="C", **other):
+    given = {"ag": 0.261 * G, "F0": 2.36, "Tc": 0.347, "soil": soil} | other
+    return mr.code_spectrum("NTC 2018", **given)
+
+
+@pytest.mark.parametrize(
+    ("soil", "S", "TC"),
+    [  # by hand: S_S and C_C of table 3.2.IV with F_0 a_g / g = 0.61596 and T_C* = 0.347 s
+        ("A", 1.0, 0.347),
+        ("B", 1.4 - 0.4 * 0.61596, 1.1 * 0.347**0.8),
+        ("C", 1.7 - 0.6 * 0.61596, 1.05 * 0.347**0.67),
+        ("D", 2.4 - 1.5 * 0.61596, 1.25 * 0.347**0.5),
+        ("E", 2.0 - 1.1 * 0.61596, 1.15 * 0.347**0.6),
+    ],
+)
+def test_the_site_of_ntc(soil, S, TC):
+    found = ntc(soil)
+    assert pytest.approx(S) == found.S
+    assert pytest.approx(found.TC) == TC
+    assert pytest.approx(TC / 3) == found.TB
+    assert pytest.approx(4 * 0.261 + 1.6) == found.TD
+    assert pytest.approx(1.4 * S) == ntc(soil, topography="T4").S
+
+
+@pytest.mark.parametrize(
+    ("soil", "ag", "S"),
+    [("B", 0.05, 1.2), ("C", 0.05, 1.5), ("C", 0.6, 1.0), ("D", 0.05, 1.8), ("D", 0.6, 0.9), ("E", 0.05, 1.6)],
+)
+def test_bounds_of_the_soil_factor(soil, ag, S):
+    assert pytest.approx(S) == ntc(soil, ag=ag * G).S
+
+
+@pytest.mark.parametrize(
+    ("code", "soil", "T", "over_ag"),
+    [  # S_e / a_g by EN 1998-1:2004, 3.2.2.2, at the corners and between them
+        ("EC8 type 1", "A", 0.0, 1.0),
+        ("EC8 type 1", "A", 0.3, 2.5),
+        ("EC8 type 1", "B", 0.075, 1.2 * (1 + 0.5 * 1.5)),
+        ("EC8 type 1", "C", 1.2, 1.15 * 2.5 * 0.5),
+        ("EC8 type 1", "D", 4.0, 1.35 * 2.5 * 0.8 * 2.0 / 16.0),
+        ("EC8 type 1", "E", 0.5, 1.4 * 2.5),
+        ("EC8 type 2", "A", 0.5, 2.5 * 0.5),
+        ("EC8 type 2", "B", 0.05, 1.35 * 2.5),
+        ("EC8 type 2", "C", 2.4, 1.5 * 2.5 * 0.25 * 1.2 / 2.4**2),
+        ("EC8 type 2", "D", 0.3, 1.8 * 2.5),
+        ("EC8 type 2", "E", 0.0, 1.6),
+    ],
+)
+def test_eurocode(code, soil, T, over_ag):
+    assert float(mr.code_spectrum(code, ag=2.0, soil=soil)(T)) == pytest.approx(2.0 * over_ag)
+
+
+def test_damping_lowers_it_to_a_bound():
+    spectrum = ntc()
+    assert spectrum(0.3, 0.10) == pytest.approx(spectrum(0.3) * math.sqrt(10 / 15))
+    assert spectrum(0.3, 0.5) == pytest.approx(spectrum(0.3) * 0.55)
+    assert ntc(damping=0.1)(0.3) == pytest.approx(spectrum(0.3, 0.10))
+
+
+@pytest.mark.parametrize("spectrum", [ntc(), mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")], ids=["NTC", "EC8"])
+def test_displacement(spectrum):
+    T = np.array([0.3, 1.0, 3.0])
+    np.testing.assert_allclose(spectrum.displacement(T), spectrum(T) * (T / (2 * math.pi)) ** 2)
+    ground = 0.025 * spectrum.ag * spectrum.S * spectrum.TC * spectrum.TD  # d_g, equation 3.2.15
+    assert spectrum.displacement(10.0) == pytest.approx(ground)
+    assert spectrum.displacement(50.0) == pytest.approx(ground)
+    for corner in (spectrum.TB, spectrum.TC, spectrum.TD):  # 0.025 stands for 1 / (4 pi^2), 1.3 % more, at T_E
+        assert spectrum(corner - 1e-9) == pytest.approx(float(spectrum(corner + 1e-9)))
+    assert spectrum.displacement(spectrum.TE - 1e-9) == pytest.approx(
+        float(spectrum.displacement(spectrum.TE + 1e-9)), rel=0.014
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (
+            lambda: mr.code_spectrum("NTC 2008", ag=2.0, soil="A"),
+            "code = 'NTC 2008' is not one of NTC 2018, EC8 type 1",
+        ),
+        (lambda: ntc(soil="F"), "soil = 'F' is not one of A, B, C, D, E"),
+        (lambda: ntc(topography="T5"), "topography = 'T5' is not one of T1"),
+        (lambda: ntc(ag=26.1), "ag = 26.1 m/s2 is outside the valid range 0.05 to 10 m/s2"),
+        (lambda: ntc(Tc=347.0), "Tc = 347 s is outside"),
+        (lambda: ntc(F0=None), "F0 is missing: NTC 2018 takes ag, F0 and Tc"),
+        (lambda: mr.code_spectrum("EC8 type 1", ag=2.0, soil="A", F0=2.4), "F0 = 2.4 is of NTC 2018"),
+        (lambda: mr.code_spectrum("EC8 type 1", ag=2.0, soil="A", topography="T2"), "topography = T2 is of NTC 2018"),
+        (lambda: ntc()(-1.0), "T = -1 s is outside"),
+        (lambda: ntc()(1.0, 5.0), "damping = 5 is outside"),
+        (lambda: ntc().at_height([0.3, 0.1]), "period has 2 values, participation 1 and height 1"),
+        (lambda: ntc().at_height(0.3, height=6.0), "height = 6 is outside the valid range -1 to 1"),
+    ],
+)
+def test_what_cannot_be(call, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        call()
+
+
+def test_an_acceleration_in_g_is_doubted():
+    with pytest.warns(mr.Implausible, match=r"ag = 0.261 m/s2 is 0.0266 g; is it in m/s2"):
+        ntc(ag=0.261)
+
+
+RECORDS = [mr.GroundMotion.synthetic(3.0, 12.0, seed=seed) for seed in range(6)]
+PERIOD, DAMPING, PARTICIPATION, HEIGHT = 0.4, 0.02, 1.3, 0.8
+
+
+class TestFloors:
+    """A floor of a building of one mode."""
+
+    def test_the_motion_of_the_top_of_an_oscillator(self):
+        """Its peak is the pseudo-acceleration of the oscillator but for its damping."""
+        for record in RECORDS:
+            floor = record.through_building(PERIOD, DAMPING)
+            assert floor.peak == pytest.approx(float(mr.response_spectrum(record, PERIOD, DAMPING).Sa[0]), rel=4e-3)
+
+    def test_a_base_does_not_feel_the_building(self):
+        floor = RECORDS[0].through_building([0.4, 0.1], participation=[1.3, 0.4], height=0.0 * np.ones(2))
+        np.testing.assert_allclose(floor(RECORDS[0].dt * np.arange(500)), RECORDS[0].accel[:500], atol=1e-12)
+
+    def test_a_stiff_building_moves_with_the_ground(self):
+        record = mr.GroundMotion.sine(2.0, 2.0, cycles=2.0)
+        floor = record.through_building(0.02, 0.05, participation=1.0, height=1.0)
+        assert floor.peak == pytest.approx(record.peak, rel=0.01)
+
+    def test_the_steady_state_is_that_of_the_closed_form(self):
+        """Transmissibility sqrt(1 + (2 xi r)^2) / sqrt((1 - r^2)^2 + (2 xi r)^2), r the ratio of the frequencies."""
+        period, xi = 0.5, 0.1
+        record = mr.GroundMotion.sine(1.0, 0.4, cycles=50.0, samples=100)
+        r = period / 0.4
+        closed = math.sqrt((1 + (2 * xi * r) ** 2) / ((1 - r**2) ** 2 + (2 * xi * r) ** 2))
+        floor = record.through_building(period, xi, participation=1.2, height=0.5)
+        late = (floor.dt * np.arange(len(floor.accel)) > 15) & (floor.dt * np.arange(len(floor.accel)) < 20)
+        # 0.4 of the ground and 0.6 of the oscillator, out of phase
+        phase = math.atan2(2 * xi * r**3, 1 - r**2 + (2 * xi * r) ** 2)
+        both = abs(0.4 + 0.6 * closed * np.exp(-1j * phase))
+        assert np.abs(floor.accel[late]).max() == pytest.approx(both, rel=2e-3)
+
+    def test_the_formula_of_the_commentary_is_the_mean_of_floors(self):
+        """Records scaled to the spectrum of the ground, through the oscillator. The formula spreads the peak over 0.8
+        to 1.1 of the period of the mode: it lies below the mean at resonance, and up to twice above it beside."""
+        spectrum = ntc()
+        T = np.array([0.1, 0.2, 0.4, 0.6, 0.8, 1.2])
+        scaled = [mr.scaled_to_spectrum(record, np.geomspace(0.1, 2.0, 20), spectrum) for record in RECORDS]
+        floors = [
+            record.through_building(PERIOD, 0.05, participation=PARTICIPATION, height=HEIGHT) for record in scaled
+        ]
+        mean = np.mean([mr.response_spectrum(floor, T).Sa for floor in floors], axis=0)
+        formula = spectrum.at_height(PERIOD, 0.05, participation=PARTICIPATION, height=HEIGHT)(T)
+        at_resonance = T == PERIOD
+        assert 0.7 < (formula / mean)[at_resonance] < 1.0
+        assert (formula / mean)[~at_resonance].min() > 1.0
+        assert (formula / mean)[~at_resonance].max() < 2.2
+
+    def test_far_from_the_mode_it_is_the_ground(self):
+        spectrum = ntc()
+        floor = spectrum.at_height(0.1, participation=1.0, height=0.3)
+        assert floor(4.0) == pytest.approx(float(spectrum(4.0)), rel=0.05)
+        assert floor(4.0) >= spectrum(4.0)
+        assert spectrum.at_height(0.4, height=0.0)(0.4) == pytest.approx(float(spectrum(0.4)))
+        assert floor.displacement(2.0) == pytest.approx(float(floor(2.0)) / math.pi**2)
+
+    def test_at_once_it_is_the_floor_itself(self):
+        """S_eZ(0) adds the squares of the peak of the ground and of gamma psi S_e(T_1, xi_1)."""
+        spectrum = ntc()
+        floor = spectrum.at_height(0.3, 0.05, participation=1.2, height=0.5)
+        own = 0.6 * float(spectrum(0.3)) * math.sqrt(1.01)
+        assert floor.peak == pytest.approx(math.hypot(own, spectrum.peak))
+
+
+def test_a_mechanism_on_a_floor():
+    """The check of a wall with the spectrum of the ground, of a floor, and by the function that both stand for."""
+    wall = mr.Block.from_size(0.5, 4.0, 5.0, 1800.0)
+    case, spectrum = mr.Case(wall, 0.0, 1.0), ntc()
+    floor = spectrum.at_height(0.25, participation=1.3, height=0.7)
+    for demand in (spectrum, floor):
+        found = mr.mechanism_check(case, demand)
+        by_hand = mr.mechanism_check(case, lambda T, xi, demand=demand: float(demand.displacement(T, xi)))
+        assert found.states["SLV"].demand == by_hand.states["SLV"].demand
+        assert found.linear_ratio == pytest.approx(found.linear / demand.peak)
+        assert by_hand.linear_ratio is None
+        assert "capacity over demand SLV, linear" in found.table()
+    assert mr.mechanism_check(case, floor).linear_ratio < mr.mechanism_check(case, spectrum).linear_ratio
+
+
+def test_a_record_through_a_building_is_a_demand_and_a_motion():
+    record = RECORDS[0].through_building(0.25, participation=1.3, height=0.7)
+    wall = mr.Block.from_size(0.5, 4.0, 5.0, 1800.0)
+    case = mr.Case(wall, 0.0, 2.0, motion=record)
+    assert mr.mechanism_check(case, record).peak == record.peak
+    assert mr.solve_analytical(case, e=mr.Restitution.from_geometry(wall)).t[-1] == pytest.approx(2.0)

@@ -1,0 +1,59 @@
+"""Ties from bar, steel, plate and masonry, against closed forms worked out by hand."""
+
+import math
+
+import pytest
+
+import mjrock as mr
+from mjrock.problem.wall.tie import strengths_of_bar
+
+BAR = {
+    "height": 6.0, "diameter": 0.024, "yield_stress": 235e6, "length": 8.0, "plate": 0.3, "thickness": 0.6,
+    "shear_strength": 0.03e6, "compressive_strength": 2e6,
+}  # fmt: skip
+
+
+def test_the_least_strength_governs():
+    """A bar of 24 mm yields at 106 kN, a plate of 0.3 m pulls through a wall of 0.6 m at 65 kN, and bears 180 kN."""
+    found = strengths_of_bar(0.024, 235e6, 0.3, 0.6, 0.03e6, 2e6)
+    assert found == {
+        "bar": pytest.approx(235e6 * math.pi * 0.012**2),
+        "punching": pytest.approx(0.03e6 * 2 * 0.6 * (0.3 + 0.3 + 1.2)),
+        "bearing": pytest.approx(2e6 * 0.09),
+    }
+    tie = mr.Tie.of_bar(**BAR, slack=0.005, ultimate=0.03)
+    assert tie.strength == pytest.approx(64.8e3)
+    assert tie.stiffness == pytest.approx(210e9 * math.pi * 0.012**2 / 8.0)
+    assert (tie.height, tie.length, tie.slack, tie.ultimate) == (6.0, 8.0, 0.005, 0.03)
+
+
+@pytest.mark.parametrize(
+    ("other", "strength"),
+    [
+        ({"plate": (0.2, 0.1)}, 2e6 * 0.02),
+        ({"plate": 1.0}, 235e6 * math.pi * 0.012**2),
+        ({"number": 3}, 3 * 64.8e3),
+    ],
+)
+def test_plates_and_numbers(other, strength):
+    tie = mr.Tie.of_bar(**BAR | other)
+    assert tie.strength == pytest.approx(strength)
+    count = other.get("number", 1)
+    assert tie.stiffness == pytest.approx(count * 210e9 * math.pi * 0.012**2 / 8.0)
+
+
+@pytest.mark.parametrize(
+    ("other", "complaint"),
+    [
+        ({"diameter": 24.0}, "diameter of the bar = 24 m is outside the valid range 0.004 to 0.2 m"),
+        ({"yield_stress": 235.0}, "yield_stress of the bar = 235 Pa is outside"),
+        ({"plate": 300.0}, "plate = 300 m is outside the valid range 0.02 to 3 m"),
+        ({"shear_strength": 0.03}, "shear_strength of the masonry = 0.03 Pa is outside"),
+        ({"compressive_strength": 2.0}, "compressive_strength of the masonry = 2 Pa is outside"),
+        ({"number": 0}, "number of ties = 0 is outside"),
+        ({"length": -1.0}, "length of the tie = -1 m is outside"),
+    ],
+)
+def test_what_cannot_be(other, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        mr.Tie.of_bar(**BAR | other)

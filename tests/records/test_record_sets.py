@@ -1,0 +1,61 @@
+"""Folders of records: which files go together, and one factor for their components."""
+
+import numpy as np
+import pytest
+from record_files import body, esm, written
+
+import mjrock as mr
+
+SPECTRUM = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")
+
+
+def stations(folder, *names):
+    for name in names:
+        written(folder / name, esm(STREAM=name.split(".")[3]) + body("esm"))
+
+
+def test_components_of_a_record_go_together(tmp_path):
+    stations(tmp_path, "IT.AMT..HGN.ASC", "IT.AMT..HGE.ASC", "IT.AMT..HGZ.ASC", "IT.NRC..HNE.ASC", "IT.NRC..HNN.ASC")
+    found = mr.records_in(tmp_path)
+    assert list(found) == ["IT.AMT..HG?.ASC", "IT.NRC..HN?.ASC"]
+    assert [motion.header["STREAM"] for motion in found["IT.AMT..HG?.ASC"]] == ["HGE", "HGN", "HGZ"]
+    assert [motion.header["STREAM"] for motion in found["IT.NRC..HN?.ASC"]] == ["HNE", "HNN"]
+
+
+def test_other_formats_and_single_files(tmp_path):
+    for name in ("000199xa.txt", "000199ya.txt", "alone.txt", "notes.md"):
+        written(tmp_path / name, "0\n1\n-2\n1\n0\n")
+    read = lambda path: mr.GroundMotion.from_csv(path, "m/s2", dt=0.01)  # noqa: E731
+    found = mr.records_in(tmp_path, read, "*.txt")
+    assert {name: len(members) for name, members in found.items()} == {"000199?a.txt": 2, "alone.txt": 1}
+
+
+@pytest.mark.parametrize(
+    ("names", "pattern", "complaint"),
+    [
+        ((), "*", "has no file that fits the pattern '\\*'"),
+        (("a.ASC",), "*.at2", "has no file that fits the pattern"),
+        (("EE", "EN", "NE"), "*", "EE goes with other files in more than one way: "),
+    ],
+)
+def test_what_cannot_be_told(tmp_path, names, pattern, complaint):
+    for name in names:
+        written(tmp_path / name, esm() + body("esm"))
+    with pytest.raises(ValueError, match=complaint):
+        mr.records_in(tmp_path, pattern=pattern)
+
+
+def test_a_damaged_file_is_named(tmp_path):
+    written(tmp_path / "a.asc", esm() + "0\n1\n")
+    with pytest.raises(ValueError, match=r"a\.asc: 2 samples; the header states 6"):
+        mr.records_in(tmp_path)
+
+
+def test_one_factor_for_all_components():
+    motions = [mr.GroundMotion.synthetic(peak, 10.0, seed=seed) for seed, peak in enumerate((3.0, 1.5, 2.0))]
+    T = np.geomspace(0.2, 2.0, 10)
+    made = mr.scaled_together(motions, T, SPECTRUM)
+    factors = [after.peak / before.peak for after, before in zip(made, motions, strict=True)]
+    np.testing.assert_allclose(factors, factors[0])
+    mean = np.exp(np.mean([np.log(mr.response_spectrum(motion, T).Sa) for motion in made[:2]], axis=0))
+    assert np.exp(np.log(mean / SPECTRUM(T)).mean()) == pytest.approx(1.0)
