@@ -101,7 +101,7 @@ class Books(NamedTuple):
     @property
     def size(self) -> int:
         """Accounts that a ledger keeps at each sample."""
-        return 5 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
+        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
 
 
 class Samples(NamedTuple):
