@@ -67,6 +67,7 @@ OWN = {
     "distinct/links.py": ("breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
+    "problem/masonry/joint_forces.py": ("collapse_without_dilatancy",),
     "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
     "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
     "engine/sliding.py": ("slipping", "sliding"),

@@ -20,11 +20,12 @@ from ..quantities import GRAVITY, Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Places, Poses, in_pairs, places_of, take_over
+from .limit import Side, shares_within, ways_of
 from .looking import Wear, held, nearest, wears
-from .pair_law import PairLaw, are_among, pair_number
+from .pair_law import SHARED, PairLaw, are_among, pair_number
 from .rows import POINT, Rows, joined, rows
 from .system import Books, System
-from .turning import quaternions, rotations
+from .turning import quaternions, roots_of_masses, rotations
 
 LOOK, SOONEST = 5e-3, 5e-4
 """Longest and shortest time between two looks [s]."""
@@ -43,6 +44,9 @@ ALIKE = 0.7
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
 without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
+STABLE = 0.5
+"""Longest step over the longest one with which the places of a block alone are stable [-]. Intact joints, and places of
+blocks that have not moved, act on it besides."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
 TOWARDS = 0.4
@@ -94,7 +98,7 @@ class Encounters:
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
-        self.kind, self.start = system.lines.dtype, self.poses(system)
+        self.kind, self.start, self.roots = system.lines.dtype, self.poses(system), roots_of_masses(system.bodies)
         self.limits, free, slip, gap = self._limits(), self.free, np.zeros(len(left)), np.zeros(len(left))
         self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
         self.met = self._nothing_met()
@@ -147,9 +151,9 @@ class Encounters:
         about[self.free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[self.free]
         return velocity, about
 
-    def look_on(self, system: System, books: Books) -> tuple[System, Books, float]:
+    def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, float]:
         """The system with the lines of the encounters that may happen until the next look, its books with room for
-        them, and the time until then [s]."""
+        them, and the time until then [s]. With steps of h [s] they are stable."""
         met, wear = self.met, self.wear
         if not (wears(system, wear, LOOK) or met.watched.any() or system.supports.moved.any()):
             return system, books, LOOK
@@ -168,7 +172,7 @@ class Encounters:
         known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
         found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
         until, soon = self._until(found, velocity, about)
-        system = self._renewed(system, books, poses, found.only(soon), worn[wear.pairs], stays)
+        system = self._renewed(system, books, poses, found.only(soon), np.append(worn[wear.pairs], ~stays), h)
         return system, books.with_room(len(system.lines)), until
 
     def _until(self, found: Found, velocity: Array, about: Array) -> tuple[float, Flags]:
@@ -182,26 +186,26 @@ class Encounters:
         until = min(max(soonest, SOONEST), LOOK)
         return until, found.gap < SURE * (speed * until + 2 * FALL + NEAR * size)
 
-    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, worn: Flags, stays: Flags) -> System:
+    def _renewed(self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float) -> System:
         """The system with these places. Pairs that have not moved keep their lines.
 
         Args:
             system, books: the system, and the account of what the springs of vanished lines have lost.
             poses: of all blocks.
             found: places that may touch.
-            worn: lines of joints that are handed over now, shape (lines of joints,).
-            stays: lines of encounters whose blocks have not moved, shape (lines of encounters,).
+            of_gone: lines of joints that are handed over, and of encounters whose blocks have moved, shape (lines,).
+            h: length of a step [s].
         """
         met, count = self.met, len(self.wear.pairs)
         lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
         if len(system.bonds):
             released(lines[:count], system.bonds, worn)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
-        of_gone = np.append(worn, ~stays)
+        worn, stays = of_gone[:count], ~of_gone[count:]
         before, gone = held(system, of_gone), lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
         gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])
-        law = self.law.of_places(number, found.share, found.area, self.count)
+        law = self._stable(self.law.of_places(number, found.share, found.area, self.count), found, poses, h)
         slack = self._slack(found, number, old, gone_slack, gone["k"], law["k"])
         new = self._lines(found, law, slack, poses)
         pressed = np.maximum(-found.gap - slack, 0.0)
@@ -252,6 +256,20 @@ class Encounters:
             **law,
         )
         return np.asarray(lines)
+
+    def _stable(self, law: dict[str, Array], found: Found, poses: Poses, h: float) -> dict[str, Array]:
+        """The law of places, softened where a step of h [s] asks for it."""
+        ways = ways_of(found.normal)
+        first, second = (
+            Side(
+                self.body[block],
+                poses.turned_back(block, found.place - poses.drawn[block] - poses.moved[block]),
+                tuple(poses.turned_back(block, way) for way in ways),
+            )
+            for block in (found.face, found.other)
+        )
+        share = shares_within((first, second), law, self.roots, h / STABLE)
+        return law | {name: share * law[name] for name in SHARED}
 
     def _slack(
         self, found: Found, pair: Integers, old: Places, slack: Array, stiffness: Array, stiffer: Array

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.sparse import block_diag, csr_array
 
 from ..compiled import inlined, jitable
 from ..geometry.vectors import (
@@ -258,9 +257,11 @@ def quaternions(bodies: Rows) -> Array:
     return np.asarray(bodies["quaternion"])
 
 
-def root_of_masses(bodies: Rows) -> csr_array:
-    """A matrix whose product with its transpose is the inverse of the masses at rest, shape (n nv, n nv)."""
-    blocks = []
-    for mass, root in zip(bodies["mass"], np.linalg.cholesky(bodies["inverse_inertia"]), strict=True):
-        blocks += [np.eye(bodies["rest"].shape[1]) / np.sqrt(mass), root]
-    return csr_array(block_diag(blocks, format="csr"))
+def roots_of_masses(bodies: Rows) -> Array:
+    """Of each body a matrix whose product with its transpose is the inverse of its masses at rest, (n, nv, nv)."""
+    d = bodies["rest"].shape[1]
+    nv = d + bodies["inverse_inertia"].shape[1]
+    roots = np.zeros((len(bodies), nv, nv))
+    roots[:, range(d), range(d)] = 1 / np.sqrt(np.asarray(bodies["mass"]))[:, None]
+    roots[:, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"])
+    return roots

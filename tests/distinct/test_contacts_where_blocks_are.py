@@ -141,3 +141,31 @@ def test_a_heap_comes_to_rest():
     assert run.stats["overlap"] < 0.01
     assert run.ledger.kinetic[-1] < 1e-9
     assert np.abs(run.pose[-1] - run.pose[600]).max() < 1e-5
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_pillar_lands_on_its_edge_with_the_default_step(in_space):
+    """Its corner moves four times as easily as its base, whose joint decides the step."""
+    blocks = [GROUND, box(-0.1, 0.1, 0, 2)]
+    velocity = (0, 0, 1.5)
+    if in_space:
+        blocks, velocity = [mr.Polyhedron.prism(block) for block in blocks], (0, 0, 0, 0, 1.5, 0)
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.5, xi=0.05)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 2.0, velocity=[velocity]), ledger=True, output_step=5e-3)
+    assert np.abs(run.energy_residual).max() < 1e-3 * run.ledger.kinetic.max()
+    assert run.stats["overlap"] < 0.01
+
+
+@pytest.mark.parametrize(("share", "xi"), [(0.8, 0.0), (0.8, 0.1), (0.98, 0.1)])
+def test_a_plate_between_two_walls_is_stable_with_steps_that_its_base_allows(share, xi):
+    blocks = [
+        GROUND,
+        box(-0.05, 0.05, 0, 2),
+        box(-1, -0.06, 0, 2, fixed=True, name="left"),
+        box(0.06, 1, 0, 2, fixed=True, name="right"),
+    ]
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.3, xi=xi)
+    limit = mr.solve_explicit(mr.MasonryCase(masonry, 1e-3)).stats["stable_timestep"]
+    case = mr.MasonryCase(masonry, 1.0, velocity=[(0.2, 0, 0)])
+    run = mr.solve_explicit(case, timestep=share * limit, output_step=5e-3)
+    assert np.abs(run.velocity).max() < 0.24

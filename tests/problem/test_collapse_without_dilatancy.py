@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 import mjrock as mr
+from mjrock.problem.masonry.limit_state import Programme, states_without_dilatancy
 from scripts.checks import limit_analysis as study
 
 B, H = 0.4, 1.6
@@ -88,7 +89,7 @@ def test_a_box_in_space_slides_without_rising(degrees):
 
 
 def test_an_arch_that_does_not_slide_has_one_answer_in_the_plane_and_in_space():
-    plane = mr.Masonry.arch(5.0, 0.9, voussoirs=7, k_n=1e9, xi=0)
+    plane = mr.Masonry.arch(5.0, 0.9, voussoirs=5, k_n=1e9, xi=0)
     space = mr.Masonry([mr.Polyhedron.prism(block) for block in plane.blocks], k_n=1e9, xi=0)
     associated, found = mr.collapse_multiplier(plane), mr.collapse_multiplier(plane, associated=False)
     assert found.multiplier == pytest.approx(associated.multiplier, rel=1e-6)
@@ -260,3 +261,17 @@ def test_the_least_state_of_small_walls_is_that_of_branch_and_bound(courses, fri
     assert collapse.multiplier == pytest.approx(least_state(courses, friction), rel=1e-4)
     assert mr.collapse_multiplier(masonry).multiplier > 1.015 * collapse.multiplier
     assert max(state_error(collapse, friction)) < STANDS
+
+
+def test_a_state_that_does_not_hold_is_none():
+    """Forces that do not balance, a mechanism that goes through a joint, and forces that it would stop are found."""
+    masonry = study.masonry_of([[1], [0.5, 0.5]], 0.9)
+    grown = np.zeros((3, 3))
+    grown[:, 0] = [mr.GRAVITY * masonry.blocks[i].mass for i in masonry.free]
+    programme = Programme.of(masonry, grown, masonry.lines.across)
+    state = states_without_dilatancy(programme)[0]
+    assert programme.holds(state)
+    assert not programme.holds(state._replace(multiplier=state.multiplier + 1e-3))
+    assert not programme.holds(state._replace(p=-state.p))
+    other = programme.forces(np.zeros(len(state.x)), 1.0)
+    assert not programme.holds(state._replace(x=other.x[:-1], multiplier=other.x[-1]))

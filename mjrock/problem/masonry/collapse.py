@@ -75,7 +75,8 @@ def collapse_multiplier(
         direction: of the force, which is opposite to the acceleration of the ground: 1 along x, -1 against it, or in
             space a vector in plan, shape (2,), of any length. None for `loads` alone.
         angle: of the force in plan, from x towards y [rad], -2 pi to 2 pi, in space; it takes the place of `direction`.
-        associated: whether sliding opens joints. False for friction without dilatancy, which takes some seconds.
+        associated: whether sliding opens joints. False for friction without dilatancy, which takes some seconds for a
+            hundred blocks in the plane, and half a minute for thirty in space.
         loads: further forces that grow with the multiplier, by the name of their block: at its centroid along x and z
             [N], or with the moment about it, positive where it turns the top to the right [N m], shape (2,) or (3,); in
             space forces along x, y and z, or with three moments, shape (3,) or (6,).
@@ -137,7 +138,7 @@ def _without_dilatancy(
     if not states:
         return None
     multipliers = tuple(state.multiplier for state in states)
-    return multipliers, states[0].velocity, programme.on_lines(masonry, states[0].x)
+    return multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, states[0].x)
 
 
 def _loads(masonry: Masonry, loads: Mapping[str, ArrayLike]) -> Array:

@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack
 
 from ...quantities import Array, Flags, Integers
@@ -43,6 +43,8 @@ SHARED = 1e-10
 """Power x . z up to which forces and mechanism make a state, over that of the forces that grow [-]."""
 NOTHING, STILL = 1e-9, 1e-8
 """Force that counts as none, over the weight, and a rate, over the largest of its mechanism [-]."""
+HELD = 1e-7
+"""What forces may miss, rates go the wrong way and both share in a state that is returned, as above [-]."""
 GAIN = 1e-9
 """Gain of two steps below which a descent ends [-]."""
 PULL = 1e-3
@@ -59,12 +61,12 @@ class State(NamedTuple):
     Args:
         multiplier: lambda [-].
         x: forces, over the weight of all blocks [-].
-        velocity: of all unknowns, over the size of their block.
+        p: velocities of all unknowns, over the size of their block, and rates at which joints slide, negative.
     """
 
     multiplier: float
     x: Array
-    velocity: Array
+    p: Array
 
 
 class Programme(NamedTuple):
@@ -120,10 +122,12 @@ class Programme(NamedTuple):
             upper[:-1][none_at] = 0.0
         columns, bounds = hstack([self.matrix, self.grown[:, None]]), np.column_stack([np.zeros_like(upper), upper])
         prices = np.append(cost, price)
-        return linprog(prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT)
+        return scipy.optimize.linprog(
+            prices, A_eq=columns, b_eq=-self.weight, bounds=bounds, method=self.method, options=EXACT
+        )
 
     def mechanism(self, cost: Array, only_at: Flags | None = None) -> tuple[Array, Array] | None:
-        """Rates z and velocities of the mechanism without dilatancy that costs least, None where nothing can move.
+        """Rates z and p of the mechanism without dilatancy that costs least, None where nothing can move.
 
         Joints that are not among `only_at` stay as they are.
         """
@@ -134,11 +138,19 @@ class Programme(NamedTuple):
             high[:count][~only_at] = 0.0
         bounds, right = np.column_stack([low, high]), np.append(np.zeros(count), 1.0)
         prices = np.append(cost, np.zeros(rows))
-        answer = linprog(prices, A_eq=columns, b_eq=right, bounds=bounds, method=self.method, options=EXACT)
+        answer = scipy.optimize.linprog(
+            prices, A_eq=columns, b_eq=right, bounds=bounds, method=self.method, options=EXACT
+        )
         if answer.status != 0:
             return None
         z = np.where(answer.x[:count] > STILL * answer.x[:count].max(), answer.x[:count], 0.0)
-        return z, answer.x[count:][: self.unknowns]
+        return z, answer.x[count:]
+
+    def holds(self, state: State) -> bool:
+        """Whether forces balance, nothing that opens or slides goes the wrong way, and they share no power."""
+        z = (self.matrix - self.grip).T @ state.p
+        missing = np.abs(self.matrix @ state.x + state.multiplier * self.grown + self.weight).max()
+        return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < HELD)
 
     def on_lines(self, masonry: Masonry, x: Array) -> Array:
         """Forces x of a state as those of the contact lines, over the weight of all blocks, shape (m, d)."""
@@ -163,7 +175,8 @@ def states_without_dilatancy(programme: Programme) -> tuple[State, ...]:
     if programme.mechanism(nothing) is None:
         return ()
     ends = [_descended(programme, _met(programme, np.maximum(x, 0.0))) for x in _starts(programme, nothing)]
-    found = {round(state.multiplier, DIGITS): state for state in ends if state is not None}
+    held = [state for state in ends if state is not None and programme.holds(state)]
+    found = {round(state.multiplier, DIGITS): state for state in held}
     if not found:
         raise ValueError(
             "masonry: no state of friction without dilatancy was found near that of associated friction, whose "

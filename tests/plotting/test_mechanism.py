@@ -1,0 +1,40 @@
+"""Pictures of limit analysis: where blocks have moved to, and where joints press."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+
+BLOCK = mr.Masonry.stack([mr.Block.from_size(0.4, 1.6)], k_n=1e9, friction=0.9)
+
+
+def test_a_block_that_turns_and_the_force_at_its_toe():
+    collapse = mr.collapse_multiplier(BLOCK)
+    ax = plotting.mechanism(Figure().subplots(), collapse)
+    corners = ax.patches[1].get_xy()
+    rest = BLOCK.blocks[1].corners
+    assert np.hypot(*(corners[:4].mean(axis=0) - rest.mean(axis=0))) == pytest.approx(0.1 * 1.6, rel=1e-6)
+    assert corners[:4, 0].mean() > rest[:, 0].mean()  # along the force
+    (line,) = ax.get_lines()
+    middle, way = np.mean(line.get_xydata(), axis=0), np.diff(line.get_xydata(), axis=0)[0]
+    assert middle == pytest.approx([0.2, 0.0], abs=1e-6)
+    assert abs(way[0] / way[1]) == pytest.approx(collapse.multiplier)
+    assert way[0] * way[1] < 0  # it leans against the push
+    assert not plotting.mechanism(Figure().subplots(), collapse, forces=False).get_lines()
+
+
+def test_masonry_in_space_moves_along_the_force():
+    box = mr.Masonry.box((0.4, 0.4, 0.2), friction=0.3)
+    collapse = mr.collapse_multiplier(box, associated=False)
+    ax = plotting.mechanism(Figure().add_subplot(projection="3d"), collapse, share=0.5)
+    assert ax.collections
+
+
+def test_what_has_no_mechanism_has_no_picture():
+    collapse = mr.collapse_multiplier(mr.Masonry.stack([mr.Block.from_size(0.5, 1.0)], k_n=1e9, side_stop=True), -1)
+    with pytest.raises(ValueError, match="multiplier = inf: nothing gives way"):
+        plotting.mechanism(Figure().subplots(), collapse)
+    with pytest.raises(ValueError, match="share = 2 is outside"):
+        plotting.mechanism(Figure().subplots(), mr.collapse_multiplier(BLOCK), share=2.0)
