@@ -198,10 +198,10 @@ class Encounters:
         """
         met, count = self.met, len(self.wear.pairs)
         lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
-        if len(system.bonds):
-            released(lines[:count], system.bonds, worn)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
+        if len(system.bonds):
+            released(joints, system.bonds, worn)
         before, gone = held(system, of_gone), lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
         gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])
