@@ -75,6 +75,16 @@ def holding(bonds: Rows) -> Flags:
     return np.asarray((bonds["k"] > 0) & (bonds["tension"] > 0) & (bonds["left"] > GONE))
 
 
+def cracked(bonds: Rows, joint: Integers, masonry: Masonry) -> dict[str, float]:
+    """When each joint that cracked did [s], the first first, from the number of the joint of each line."""
+    when = {}
+    for i in np.flatnonzero([bond is not None and bond.tension > 0 for bond in masonry.bonds]):
+        of_joint = bonds[joint == i]
+        if (of_joint["left"] <= CRACKED).all():
+            when[masonry.joints[i].name] = float(of_joint["age"].max())
+    return dict(sorted(when.items(), key=lambda item: item[1]))
+
+
 def released(lines: Rows, bonds: Rows, which: Flags) -> None:
     """Give lines back what their bonds have taken over, where they are handed over."""
     which = which & (bonds["k"] > 0)

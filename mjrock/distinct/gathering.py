@@ -41,7 +41,10 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
-        line, bonded = system.lines[p], p < len(system.bonds) and system.bonds[p].k > 0
+        line, bonded = system.lines[p], False
+        if p < len(system.bonds):
+            bonded = system.bonds[p].k > 0
+            samples.damage[row, line.group] += 1 - system.bonds[p].left
         if was_open(line) and not bonded:
             continue
         meet = where_friction_rubs(meeting(system, line, axes))

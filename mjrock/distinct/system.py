@@ -114,8 +114,9 @@ class Samples(NamedTuple):
         dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
-        pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links). All
-            three have no columns where no forces are kept.
+        pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
+        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints). All four have
+            no columns where no forces are kept.
     """
 
     pose: Array
@@ -129,6 +130,7 @@ class Samples(NamedTuple):
     loads: Array
     held: Array
     pulled: Array
+    damage: Array
 
     @classmethod
     def room(
@@ -139,14 +141,14 @@ class Samples(NamedTuple):
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
-        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), ())]
+        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), (), ())]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
     def with_forces(self, joints: int, blocks: int, links: int) -> Samples:
         """The same with room for the forces of so many joints, fixed blocks and links."""
-        parts, counts = (self.loads, self.held, self.pulled), (joints, blocks, links)
+        parts, counts = (self.loads, self.held, self.pulled, self.damage), (joints, blocks, links, joints)
         room = [np.zeros((len(part), n, *part.shape[2:])) for part, n in zip(parts, counts, strict=True)]
-        return self._replace(loads=room[0], held=room[1], pulled=room[2])
+        return self._replace(loads=room[0], held=room[1], pulled=room[2], damage=room[3])
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""

@@ -118,6 +118,7 @@ class Forces:
             shape (n, 2) or (n, 3), by its name: of all its contacts, whether of joints or found where blocks are, and
             of the links that are anchored on it. "anchors" is that of all links anchored on no block. Of a wall those
             of "base", "side" and "anchors".
+        damage: share of its bond that each joint has lost [-], shape (n, joints), NaN where it is dry.
     """
 
     frames: JointFrames
@@ -126,6 +127,7 @@ class Forces:
     eccentricity: Array
     links: Mapping[str, Array]
     reactions: Mapping[str, Array]
+    damage: Array
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -168,6 +170,7 @@ class Gathered(NamedTuple):
             (n, joints, 3), in space (n, joints, 6).
         held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
         pulled: what each link pulls with [N], by its name, shape (n,).
+        damage: share of its bond that each joint has lost [-], shape (n, joints), or None without bonds.
     """
 
     t: Array
@@ -175,6 +178,7 @@ class Gathered(NamedTuple):
     loads: Array
     held: Array
     pulled: Mapping[str, Array]
+    damage: Array | None = None
 
 
 def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered) -> Forces:
@@ -196,7 +200,8 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     add_links(case, gathered, reactions)
     if d == 2:
         shear, eccentricity = shear[..., 0], eccentricity[..., 0]
-    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions)
+    damage = np.full(normal.shape, np.nan) if gathered.damage is None else gathered.damage
+    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions, damage)
 
 
 def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
