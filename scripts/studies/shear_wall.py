@@ -19,8 +19,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import mjrock as mr
+from mjrock import plotting
 from mjrock.quantities import Array
-from scripts.shared import cli, suite
+from scripts.shared import cli
 
 WIDTH, COURSES, HALF, COURSE, THICK = 0.99, 16, 0.11, 1.0 / 16, 0.1
 PRESSURE, TOP = 0.30e6, 4e-3
@@ -95,3 +96,56 @@ def sheared(setting: Setting, courses: int = COURSES, top: float = TOP) -> tuple
     force = answer.reactions["top"][:, 0]
     smooth = np.ones(15) / 15
     return answer, moved, np.convolve(force, smooth, "same")
+
+
+SETTINGS = {
+    "3 lines a joint": Setting(),
+    "5 lines": Setting(points=5),
+    "9 lines": Setting(points=9),
+    "5 lines, 10 mm/s": Setting(points=5, rate=10e-3),
+    "5 lines, damping 0.005": Setting(points=5, xi=0.005),
+    "5 lines, damping 0.1": Setting(points=5, xi=0.1),
+    "5 lines, bricks that do not split": Setting(points=5, splits=False),
+}
+DRAWN = "5 lines"
+
+
+def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
+    """The curve beside the test, and the cracks at the end: lines as thick as the joint has lost of its bond."""
+    masonry = answer.case.masonry
+    figure = Figure(figsize=(11, 4.6), layout="constrained")
+    curve, cracks = figure.subplots(1, 2)
+    begun = answer.t > 0.07
+    curve.plot(1e3 * moved[begun], 1e-3 * force[begun], color="#12406b", label="explicit steps")
+    curve.errorbar(list(MEASURED), list(MEASURED.values()), 8, fmt="o", color="0.3", capsize=2, label="test J4D")
+    curve.set(xlabel="displacement of the beam [mm]", ylabel="force [kN]", ylim=(0, None))
+    curve.legend(frameon=False)
+    plotting.blocks(cracks, masonry, answer.pose[-1], joints=False, limits=[(-0.1, WIDTH + 0.1), (-0.05, 1.05)])
+    for joint, damage in zip(masonry.joints, answer.forces.damage[-1].tolist(), strict=True):
+        (x0, z0), (x1, z1) = joint.start, joint.end
+        cracks.plot([x0, x1], [z0, z1], color="#c0392b", linewidth=4 * damage, solid_capstyle="butt", zorder=5)
+    cracks.set(xlabel="x [m]", ylabel="z [m]", title="what joints have lost of their bond, at rest")
+    return figure
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run the study."""
+    args = cli.parser(__doc__, Path("out/shear_wall").as_posix()).parse_args(argv)
+    out = cli.folder(args.out)
+    settings = {DRAWN: SETTINGS[DRAWN]} if args.quick else SETTINGS
+    rows: list[list[object]] = [["test", *map(float, MEASURED.values()), 57.0, "", ""]]
+    for name, setting in settings.items():
+        answer, moved, force = sheared(setting, 2, 2e-4) if args.quick else sheared(setting)
+        begun = answer.t > 0.07
+        at = np.interp(1e-3 * np.array(list(MEASURED)), moved[begun], 1e-3 * force[begun])
+        gap = np.abs(answer.ledger.residual).max() / answer.ledger.largest
+        seconds = answer.stats["stepping_processor_time"]
+        rows.append([name, *at.round(1).tolist(), round(1e-3 * force.max(), 1), round(seconds, 1), f"{gap:.0e}"])
+        if name == DRAWN:
+            plotting.save(drawn(answer, moved, force), out / "shear_wall.png")
+    header = ["force [kN] at", *(f"{u:g} mm" for u in MEASURED), "peak", "processor [s]", "gap of the ledger"]
+    cli.report(out / "shear_wall", cli.table(header, rows), header, rows)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

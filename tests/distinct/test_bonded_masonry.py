@@ -77,9 +77,9 @@ def test_bonds_without_strength_are_dry_bit_for_bit():
 
 
 def test_bonds_of_next_to_no_strength_move_as_dry_ones():
-    dry, weak = (shaken(column(bond)) for bond in (None, mr.Bond(1e-3, 1e-3, 1.0, 1.0)))
-    assert weak.pose == pytest.approx(dry.pose, abs=1e-6)
-    assert np.abs(dry.pose).max() > 1e-3
+    dry, weak = (shaken(column(bond)) for bond in (None, mr.Bond(1.0, 1.0, 1e-6, 1e-6)))
+    assert weak.pose == pytest.approx(dry.pose, abs=0.01 * np.abs(dry.pose).max())
+    assert weak.pose[:150] == pytest.approx(dry.pose[:150], abs=1e-4 * np.abs(dry.pose).max())
 
 
 def test_a_block_on_bonds_that_never_break_vibrates_as_on_linear_springs():
@@ -126,7 +126,7 @@ def test_a_run_carries_on_with_its_bonds():
     first = mr.solve_explicit(mr.MasonryCase(masonry, 0.2, motion), timestep=h)
     late = mr.GroundMotion(motion.accel[40:], 0.005)
     second = mr.solve_explicit(mr.MasonryCase(masonry, 0.2, late), timestep=h, start=first.end)
-    assert first.cracked
+    assert first.opening.max() > 1e-3
     assert second.pose[-1] == pytest.approx(whole.pose[-1], abs=1e-9)
 
 

@@ -65,6 +65,21 @@ class Bond:
         return self.tension == 0 and self.cohesion == 0 and self.crushing is None
 
 
+@dataclass(frozen=True)
+class Halved:
+    """Bonds of a wall of divided units: `between` them, one or a function of the joint, and `within` them."""
+
+    between: Bond | Callable[[Any], Bond | None] | None
+    within: Bond
+
+    def __call__(self, joint: Joint | SpaceJoint) -> Bond | None:
+        """The bond of a joint."""
+        first, second = joint.name.split("|")
+        if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
+            return self.within
+        return self.between(joint) if callable(self.between) else self.between
+
+
 OfBond = Bond | Callable[[Any], Bond | None] | None
 """A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
 

@@ -23,6 +23,7 @@ from ...quantities import (
     keep,
     named,
     require_flag,
+    require_kind,
     require_path,
     require_stiffness,
     require_text,
@@ -35,7 +36,7 @@ from ..wall.block import Block
 from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
-from .bond import Bond, OfBond, bonds_of, required_bond
+from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below
 from .joints import Joint, joints_in_plane, names_of
@@ -368,6 +369,8 @@ class Masonry:
         unit: tuple[float, float],
         thickness: float = 1.0,
         density: float = 2000.0,
+        *,
+        halves: Bond | None = None,
         **options: Any,
     ) -> Self:
         """A wall of units in running bond on the ground, which moves in the plane of its face.
@@ -378,12 +381,17 @@ class Masonry:
             unit: length and height of a unit [m], 0.01 to 100.
             thickness: of the wall, out of the plane [m], 1e-3 to 1000.
             density: mass density [kg/m3], 100 to 30000.
+            halves: the bond of a potential crack in the middle of each whole unit, which divides it in two, or None.
+                The halves of `unit_2_0` are `unit_2_0a` and `unit_2_0b`, by which functions of the joint know them.
             options: further arguments of `Masonry`.
 
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        return cls(bonded_wall(length, height, unit, thickness, density), **options)
+        require_kind("halves", halves, Bond, type(None))
+        if halves is not None:
+            options["bond"] = Halved(options.get("bond"), halves)
+        return cls(bonded_wall(length, height, unit, thickness, density, halves is not None), **options)
 
     @classmethod
     def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:
