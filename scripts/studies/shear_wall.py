@@ -136,6 +136,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     rows: list[list[object]] = [["test", *map(float, MEASURED.values()), 57.0, "", ""]]
     for name, setting in settings.items():
         answer, moved, force = sheared(setting, 2, 2e-4) if args.quick else sheared(setting)
+        assert answer.ledger is not None
         begun = answer.t > 0.07
         at = np.interp(1e-3 * np.array(list(MEASURED)), moved[begun], 1e-3 * force[begun])
         gap = np.abs(answer.ledger.residual).max() / answer.ledger.largest

@@ -49,8 +49,8 @@ def test_bonded_blocks_hang_at_rest_on_their_bonds():
 
 
 def test_what_needs_more_than_its_strength_at_rest_is_refused_by_name():
-    with pytest.raises(ValueError, match=r"at rest the bonds of wall\|b0, .* would need 3.01 times their strength"):
-        mr.solve_explicit(mr.MasonryCase(cantilever(12), 0.1))
+    with pytest.raises(ValueError, match=r"at rest the bonds of wall\|b0, .* would need 1.34 times their strength"):
+        mr.solve_explicit(mr.MasonryCase(cantilever(8), 0.1))
     with pytest.raises(ValueError, match="b0 would fall under the weight"):
         mr.solve_explicit(mr.MasonryCase(cantilever(1, None), 0.1))
 
@@ -142,10 +142,6 @@ def test_mujoco_rocking_theory_and_a_missing_k_s_are_said_by_name():
             call()
     with pytest.raises(ValueError, match=r"bond of wall\|b0: k_s = None, and a bond needs a shear stiffness"):
         cantilever(2, k_s=None)
-    with pytest.raises(
-        ValueError, match=r"opening_energy = 0.1 J/m2 is less than its spring gives back; .* = 1.16 J/m2"
-    ):
-        cantilever(2, mr.Bond(0.25e6, 0.35e6, 0.1, 125.0))
 
 
 def test_bonds_are_given_for_some_joints():

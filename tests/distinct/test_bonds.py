@@ -47,6 +47,16 @@ def test_a_joint_that_is_pulled_apart_holds_its_strength_and_takes_its_fracture_
     assert not one.system.bonds["k"].any()
 
 
+def test_a_brittle_joint_breaks_at_once_and_takes_what_its_spring_held():
+    brittle = mr.Bond(0.25e6, 0.35e6, 0.1, 125.0)
+    one = led(brittle)
+    opening = np.linspace(0, 2 * PEAK, 2001)[1:]
+    push, _ = one.along(path_of(one, 0.0, opening))
+    assert -push.min() == pytest.approx(brittle.tension, rel=1e-6)
+    assert (push[1001:] == 0).all()
+    assert one.taken[0] == pytest.approx(0.5 * brittle.tension * PEAK, rel=2e-3)
+
+
 @pytest.mark.parametrize("pressure", [0.0, 0.3e6, 1.2e6])
 @pytest.mark.parametrize("place", PLACES)
 def test_a_joint_that_is_sheared_holds_cohesion_and_friction_and_takes_its_fracture_energy(place, pressure):

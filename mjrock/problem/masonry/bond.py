@@ -14,8 +14,6 @@ from .joints_in_space import SpaceJoint
 
 STRONGEST, TOUGHEST = 1e12, 1e15
 """Largest strength [Pa] and largest fracture energy [J/m2]. The largest ones stand for joints that never break."""
-BRITTLE = 0.9
-"""What a spring holds at its strength, twice, over the fracture energy, up to which the law has one force [-]."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +23,8 @@ class Bond:
     Args:
         tension: tensile strength f_t [Pa], 0 to 1e12.
         cohesion: shear strength without pressure c [Pa], 0 to 1e12. One above zero needs a tension above zero.
-        opening_energy: fracture energy of opening G_I [J/m2], above 0 to 1e15. 1 N/mm is 1000 J/m2.
+        opening_energy: fracture energy of opening G_I [J/m2], above 0 to 1e15. 1 N/mm is 1000 J/m2. A joint whose
+            spring gives back as much, f_t^2 / k_n, breaks at once when it reaches its tension.
         slip_energy: fracture energy of slip G_II [J/m2], above 0 to 1e15.
         crushing: compressive strength f_c [Pa], 1e3 to 1e12, or None for a joint that is not crushed.
         crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`.
@@ -104,21 +103,19 @@ def required_bond(bond: Any) -> OfBond:
     return bond  # type: ignore[no-any-return]
 
 
-def bonds_of(
-    given: OfBond, joints: Sequence[Joint | SpaceJoint], stiffness: Array, shear: Array
-) -> tuple[Bond | None, ...]:
+def bonds_of(given: OfBond, joints: Sequence[Joint | SpaceJoint], shear: Array) -> tuple[Bond | None, ...]:
     """The bond of each joint, None where it is dry.
 
     Args:
         given: one for all, or a function of the joint.
         joints: the joints.
-        stiffness, shear: k_n and k_s of each [N/m3], infinite where it sticks rigidly, shape (joints,).
+        shear: k_s of each [N/m3], infinite where it sticks rigidly, shape (joints,).
 
     Raises:
-        ValueError: for a bond on a joint without k_s, or one that gives back more energy than breaking it takes.
+        ValueError: for a bond on a joint without k_s.
     """
     found: list[Bond | None] = []
-    for joint, k_n, k_s in zip(joints, stiffness.tolist(), shear.tolist(), strict=True):
+    for joint, k_s in zip(joints, shear.tolist(), strict=True):
         bond = given
         if callable(given):
             try:
@@ -131,15 +128,5 @@ def bonds_of(
             continue
         if not np.isfinite(k_s):
             raise ValueError(f"bond of {joint.name}: k_s = None, and a bond needs a shear stiffness; give k_s in N/m3")
-        for strength, energy, name, k in (
-            ("tension", "opening_energy", "k_n", k_n),
-            ("cohesion", "slip_energy", "k_s", k_s),
-        ):
-            least = getattr(bond, strength) ** 2 / (BRITTLE * k)
-            if getattr(bond, energy) < least:
-                raise ValueError(
-                    f"bond of {joint.name}: {energy} = {getattr(bond, energy):g} J/m2 is less than its spring gives "
-                    f"back; the valid range is from {strength}^2 / ({BRITTLE:g} {name}) = {least:.3g} J/m2"
-                )
         found.append(bond)
     return tuple(found)

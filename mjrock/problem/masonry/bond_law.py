@@ -23,17 +23,23 @@ from .joint_law import shear_limit
 
 PASSES = 8
 """Passes of the search for the opening of a crack, by Newton's method, and for a plastic closing."""
+BRITTLE = 0.9
+"""Rate at which a crack softens, over the stiffness of its spring, from which it breaks at once [-]."""
 
 
 @jitable
 def tear(bond: Any, gap: float) -> None:
     """Let the crack of a bond grow until it pulls no more than is left of its strength, at a gap [m].
 
-    The opening w of the crack solves k (u - w) = T exp(-w r), with u the largest gap and T r the strength and its rate.
+    The opening w of the crack solves k (u - w) = T exp(-w r), with u the largest gap, T the strength and r its rate.
+    Where k is hardly above T r, the spring gives back what the crack takes, and the bond breaks at once.
     """
     far = max(bond.drawn, gap)
     bond.drawn, crack, strength = far, bond.crack, bond.tension * bond.left
     if bond.k * (far - crack) <= strength:
+        return
+    if bond.torn * strength >= BRITTLE * bond.k:
+        bond.crack, bond.left, bond.secant = far, 0.0, 0.0
         return
     for _ in range(PASSES):
         held = strength * math.exp(-bond.torn * (crack - bond.crack))

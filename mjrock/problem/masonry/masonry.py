@@ -248,7 +248,7 @@ class Masonry:
     @cached_property
     def bonds(self) -> tuple[Bond | None, ...]:
         """The bond of each joint, None where it is dry."""
-        return bonds_of(self.bond, self.joints, self.joint_stiffness, self.joint_shear)
+        return bonds_of(self.bond, self.joints, self.joint_shear)
 
     @cached_property
     def lines(self) -> Lines:
