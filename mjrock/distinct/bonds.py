@@ -49,7 +49,7 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
     if not any(masonry.bonds):
         return system
     lines = system.lines
-    bonds = rows(kinds(len(system.axes)).bond, len(lines), left=1.0, crushing=np.inf)
+    bonds = rows(kinds(len(system.axes)).bond, len(lines), left=1.0, bears=np.inf)
     area = lines["k"] / masonry.joint_stiffness[joint]
     for i, bond in enumerate(masonry.bonds):
         if bond is None:
@@ -61,7 +61,7 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
         bonds["torn"][which] = bond.tension / bond.opening_energy
         bonds["worn"][which] = bond.cohesion / bond.slip_energy
         if bond.crushing is not None and bond.crushing_energy is not None:
-            bonds["crushing"][which] = bond.crushing * area[which]
+            bonds["bears"][which] = bond.crushing * area[which]
             bonds["crumbled"][which] = bond.crushing / bond.crushing_energy
         lines["friction"][which], lines["grip"][which] = 0.0, 0.0
         if bond.tension > 0:
@@ -112,7 +112,7 @@ def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
         books.bonds[0] += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
         bond.tension = bond.cohesion = bond.secant = bond.worn = 0.0
         line.k, line.c, line.margin = bond.k, bond.c, bond.margin
-    if bond.crushing == math.inf:
+    if bond.bears == math.inf:
         line.friction = bond.friction
         put(line.grip, spin_components(bond.grip, axes))
         put(line.dragged, spin_components(bond.dragged, axes))
@@ -121,7 +121,7 @@ def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
         bond.k = bond.push = 0.0
 
 
-@jitable
+@inlined
 def crush_line(books: Books, line: Row, bond: Row, gap: float, axes: tuple[int, ...]) -> float:
     """Crush a line at a gap [m]: its face steps back. Returns by how much [m]."""
     grip = spin_components(bond.grip, axes)
@@ -151,13 +151,13 @@ def slide(
     return drag, taken
 
 
-@jitable
+@inlined
 def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tuple[int, ...]) -> None:
     """Add the forces of one bond, after it has torn and been crushed as far as the pose asks."""
     bodies, supports, before = system.bodies, system.supports, bond.gap
     meet = where_friction_rubs(meeting(system, line, axes))
     gap = meet.gap
-    if gap < 0 and bond.crushing < math.inf:
+    if gap < 0 and bond.bears < math.inf:
         gap += crush_line(books, line, bond, gap, axes)
     secant = bond.secant
     if bond.tension > 0:
@@ -181,6 +181,7 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
         books.totals[0].ground += carried(line, supports, work)
     bond.gap, bond.push, bond.pressed = gap, push, pressed
+    line.widest = max(line.widest, gap)
     put(bond.dragged, drag)
     if bond.left > CRACKED:
         bond.age += h

@@ -137,7 +137,7 @@ def _way(d: int, s: int) -> Fields:
 def _bond(s: int) -> Fields:
     return [
         *_number("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
-        *_number("tension", "cohesion", "crushing"),  # strengths of the line [N], infinite where it is not crushed
+        *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
         *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
         *_number("left"),  # what is left of the bond: 1 - D [-]
         *_number("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]

@@ -93,9 +93,8 @@ def sheared(setting: Setting, courses: int = COURSES, top: float = TOP) -> tuple
     case = mr.MasonryCase(wall_of(setting, courses), float(t[-1]), supports={"top": (t, dx, dz)}, settled=False)
     answer = mr.solve_explicit(case, forces=True, ledger=True)
     moved = np.interp(answer.t, t, dx)
-    force = answer.reactions["top"][:, 0]
-    smooth = np.ones(15) / 15
-    return answer, moved, np.convolve(force, smooth, "same")
+    force = np.convolve(np.pad(answer.reactions["top"][:, 0], 7, mode="edge"), np.ones(15) / 15, "valid")
+    return answer, moved, force
 
 
 SETTINGS = {

@@ -52,7 +52,7 @@ def test_a_brittle_joint_breaks_at_once_and_takes_what_its_spring_held():
     one = led(brittle)
     opening = np.linspace(0, 2 * PEAK, 2001)[1:]
     push, _ = one.along(path_of(one, 0.0, opening))
-    assert -push.min() == pytest.approx(brittle.tension, rel=1e-6)
+    assert -push.min() == pytest.approx(brittle.tension, rel=2e-3)
     assert (push[1001:] == 0).all()
     assert one.taken[0] == pytest.approx(0.5 * brittle.tension * PEAK, rel=2e-3)
 

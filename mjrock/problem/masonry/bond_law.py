@@ -49,23 +49,18 @@ def tear(bond: Any, gap: float) -> None:
     bond.secant = bond.k * (far - crack) / far
 
 
-@inlined
-def cap(bond: Any) -> float:
-    """The most that a joint bears before it is crushed [N]."""
-    most: float = bond.crushing * math.exp(-bond.crumbled * bond.crushed)
-    return most
-
-
 @jitable
 def crush(bond: Any, gap: float, sheared: float) -> float:
     """Crush a joint at a gap [m] under a force along the face [N]. Returns by how much it closes for good [m]."""
-    most, closing = cap(bond), 0.0
+    sheared *= 3
+    closing: float = 0.0
+    if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears * bond.bears:
+        return 0.0
     for _ in range(PASSES):
-        left = most * math.exp(-bond.crumbled * closing)
-        closing = max(-gap - math.sqrt(max(left * left - 9 * sheared * sheared, 0.0)) / bond.k, 0.0)
-        if closing == 0:
-            return 0.0
+        left = bond.bears * math.exp(-bond.crumbled * closing)
+        closing = max(-gap - math.sqrt(max(left * left - sheared * sheared, 0.0)) / bond.k, 0.0)
     bond.crushed += closing
+    bond.bears *= math.exp(-bond.crumbled * closing)
     bond.left *= math.exp(-bond.crumbled * closing)
     return closing
 
@@ -73,14 +68,14 @@ def crush(bond: Any, gap: float, sheared: float) -> float:
 @inlined
 def bonded_limit(bond: Any, push: float) -> float:
     """Largest force along the face that a bonded joint holds under a force along the normal [N]."""
-    limit: float = bond.cohesion * bond.left + shear_limit(bond, max(push, 0.0))
-    return min(limit, cap(bond) / 3) if bond.crushing < math.inf else limit
+    limit: float = min(bond.cohesion * bond.left + shear_limit(bond, max(push, 0.0)), bond.bears / 3)
+    return limit
 
 
 @inlined
 def wear(bond: Any, slid: float) -> float:
     """Wear a bond by the way of its slider [m]. Returns what its cohesion has taken [J]."""
-    if bond.worn == 0:
+    if bond.worn == 0 or slid == 0:
         return 0.0
     share = -math.expm1(-bond.worn * slid)
     taken: float = bond.cohesion * bond.left * share / bond.worn
