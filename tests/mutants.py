@@ -64,6 +64,7 @@ OWN = {
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
     "distinct/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py", "result/forces.py")},
+    **{name: ("bonds", "bonded_masonry") for name in ("distinct/bonds.py", "problem/masonry/bond_law.py")},
     "distinct/links.py": ("breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
