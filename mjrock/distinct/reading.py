@@ -30,6 +30,7 @@ from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.scene import Scene, is_quiet
+from .bonds import TAKEN, cracked
 from .following import Followed
 from .memory import remembered
 from .rows import Rows
@@ -121,7 +122,13 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     if not samples.held.shape[1]:
         return None
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
-    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled, samples.actuators)
+    damage = None
+    if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
+        lines = np.bincount(run.scene.contacts.joint, minlength=samples.damage.shape[1])
+        dry = [bond is None for bond in run.case.masonry.bonds]
+        damage = np.where(dry, np.nan, samples.damage / lines)
+    loads = samples.pose, samples.loads, samples.held
+    gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
@@ -169,7 +176,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     of = scene.contacts.joint
     np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])
     return {
-        "joints": JointMotion(opening, motion.sliding, fallen),
+        "joints": JointMotion(opening, motion.sliding, fallen, cracked(run.followed.system.bonds, of, masonry)),
         "outcome": outcome,
         "message": message,
         "stats": {"deepest": motion.deepest},
@@ -254,4 +261,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),
+        bonds=dict(zip(TAKEN, energy["bonds"].T, strict=True)) if len(run.followed.system.bonds) else {},
     )
