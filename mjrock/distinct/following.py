@@ -117,6 +117,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
         0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
     )
     clock = clock._replace(lead=LEAD if stepping.h <= SHORT * setup.limit else 0.0)
+    clock = clock._replace(drag=setup.drag, local=setup.local)
     look = 0
     if memory is not None:
         clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look
@@ -149,7 +150,7 @@ def warn_if_long(setup: Setup, stepping: Stepping) -> None:
     if seconds < WORTH_SAYING:
         return
     said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"
-    slowest = float((lines["c"] / lines["k"]).max())
+    slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, setup.system.bonds))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > DAMPED:
         said += (

@@ -30,6 +30,7 @@ from ..result.samples import thinned
 from ..result.ties import Plastic
 from ..scene.course import Course
 from ..scene.scene import Scene, is_quiet
+from .bonds import TAKEN, cracked
 from .following import Followed
 from .memory import remembered
 from .rows import Rows
@@ -100,6 +101,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
         plastic=plastic_of(run),
         ledger=ledger_of(run, kept) if ledger else None,
+        actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
         kept_forces=kept_forces(run, kept),
         stats=reading.pop("stats") | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
@@ -109,13 +111,24 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     return response
 
 
+def actuators_of(case: Case | MasonryCase) -> tuple[str, ...]:
+    """Names of the actuators of a case."""
+    return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
+
+
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
     """The forces of a run at some of its samples, if they were kept."""
     samples, links = run.samples.taken(kept), run.scene.links
     if not samples.held.shape[1]:
         return None
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
-    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled)
+    damage = None
+    if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
+        lines = np.bincount(run.scene.contacts.joint, minlength=samples.damage.shape[1])
+        dry = [bond is None for bond in run.case.masonry.bonds]
+        damage = np.where(dry, np.nan, samples.damage / lines)
+    loads = samples.pose, samples.loads, samples.held
+    gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
@@ -163,7 +176,7 @@ def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
     of = scene.contacts.joint
     np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])
     return {
-        "joints": JointMotion(opening, motion.sliding, fallen),
+        "joints": JointMotion(opening, motion.sliding, fallen, cracked(run.followed.system.bonds, of, masonry)),
         "outcome": outcome,
         "message": message,
         "stats": {"deepest": motion.deepest},
@@ -236,8 +249,9 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     scene, samples = run.scene, run.samples.taken(kept)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
-    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
+    dashpots = dict(zip((*scene.links.damped.names, *actuators_of(run.case)), samples.dampers.T, strict=True))
+    groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
+    dashpots |= dict(zip(groups, samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[kept],
@@ -247,4 +261,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),
+        bonds=dict(zip(TAKEN, energy["bonds"].T, strict=True)) if len(run.followed.system.bonds) else {},
     )

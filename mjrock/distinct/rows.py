@@ -32,7 +32,9 @@ class Kinds(NamedTuple):
         line: a contact line, in space a contact point: a point of a body on the face of another body or fixed block.
         edge: an edge of a face, of which one in the plane has two.
         way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
-        link: a tie, a damper or a constant force on a point of a body, from the ground or from another body.
+        bond: what a mortared line has beside its row, a row for each line of the joints.
+        link: a tie, a damper, an actuator or a constant force on a point of a body, from the ground or from another
+            body.
         total: what is booked for all lines together.
     """
 
@@ -40,6 +42,7 @@ class Kinds(NamedTuple):
     line: np.dtype[np.void]
     edge: np.dtype[np.void]
     way: np.dtype[np.void]
+    bond: np.dtype[np.void]
     link: np.dtype[np.void]
     total: np.dtype[np.void]
 
@@ -53,6 +56,7 @@ def kinds(d: int) -> Kinds:
         _line(d, s),
         _edge(d),
         _way(d, s),
+        _bond(s),
         _link(d),
         [*_number("friction", "ground"), *_vector(d, "push")],
     )
@@ -76,6 +80,7 @@ def _body(d: int, s: int) -> Fields:
     deep = [*_vector(4, "quaternion"), ("turn", float, (3, 3)), *_vector(3, "momentum")]
     return [
         *_number("mass"),  # [kg]
+        *_vector(d, "inverse_mass"),  # along the axes, zero where a guide holds the body [1/kg]
         ("inverse_inertia", float, (s, s)),  # in its axes [1/(kg m2)]
         *_vector(d, "rest"),  # centroid at rest [m]
         *_vector(d, "place"),  # displacement from there [m]
@@ -131,17 +136,33 @@ def _way(d: int, s: int) -> Fields:
     ]
 
 
+def _bond(s: int) -> Fields:
+    return [
+        *_number("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
+        *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
+        *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
+        *_number("left"),  # what is left of the bond: 1 - D [-]
+        *_number("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
+        *_number("secant"),  # stiffness that holds both ways [N/m]
+        *_number("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
+        *_vector(s, "grip", "dragged"),  # stretch of the shear spring [m], and its force in the last step [N]
+        *_number("age"),  # time that it has held until it cracked [s]
+    ]
+
+
 def _link(d: int) -> Fields:
     return [
         *_integer("body", "anchor"),  # the body that is held, and that of the other end, -1 for the ground
         *_integer("support"),  # the support that moves the fixed block of the other end, -1 for none
         *_vector(d, "at"),  # where, from its centroid [m]
         *_vector(d, "origin"),  # the other end from the centroid of the anchor [m]
-        *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]
+        *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]; way of an actuator
         *_number("k", "c"),  # spring and dashpot [N/m, N s/m]
-        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
+        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]; of an
+        # actuator the displacement of its point at the start of its history [m]
         *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
         *_number("pulled"),  # force in the last step, negative where it pulls [N]
+        *_number("dragged"),  # of an actuator, the part of it that its dashpot has [N]
     ]
 
 

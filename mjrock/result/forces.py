@@ -18,7 +18,7 @@ from ..quantities import Array, Integers, require_size
 from .ties import across
 
 ANCHORS = "anchors"
-"""Name of the reaction of all links whose anchors are on no block."""
+"""Name of the reaction of all links whose anchors are on no block, and of actuators."""
 
 
 class JointFrames(NamedTuple):
@@ -116,8 +116,10 @@ class Forces:
         links: what each tie, damper or other link pulls with, negative where it pushes [N], shape (n,), by its name.
         reactions: forces on the masonry by each fixed block, moved or not, along x and z and in space x, y and z [N],
             shape (n, 2) or (n, 3), by its name: of all its contacts, whether of joints or found where blocks are, and
-            of the links that are anchored on it. "anchors" is that of all links anchored on no block. Of a wall those
+            of the links that are anchored on it. "anchors" is that of all links anchored on no block and of
+            actuators without their guides. Of a wall those
             of "base", "side" and "anchors".
+        damage: share of its bond that each joint has lost [-], shape (n, joints), NaN where it is dry.
     """
 
     frames: JointFrames
@@ -126,6 +128,7 @@ class Forces:
     eccentricity: Array
     links: Mapping[str, Array]
     reactions: Mapping[str, Array]
+    damage: Array
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -168,6 +171,8 @@ class Gathered(NamedTuple):
             (n, joints, 3), in space (n, joints, 6).
         held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
         pulled: what each link pulls with [N], by its name, shape (n,).
+        driven: force of each actuator [N], shape (n, actuators), or None without.
+        damage: share of its bond that each joint has lost [-], shape (n, joints), or None without bonds.
     """
 
     t: Array
@@ -175,6 +180,8 @@ class Gathered(NamedTuple):
     loads: Array
     held: Array
     pulled: Mapping[str, Array]
+    driven: Array | None = None
+    damage: Array | None = None
 
 
 def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered) -> Forces:
@@ -196,7 +203,8 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     add_links(case, gathered, reactions)
     if d == 2:
         shear, eccentricity = shear[..., 0], eccentricity[..., 0]
-    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions)
+    damage = np.full(normal.shape, np.nan) if gathered.damage is None else gathered.damage
+    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions, damage)
 
 
 def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
@@ -210,6 +218,9 @@ def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str,
             anchor = case.masonry.names[link.anchor_block]
         force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
         reactions[anchor] = reactions.get(anchor, 0.0) + force
+    if isinstance(case, MasonryCase) and case.actuators and gathered.driven is not None:
+        ways = np.array([actuator.direction for actuator in case.actuators.values()])
+        reactions[ANCHORS] = reactions.get(ANCHORS, 0.0) + gathered.driven @ ways
 
 
 def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int]:

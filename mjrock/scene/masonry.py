@@ -14,6 +14,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.masonry.statics import falling, friction_lacking, slippery
+from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
 from ..quantities import Array, Integers, named, require_kind
@@ -38,16 +39,19 @@ def masonry_scene(case: MasonryCase) -> Scene:
     """
     require_kind("case", case, MasonryCase)
     if not case.settled:
-        return drawn_masonry(case.masonry, case.effects)
-    require_standing(case.masonry, case.effects)
-    return standing_masonry(case.masonry, case.effects)
+        return drawn_masonry(case.masonry, case.passive)
+    require_standing(case.masonry, case.passive)
+    return standing_masonry(case.masonry, case.passive)
 
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:
     """What happens to the scene of a case: it starts at rest, with the velocities of the case."""
     still = np.zeros((len(scene.bodies.names), scene.freedom.nv))
     velocity = still if case.velocity is None else np.asarray(case.velocity)
-    return Course(scene.at_rest, velocity, case.duration, case.motion, case.vertical, transverse=case.transverse)
+    motion, vertical = case.motion, case.vertical
+    if case.tilt is not None:
+        motion, vertical = motions_of_tilt(case.tilt, case.duration)
+    return Course(scene.at_rest, velocity, case.duration, motion, vertical, transverse=case.transverse)
 
 
 @lru_cache(maxsize=16)
@@ -57,10 +61,33 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
     What only ties keep from falling is left to the search for equilibrium.
     """
     try:
-        _ = standing_masonry(masonry, effects).at_rest
+        pose = standing_masonry(masonry, effects).at_rest
     except UnsettledError as error:
         require_carried(masonry, effects)
         raise unsettled(masonry, error.pose) from None
+    if any(masonry.bonds):
+        require_held(masonry, standing_masonry(masonry, effects), pose)
+
+
+def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
+    """Raise ValueError with the names of the joints whose bonds need more than their strength at the pose of rest."""
+    contacts = scene.contacts
+    push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
+    crushing = np.array([np.inf if bond is None or bond.crushing is None else bond.crushing for bond in masonry.bonds])
+    area = contacts.k / masonry.joint_stiffness[contacts.joint]
+    share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / area / crushing[contacts.joint])
+    torn = np.unique(contacts.joint[share > 1])
+    if len(torn):
+        names = named([masonry.joints[i].name for i in torn])
+        raise ValueError(
+            f"the masonry cannot stand: at rest the bonds of {names} would need {share.max():.3g} times their strength"
+        )
+
+
+def strength(masonry: Masonry, lines: Lines, name: str) -> Array:
+    """A strength of the bond of each contact line [N], zero where there is none."""
+    held = np.array([0.0 if bond is None else getattr(bond, name) for bond in masonry.bonds])
+    return np.asarray(held[lines.joint] * lines.k / masonry.joint_stiffness[lines.joint])
 
 
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
@@ -126,6 +153,8 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             friction=masonry.joint_friction[lines.joint],
             joint=lines.joint,
             joints=tuple(joint.name for joint in masonry.joints),
+            tension=strength(masonry, lines, "tension"),
+            cohesion=strength(masonry, lines, "cohesion"),
         ),
         *attachments(effects, number, lambda effect: placed(masonry, effect), centroids[free]),
         limits=limits,
