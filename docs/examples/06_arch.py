@@ -3,7 +3,7 @@ An arch under one pulse
 =======================
 
 Masonry of many blocks has no rocking theory to lean on. This arch of 11 voussoirs is shaken by one cycle of a sine. Two
-things are to be looked at: where it opens, and how far that hangs on the stiffness of its joints.
+things are to be looked at: where it opens, and how far that depends on the stiffness of its joints.
 """
 
 # %%

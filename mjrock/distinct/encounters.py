@@ -19,7 +19,7 @@ from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
-from .handover import Places, Poses, in_pairs, places_of, take_over
+from .handover import ContactPlaces, Poses, in_pairs, places_of, take_over
 from .limit import Side, shares_within, sums_of_yields, ways_of
 from .looking import Wear, held, nearest, wears
 from .pair_law import SHARED, PairLaw, are_among, pair_number
@@ -290,7 +290,7 @@ class Encounters:
         return law | {name: share * law[name] for name in SHARED}
 
     def _slack(
-        self, found: Found, pair: Integers, old: Places, slack: Array, stiffness: Array, stiffer: Array
+        self, found: Found, pair: Integers, old: ContactPlaces, slack: Array, stiffness: Array, stiffer: Array
     ) -> Array:
         """What presses nothing of the overlap of each place [m], shape (n,).
 

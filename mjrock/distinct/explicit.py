@@ -10,11 +10,13 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
 from ..quantities import require_flag, require_size, require_within
+from ..result.ending import Outcome
 from ..result.forces import required_room
 from ..result.response import Response, State
 from ..result.samples import required_spacing
 from ..result.start import required_start
 from ..result.stopwatch import Stopwatch
+from ..result.ties import warn_of_ties
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
@@ -68,7 +70,8 @@ def solve_explicit(
         RuntimeError: if more energy appears than was there and was put in.
 
     Warns:
-        UserWarning: of steps that would take more than some ten seconds, and how long.
+        UserWarning: of steps that would take more than some ten seconds, and how long, or if a tie without an
+            `ultimate` was drawn out by more than a bar or an anchor follows.
         Implausible: of a given timestep that is far below what the contacts need.
     """
     watch = Stopwatch()
@@ -112,5 +115,7 @@ def solve_explicit(
     looked = steps.looks(followed.steps)
     run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
+    if response.outcome is not Outcome.OVERTURNED:
+        warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     return response

@@ -41,7 +41,7 @@ class Poses(NamedTuple):
         return np.asarray(a + np.einsum("nji,nj->ni", self.change[block], a))
 
 
-class Places(NamedTuple):
+class ContactPlaces(NamedTuple):
     """Lines where they are.
 
     Args:
@@ -65,7 +65,7 @@ class Places(NamedTuple):
         return np.where(self.body > self.face, 1.0, -1.0)[:, None]
 
 
-def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Places:
+def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> ContactPlaces:
     """Where lines are.
 
     Args:
@@ -82,7 +82,7 @@ def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> Plac
     turns = np.where(point[:, 0], body, face)
     normal = np.where(held[:, None] & ~point, lines["normal"], poses.turned(turns, lines["normal"]))
     at = poses.drawn[body] + poses.moved[body] + arm - np.where(point, lines["between"] + way - of_face, 0.0)
-    return Places(pair, body, face, held, at, normal)
+    return ContactPlaces(pair, body, face, held, at, normal)
 
 
 def in_pairs(pair: Integers) -> tuple[Integers, Integers, Integers]:
@@ -92,7 +92,7 @@ def in_pairs(pair: Integers) -> tuple[Integers, Integers, Integers]:
     return pairs, order, np.append(first, len(order))
 
 
-def take_over(lines: Rows, new: Places, overlap: Array, gone: Rows, old: Places, poses: Poses) -> None:
+def take_over(lines: Rows, new: ContactPlaces, overlap: Array, gone: Rows, old: ContactPlaces, poses: Poses) -> None:
     """Let lines take over the friction, and the push of the last step, of those of their pair that are gone.
 
     Each line that is gone gives all that it has to the nearest one, so that the forces of a pair stay.
@@ -127,24 +127,24 @@ def take_over(lines: Rows, new: Places, overlap: Array, gone: Rows, old: Places,
     lines["grip"][sprung] *= np.minimum(most / np.maximum(stretch, 1e-300), 1.0)[:, None]
 
 
-def _some(places: Places, which: Integers) -> Places:
-    return Places._make(part[which] for part in places)
+def _some(places: ContactPlaces, which: Integers) -> ContactPlaces:
+    return ContactPlaces._make(part[which] for part in places)
 
 
-def _in_world(along: Array, places: Places, poses: Poses, *, turns: bool) -> Array:
+def _in_world(along: Array, places: ContactPlaces, poses: Poses, *, turns: bool) -> Array:
     """Vectors of the world from what lines keep along their faces, in the axes of the face if it `turns` with it."""
     if along.shape[1] == 1:
         return np.asarray(along * _tangents(places))
     return np.where(places.held[:, None] | (not turns), along, poses.turned(places.face, along))
 
 
-def _of_line(along: Array, places: Places, poses: Poses, *, turns: bool) -> Array:
+def _of_line(along: Array, places: ContactPlaces, poses: Poses, *, turns: bool) -> Array:
     """What lines keep of vectors of the world, see `_in_world`."""
     if along.shape[1] == 2:
         return np.asarray(np.sum(along * _tangents(places), axis=1, keepdims=True))
     return np.where(places.held[:, None] | (not turns), along, poses.turned_back(places.face, along))
 
 
-def _tangents(places: Places) -> Array:
+def _tangents(places: ContactPlaces) -> Array:
     """Directions along the faces of the plane, see `geometry.vectors.tangent`."""
     return np.column_stack([places.normal[:, 1], -places.normal[:, 0]])

@@ -11,25 +11,19 @@ from typing import Any
 import numpy as np
 
 from ..geometry.frames import SPACE
-from ..geometry.poses import tilts
-from ..problem.damping.contacts import Contacts, Uplift
+from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import GRAVITY, Array, Integers, named
-from ..result.ending import ending, masonry_ending
-from ..result.fallen import below_everything, fallen_blocks, sunk_ground
+from ..quantities import GRAVITY, Array, Integers
 from ..result.forces import Forces, Gathered, JointFrames, forces_of
-from ..result.history import rocking_history
-from ..result.joint_motion import joint_motion
-from ..result.joints import JointMotion
-from ..result.ledger import ENERGY_GAIN, Ledger, from_nowhere
+from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
+from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
 from ..result.response import Response
-from ..result.rocking import Rocking
 from ..result.samples import thinned
-from ..result.ties import Plastic
+from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.course import Course
-from ..scene.scene import Scene, is_quiet
+from ..scene.scene import Scene
 from .bonds import TAKEN, cracked
 from .following import Followed
 from .memory import remembered
@@ -39,8 +33,6 @@ from .system import Books, Samples
 OPEN = 0.01
 """Energy without an account, and energy put in at ends of faces, that is warned of, over the largest part of the ledger
 and over the energy there was [-]."""
-STILL = 0.2
-"""Time without motion after which blocks that have left their joints lie still [s]."""
 ROUNDING = 1e-12
 """Rounding of a position in many steps, over its size [-]."""
 
@@ -91,23 +83,35 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     Raises:
         RuntimeError: if energy has appeared from nowhere.
     """
-    reading = wall_reading(run) if isinstance(run.case, Case) else masonry_reading(run, run.case)
-    require_no_gain(run, stats)
+    require_sound(run, stats)
+    reading, yielded = reading_of(run), plastic(run)
     samples, kept = run.samples, thinned(len(run.t), stride)
     response = Response(
         case=run.case,
         solver="explicit",
         t=run.t[kept],
         motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
-        plastic=plastic_of(run),
+        outcome=reading.outcome,
+        message=reading.message + told_of_ties(yielded),
+        rocking=reading.rocking,
+        joints=reading.joints,
+        plastic=yielded,
         ledger=ledger_of(run, kept) if ledger else None,
         actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
         kept_forces=kept_forces(run, kept),
-        stats=reading.pop("stats") | stats,
+        stats=reading.stats | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
-        **reading,
     )
-    warn_if_open(response, run.rounding)
+    if response.ledger is not None:
+        residual = float(np.abs(response.ledger.residual).max())
+        unpaid = residual if residual > run.rounding else 0.0
+        warn_if_open(
+            unpaid,
+            response.ledger.largest,
+            OPEN,
+            "its largest part",
+            lambda share: f"the step is long for this motion, {advice(stats, 2 * share, OPEN)}",
+        )
     return response
 
 
@@ -132,67 +136,27 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
-def plastic_of(run: Run) -> dict[str, Plastic]:
+def plastic(run: Run) -> dict[str, Plastic]:
     """What each tie has yielded, and when it broke."""
     ties, books = run.followed.system.ties, run.books
-    links = run.scene.links.sprung
-    start = run.scene.ties.reach - links.reach
-    columns = zip(links.names, ties["drawn"], books.ties, ties["broken"], books.broken, start, strict=True)
-    return {name: Plastic(*(float(value) for value in values)) for name, *values in columns}
+    return plastic_of(run.scene, ties["drawn"], books.ties, ties["broken"], books.broken)
 
 
-def wall_reading(run: Run) -> dict[str, Any]:
-    """Peaks and impacts of a wall."""
-    case, contacts = run.case, run.contacts
-    assert isinstance(case, Case)
+def reading_of(run: Run) -> Reading:
+    """What is read from a run."""
+    case, contacts, samples = run.case, run.contacts, run.samples
+    motion = SampledMotion(samples.pose, samples.velocity, run.energy)
+    if isinstance(case, MasonryCase):
+        met = None if run.followed.memory is None else run.followed.memory.met
+        widest = run.followed.system.lines["widest"][: len(run.scene.contacts.joint)]
+        left = met is not None and bool(met.handed.any())
+        gone = cracked(run.followed.system.bonds, run.scene.contacts.joint, case.masonry)
+        return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left, gone))
     assert contacts is not None
-    uplift = Uplift.of(case, contacts)
-    theta, omega = run.samples.pose[:, 0, 2], run.samples.velocity[:, 0, 2]
-    _, peaks, impacts = rocking_history(case, run.t, theta, omega, run.energy, uplift, released=run.course.released)
-    outcome, message = ending(case, run.t, theta, run.energy, uplift.energy, run.samples.velocity[-1, 0])
-    slip = run.samples.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
-    return {
-        "rocking": Rocking(impacts, peaks),
-        "outcome": outcome,
-        "message": message,
-        "stats": {"base_displacement": float(slip[-1] - slip[0])},
-    }
+    return wall_reading(case, contacts, run.t, motion, released=run.course.released)
 
 
-def masonry_reading(run: Run, case: MasonryCase) -> dict[str, Any]:
-    """Openings, slidings and falls of masonry."""
-    masonry, scene, pose = case.masonry, run.scene, run.samples.pose
-    flat = pose.reshape(len(pose), -1)
-    up = scene.freedom.translations - 1
-    motion = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), flat)
-    drop = scene.at_rest[:, up] - pose[:, :, up]
-    below = drop - sunk_ground(masonry, case.supports, run.t)
-    fallen = fallen_blocks(masonry, run.t, motion.parted, tilts(flat, scene.freedom), below)
-    quiet = is_quiet(scene, float(run.energy[-1]), run.samples.velocity[-1]) or lies_still(run)
-    outcome, message = masonry_ending(fallen, quiet, float(run.t[-1]), unmet="")
-    if gone := below_everything(masonry, case.supports, run.t, drop):
-        message += f" Below all fixed blocks, past the edge of any ground: {named(gone)}."
-    opening = motion.opening.copy()
-    of = scene.contacts.joint
-    np.maximum.at(opening, of, run.followed.system.lines["widest"][: len(of)])
-    return {
-        "joints": JointMotion(opening, motion.sliding, fallen, cracked(run.followed.system.bonds, of, masonry)),
-        "outcome": outcome,
-        "message": message,
-        "stats": {"deepest": motion.deepest},
-    }
-
-
-def lies_still(run: Run) -> bool:
-    """Whether blocks that have left their joints lie still: for the last 0.2 s none moved as `is_quiet` says."""
-    met = None if run.followed.memory is None else run.followed.memory.met
-    if met is None or not met.handed.any():
-        return False
-    last = run.samples.velocity[run.t >= run.t[-1] - STILL]
-    return run.t[-1] > STILL and all(is_quiet(run.scene, 0.0, velocity) for velocity in last)
-
-
-def require_no_gain(run: Run, stats: Mapping[str, Any]) -> None:
+def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
     of faces, which have an account.
 
@@ -206,14 +170,13 @@ def require_no_gain(run: Run, stats: Mapping[str, Any]) -> None:
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     looks = run.samples.looks[: len(run.looked)]
     work, left, there = looks["ground"], looks["ends"].sum(axis=1), run.above_rest(looks)
-    own = there - work + left
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
     scale = max(given, kinetic, run.rounding / ENERGY_GAIN)
-    gain = from_nowhere(own, scale)
-    if gain is not None:
-        worst, share, said = gain
-        raise RuntimeError(f"{said} by t = {run.looked[worst]:.4g} s; {advice(stats, share)}")
+    try:
+        require_no_gain(run.looked, there - work + left, scale)
+    except StepError as gain:
+        raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(stats, 4 * gain.share, ENERGY_GAIN)}") from None
     if -left.min() > OPEN * scale:
         warnings.warn(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "
@@ -222,27 +185,12 @@ def require_no_gain(run: Run, stats: Mapping[str, Any]) -> None:
         )
 
 
-def warn_if_open(response: Response, rounding: float) -> None:
-    """Warn of a ledger that does not close by more than rounding [J], and say which step closes it."""
-    if response.ledger is None:
-        return
-    residual, largest = float(np.abs(response.ledger.residual).max()), response.ledger.largest
-    if residual > max(OPEN * largest, rounding):
-        enough = 0.5 * OPEN * largest / residual * response.stats["timestep"]
-        warnings.warn(
-            f"the ledger does not close: {residual:.3g} J, {residual / largest:.1%} of its largest part, have no "
-            f"account. The step is long for this motion; take timestep = {enough:.2g} s",
-            stacklevel=4,
-        )
+def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
+    """The step that brings a share of energy without an account down to the one that is wanted, in words.
 
-
-def advice(stats: Mapping[str, Any], gained: float) -> str:
-    """What to do against a share of energy from nowhere, in words.
-
-    What appears falls at least in proportion to the step, and the step that is advised brings it to a quarter of
-    ENERGY_GAIN.
+    The share falls at least in proportion to the step.
     """
-    return f"take timestep = {0.25 * ENERGY_GAIN / gained * stats['timestep']:.2g} s"
+    return f"take timestep = {wanted / share * stats['timestep']:.2g} s"
 
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:

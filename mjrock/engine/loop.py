@@ -19,7 +19,7 @@ from ..geometry.frames import take_frames
 from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array
 from ..scene.masses import coupling
-from .memory import IMPRATIO, TIMESTEP, Memory
+from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .pace import Pace, judged, step_of, while_loaded, while_taut
 from .points import Points, Reach
 from .progress import Progress, StepClock
@@ -76,7 +76,7 @@ def out_of_reach(reach: Reach, openings: Openings) -> bool:
 
 
 @inlined
-def at_the_pose(memory: Memory, setting: Setting, state: Progress, previous: float) -> None:
+def at_the_pose(memory: EngineArrays, setting: Setting, state: Progress, previous: float) -> None:
     """Velocity and acceleration at the time of the pose, from the last step and its rate of change, gaps and slack."""
     for j in range(len(state.rate)):
         state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * previous
@@ -85,7 +85,7 @@ def at_the_pose(memory: Memory, setting: Setting, state: Progress, previous: flo
 
 
 @inlined
-def acceleration_from_engine(memory: Memory, setting: Setting, state: Progress, t: float) -> None:
+def acceleration_from_engine(memory: EngineArrays, setting: Setting, state: Progress, t: float) -> None:
     """Acceleration at the time of the pose, found by the engine, where a contact has just opened or closed."""
     find_acceleration(memory, setting, state.sliding, state.frames, t)
     copy_into(memory.acceleration, state.acceleration_now)
@@ -100,7 +100,7 @@ def follow_now(setting: Setting, state: Progress) -> None:
 
 
 @inlined
-def shift_velocity(memory: Memory, state: Progress, step: float, previous: float) -> None:
+def shift_velocity(memory: EngineArrays, state: Progress, step: float, previous: float) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
     late, lag = 0.5 * (step - previous), previous - 0.25 * (previous + step)
     for j in range(len(state.rate)):
@@ -108,21 +108,21 @@ def shift_velocity(memory: Memory, state: Progress, step: float, previous: float
 
 
 @inlined
-def set_step(memory: Memory, points: Points, pace: Pace, step: float) -> None:
+def set_step(memory: EngineArrays, points: Points, pace: Pace, step: float) -> None:
     """Set timestep, rows and friction for a step of another length."""
     memory.options[TIMESTEP] = step
     memory.options[IMPRATIO] = set_rows(points.law, points.inertia, step_of(pace, step), memory.rows)
 
 
 @inlined
-def before_the_release(memory: Memory, setting: Setting, state: Progress, step: float) -> None:
+def before_the_release(memory: EngineArrays, setting: Setting, state: Progress, step: float) -> None:
     """Acceleration on the ground that is quiet before the release."""
     find_acceleration(memory, setting, state.sliding, state.frames, -step)
     copy_into(memory.acceleration, state.acceleration)
 
 
 @inlined
-def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, velocity: Array) -> None:
+def release(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, velocity: Array) -> None:
     """Set the velocity half the first step before the release, where the leapfrog keeps it.
 
     The ground is quiet before the release. The dashpots act on the velocity that is being set: this is a contraction,
@@ -137,7 +137,7 @@ def release(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, v
 
 @inlined
 def change_of_acceleration(
-    memory: Memory, setting: Setting, state: Progress, previous: float, step: float, no_rate: bool
+    memory: EngineArrays, setting: Setting, state: Progress, previous: float, step: float, no_rate: bool
 ) -> float:
     """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
     change, masses = 0.0, setting.masses
@@ -153,7 +153,7 @@ def change_of_acceleration(
 
 
 @inlined
-def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, record: Record, n: int) -> None:
+def make_step(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, record: Record, n: int) -> None:
     """Let the engine make step n of the record, whose time and length are set."""
     t = record.t[n]
     copy_into(memory.pose, record.pose[n])
@@ -172,7 +172,7 @@ def make_step(memory: Memory, setting: Setting, sliding: Sliding, frames: Array,
 
 
 @inlined
-def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, record: Record, n: int) -> None:
+def settle_pose(memory: EngineArrays, setting: Setting, pace: Pace, state: Progress, record: Record, n: int) -> None:
     """Put sticking edges back after step n of the record, take frames of the new pose, and let ties yield and break."""
     moved = Moved(record.pose[n], state.frames, memory.pose, state.next_frames)
     put_sticking_edges_back(setting.points, pace, state.joints, record, n, moved, memory.options[IMPRATIO])
@@ -182,7 +182,7 @@ def settle_pose(memory: Memory, setting: Setting, pace: Pace, state: Progress, r
 
 
 @inlined
-def settle_ties(memory: Memory, setting: Setting, frames: Array) -> None:
+def settle_ties(memory: EngineArrays, setting: Setting, frames: Array) -> None:
     """Let ties yield and break at a pose. For the engine, one that has broken is slack up to any length."""
     axes = setting.points.places.axes
     for i in range(len(setting.ties.k)):
@@ -200,7 +200,7 @@ def allowed_step(setting: Setting, pace: Pace, openings: Openings, h: float) -> 
 
 @compiled
 def fitted_loop(
-    memory: Memory, setting: Setting, pace: Pace, state: Progress, clock: StepClock, record: Record
+    memory: EngineArrays, setting: Setting, pace: Pace, state: Progress, clock: StepClock, record: Record
 ) -> tuple[tuple[Any, ...], int]:
     """Steps that fit the motion until the record is full or the run is over.
 
@@ -261,7 +261,7 @@ def fitted_loop(
 
 @compiled
 def fixed_loop(
-    memory: Memory, setting: Setting, sliding: Sliding, frames: Array, record: Record, first: int, h: float
+    memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, record: Record, first: int, h: float
 ) -> tuple[bool, int]:
     """Steps of length h from number `first` until the record is full, the duration is over, or a body has fallen.
 

@@ -21,14 +21,14 @@ from ..quantities import Array, Integers
 from .rows import ContactRows
 
 TIMESTEP, IMPRATIO = 0, 1
-"""Places of the two options in `Memory.options`."""
+"""Places of the two options in `EngineArrays.options`."""
 TYPES = {"mjtNum": ctypes.c_double, "int": ctypes.c_int}
 """Types of C by their names in MuJoCo's description of mjOption."""
 LIBRARIES = {"linux": "libmujoco.so.*", "darwin": "libmujoco.*.dylib", "win32": "mujoco.dll"}
 """File names of MuJoCo's library in its Python package, by `sys.platform`."""
 
 
-class Memory(NamedTuple):
+class EngineArrays(NamedTuple):
     """What a compiled loop needs of a model and its data.
 
     Args:
@@ -63,7 +63,7 @@ class Memory(NamedTuple):
     upper: Integers
 
     @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> Memory:
+    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> EngineArrays:
         """The memory of a model and its data, which have to outlive it.
 
         Raises:

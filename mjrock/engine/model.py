@@ -15,7 +15,7 @@ import numpy as np
 from ..quantities import Flags
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .memory import Memory
+from .memory import EngineArrays
 from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
 from .record import Record
 from .solref import body_weight
@@ -47,7 +47,7 @@ class Engine:
 
     model: mujoco.MjModel
     data: mujoco.MjData
-    memory: Memory
+    memory: EngineArrays
     room: Record
 
     @classmethod
@@ -77,7 +77,7 @@ class Engine:
         return cls(
             model,
             data,
-            Memory.of(model, data),
+            EngineArrays.of(model, data),
             Record.of(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.c)),
         )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.frames import frames_of
 from ..quantities import Array, Flags
-from .memory import Memory
+from .memory import EngineArrays
 from .pace import Pace
 from .setting import Setting
 from .sliding import Sliding
@@ -48,7 +48,7 @@ class Progress(NamedTuple):
     sliding: Sliding
 
     @classmethod
-    def of(cls, memory: Memory, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
+    def of(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
         """The state before the first step."""
         springs, freedom = Springs.of(setting.points.law, setting.ties), setting.points.places.freedom
         frames = frames_of(memory.pose, freedom)

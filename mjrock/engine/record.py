@@ -16,14 +16,6 @@ from ..result.response import State
 from ..result.samples import interpolated, intervals, thinned
 
 
-class StepError(RuntimeError):
-    """The engine warned, or the state is no longer finite, at the time given [s]."""
-
-    def __init__(self, what: str, t: float) -> None:
-        super().__init__(what)
-        self.t = t
-
-
 class Record(NamedTuple):
     """Steps one after the other, or room for them.
 

@@ -9,20 +9,26 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from ..geometry.kinematics import gaps
+from ..problem.damping.contacts import Contacts
+from ..problem.masonry.case import MasonryCase
+from ..problem.wall.case import Case
 from ..quantities import Array, Integers
-from ..result.ledger import ENERGY_GAIN, from_nowhere
+from ..result.ledger import ENERGY_GAIN, StepError, require_no_gain
 from ..result.motion import SampledMotion
+from ..result.reading import Reading, masonry_reading, wall_reading
 from ..result.response import Response
-from ..result.ties import Plastic, told_of_ties
+from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.course import Course
 from ..scene.scene import Scene
 from ..scene.structure import breaks
 from .energy_work import ground_work, ledger
 from .forces import kept_forces
 from .model import SimulationError
-from .reading import Asked, Reading
-from .record import StepError, Steps
+from .record import Steps
 
+MARKS = 1000
+"""Times in a run of masonry between which no energy may appear."""
 SLIDING = 4.0
 """omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
 
@@ -37,17 +43,19 @@ class EngineRun:
     """A run of the engine that has been checked.
 
     Args:
-        asked, scene, course: what was asked, what stands, and what happened to it.
+        case, contacts, scene, course: what was asked, what stands, and what happened to it. Masonry has no contacts.
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
         taken: what ties have taken up to each step [J], shape (steps, t).
         broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
+        count: how many steps come before the wall cannot come back, or before the first block falls.
         scale: energy of the release, of the springs at rest, or at most where they start empty, and of what the ground
             put in or took [J].
     """
 
-    asked: Asked
+    case: Case | MasonryCase
+    contacts: Contacts | None
     scene: Scene
     course: Course
     steps: Steps
@@ -55,24 +63,35 @@ class EngineRun:
     taken: Array
     broken: Integers
     reading: Reading
+    count: int
     scale: float
 
     @classmethod
-    def judged(cls, asked: Asked, scene: Scene, course: Course, steps: Steps) -> EngineRun:
+    def judged(
+        cls, case: Case | MasonryCase, contacts: Contacts | None, scene: Scene, course: Course, steps: Steps
+    ) -> EngineRun:
         """The run of these steps.
 
         Raises:
             StepError: if energy appears from nowhere.
         """
-        broken = breaks(scene.ties, steps.pose, scene.places.freedom)
+        broken, nq, nv = breaks(scene.ties, steps.pose, scene.freedom), scene.freedom.nq, scene.freedom.nv
         stored, taken = scene.accounts(steps.pose, steps.velocity, broken)
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
-        reading = asked.read(scene, course, steps, energy)
-        work = ground_work(scene, course, steps)[: reading.count]
-        elastic = float(scene.rest_energies[2]) or float(stored[: reading.count, 2].max())  # as drawn springs hold none
+        bodies = len(scene.bodies.names)
+        motion = SampledMotion(steps.pose.reshape(-1, bodies, nq), steps.velocity.reshape(-1, bodies, nv), energy)
+        if isinstance(case, MasonryCase):
+            reading = masonry_reading(case, scene, steps.t, motion)
+            marks, count = marks_of_masonry(reading, steps)
+        else:
+            assert contacts is not None
+            reading = wall_reading(case, contacts, steps.t, motion, released=course.released)
+            marks, count = marks_of_wall(reading, case, steps)
+        work = ground_work(scene, course, steps)[:count]
+        elastic = float(scene.rest_energies[2]) or float(stored[:count, 2].max())  # as drawn springs hold none
         scale = max(float(energy[0]), 0.0) + float(np.abs(work).sum()) + elastic
-        require_no_gain(scene, steps, work, reading.marks, scale)
-        return cls(asked, scene, course, steps, energy, taken, broken, reading, scale)
+        require_no_gain(steps.windows.t[marks], balance(scene, steps, work, marks), scale)
+        return cls(case, contacts, scene, course, steps, energy, taken, broken, reading, count, scale)
 
     def response(
         self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: dict[str, Any]
@@ -80,9 +99,9 @@ class EngineRun:
         """What was found: samples `spacing` apart, or every `stride`-th step where that is None."""
         scene, course, steps, reading = self.scene, self.course, self.steps, self.reading
         t, pose, velocity, end = steps.sampled(course.duration, spacing, stride)
-        plastic = plastic_of(scene, steps, self.taken, self.broken, course.duration)
+        plastic = self.plastic()
         return Response(
-            case=self.asked.case,
+            case=self.case,
             solver="MuJoCo",
             t=t,
             motion=SampledMotion(pose, velocity, np.interp(t, steps.t, self.energy)),
@@ -92,64 +111,74 @@ class EngineRun:
             joints=reading.joints,
             plastic=plastic,
             ledger=ledger(scene, course, steps).at(t) if want_ledger else None,
-            stats=stats_of(scene, steps) | reading.stats | settings,
+            stats=self.stats() | reading.stats | settings,
             end=end,
-            kept_forces=kept_forces(self.asked.case, scene, steps, t, plastic) if want_forces else None,
+            kept_forces=kept_forces(self.case, scene, steps, t, plastic) if want_forces else None,
         )
 
+    def plastic(self) -> dict[str, Plastic]:
+        """What each tie has yielded when the duration is over."""
+        steps, links, duration = self.steps, self.scene.links.sprung, self.course.duration
+        energy = np.array([np.interp(duration, steps.t, taken) for taken in self.taken.T])
+        when = np.append(steps.windows.t, np.inf)[np.minimum(self.broken, len(steps.t))]
+        when[when > duration] = np.inf
+        gone = np.isfinite(when)
+        energy[gone] = (links.strength * links.ultimate)[gone]
+        lost = np.where(gone, 0.5 * links.strength**2 / links.k, 0.0)
+        return plastic_of(self.scene, energy / links.strength, energy, when, lost)
 
-def stats_of(scene: Scene, steps: Steps) -> dict[str, Any]:
-    """What a run took, for the `stats` of its response."""
-    return {
-        "steps": len(steps.t),
-        "longest_timestep": float(steps.h.max()),
-        "sound_timestep": sound_timestep(scene.highest_frequency),
-        "touches": steps.touches,
-        "mujoco": mujoco.__version__,
-    }
+    def stats(self) -> dict[str, Any]:
+        """What a run took, for the `stats` of its response."""
+        scene, steps, contacts = self.scene, self.steps, self.scene.contacts
+        stats = {
+            "steps": len(steps.t),
+            "longest_timestep": float(steps.h.max()),
+            "sound_timestep": sound_timestep(scene.highest_frequency),
+            "touches": steps.touches,
+            "mujoco": mujoco.__version__,
+        }
+        if isinstance(self.case, Case):
+            deepest = -gaps(scene.places, steps.pose).min(axis=0)
+            for joint, name in enumerate(contacts.joints):
+                stats[f"deepest_{name}"] = float(max(0.0, *deepest[contacts.joint == joint]))
+        return stats
 
 
-def plastic_of(scene: Scene, steps: Steps, taken: Array, broken: Integers, duration: float) -> dict[str, Plastic]:
-    """What each tie has yielded when the duration [s] is over, from what it had taken [J] by each step, (n, ties)."""
-    plastic = {}
-    links = scene.links.sprung
-    for i, (name, strength) in enumerate(zip(links.names, links.strength.tolist(), strict=True)):
-        energy = float(np.interp(duration, steps.t, taken[:, i]))
-        plastic[name] = Plastic(energy / strength, energy, start=float(scene.ties.reach[i] - links.reach[i]))
-        if broken[i] < len(steps.t) and (when := float(steps.windows.t[broken[i]])) <= duration:
-            energy = strength * float(links.ultimate[i])
-            plastic[name] = Plastic(energy / strength, energy, when, 0.5 * strength**2 / float(links.k[i]))
-    return plastic
+def marks_of_wall(reading: Reading, case: Case, steps: Steps) -> tuple[Integers, int]:
+    """The windows in which the peaks of a wall lie and the last, in order, and the steps before it cannot come back.
+
+    What a fall releases dwarfs the energy it was released with.
+    """
+    times, count = reading.peak_times, case.returning(steps.pose[:, 2])
+    met = np.searchsorted(steps.windows.t, times[times <= steps.t[count - 1]])
+    return np.unique(np.concatenate([[0], np.minimum(met, count - 1), [count - 1]])), count
 
 
-def require_no_gain(scene: Scene, steps: Steps, work: Array, marks: Integers, scale: float) -> None:
-    """Make sure that no energy appears from nowhere.
+def marks_of_masonry(reading: Reading, steps: Steps) -> tuple[Integers, int]:
+    """MARKS windows of masonry before its first block falls, in order, and how many steps come before that."""
+    assert reading.joints is not None
+    count = int(np.searchsorted(steps.t, next(iter(reading.joints.fallen.values()), np.inf)))
+    return np.linspace(0, count - 1, min(count, MARKS)).astype(int), count
 
-    The energy less what the ground has put in may not be larger at one mark than at an earlier one, by more than
-    ENERGY_GAIN of `scale`. Marks are some of the windows of the steps, where energy and work belong to the same time,
-    and not neighbouring ones: a touch inside a step misplaces energy while the contact lasts. What matters is whether
-    an impact as a whole has lost or gained.
+
+def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
+    """Energy that is there and was taken less what the ground has put in, at the start of some windows [J].
+
+    In a window energy and work belong to the same time. Neighbouring ones decide nothing: a touch inside a step
+    misplaces energy while the contact lasts. What matters is whether an impact as a whole has lost or gained.
 
     Args:
         scene, steps: the run.
         work: of the ground in each window [J], see `ground_work`.
         marks: which windows, in order.
-        scale: the energy there was [J].
-
-    Raises:
-        StepError: if energy has appeared.
     """
     windows = steps.windows
     yields = bool(np.isfinite(scene.links.sprung.strength).any())  # a tie yields between the marks too
     at = np.arange(marks[-1] + 1) if yields else marks
     broken = (breaks(scene.ties, steps.pose, scene.places.freedom),) if yields else ()
     stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
-    balance = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
-    balance = balance[marks] if yields else balance
-    gain = from_nowhere(balance, scale)
-    if gain is not None:
-        worst, _, said = gain
-        raise StepError(said, float(windows.t[marks[worst]]))
+    own = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
+    return np.asarray(own[marks] if yields else own)
 
 
 def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) -> SimulationError:

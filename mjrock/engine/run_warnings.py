@@ -9,12 +9,13 @@ import numpy as np
 from ..method import METHOD
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
+from ..problem.wall.case import Case
 from ..quantities import named
+from ..result.ledger import warn_if_open
 from ..result.response import Response
 from ..scene.scene import Scene
 from .energy_work import contact_work
 from .points import points_of
-from .reading import AskedWall
 from .record import Steps
 from .run import EngineRun, sound_timestep
 
@@ -89,10 +90,11 @@ def warn_if_lifted(scene: Scene, steps: Steps) -> None:
         )
 
 
-def warn_if_slid(run: EngineRun, asked: AskedWall) -> None:
-    """Warn of a base that has slid although it should hold."""
-    half_base, slid = asked.case.block.half_base, run.reading.slid
-    if asked.contacts.base.friction is None and slid > SLID * half_base:
+def warn_if_slid(run: EngineRun, half_base: float) -> None:
+    """Warn of a base that has slid although it should hold, while the wall can still come back."""
+    slip = run.reading.slip
+    slid = float(np.abs(slip[: run.count] - slip[0]).max())
+    if slid > SLID * half_base:
         warnings.warn(
             f"the base slid by up to {slid:.3g} m, {slid / half_base:.1%} of b, although it should hold: no "
             "edge was loaded enough to hold it. Give the base the friction that it has",
@@ -100,13 +102,8 @@ def warn_if_slid(run: EngineRun, asked: AskedWall) -> None:
         )
 
 
-def warn_if_open(response: Response, run: EngineRun, asked: AskedWall, advice: str) -> None:
-    """Warn of a ledger with energy that nothing has put in, with advice."""
-    if response.ledger is None:
-        return
-    standing = asked.case.returns_from(response.theta)
-    unpaid = float(response.ledger.residual[standing].max(initial=0.0)) / run.scale
-    if unpaid > OPEN:
-        warnings.warn(
-            f"the ledger does not close: it has {unpaid:.1%} of the energy there was too much; {advice}", stacklevel=3
-        )
+def warn_of_gain(response: Response, run: EngineRun, case: Case, advice: str) -> None:
+    """Warn of a ledger of a wall with energy that nothing has put in while it can still come back, with advice."""
+    if response.ledger is not None:
+        unpaid = float(response.ledger.residual[case.returns_from(response.theta)].max(initial=0.0))
+        warn_if_open(unpaid, run.scale, OPEN, "the energy there was", lambda share: advice)

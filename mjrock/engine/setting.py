@@ -16,7 +16,7 @@ from ..scene.dampers import Dampers, damp, damping_forces
 from ..scene.ground import Ground, push_ground
 from ..scene.masses import gyroscopic
 from ..scene.scene import Scene
-from .memory import TIMESTEP, Memory
+from .memory import TIMESTEP, EngineArrays
 from .points import Points, points_of
 
 
@@ -55,7 +55,7 @@ class Setting(NamedTuple):
 
 
 @jitable
-def add_gyroscopic_correction(memory: Memory, setting: Setting, axes: tuple[int, ...], ahead: float) -> None:
+def add_gyroscopic_correction(memory: EngineArrays, setting: Setting, axes: tuple[int, ...], ahead: float) -> None:
     """Add to the applied forces what MuJoCo's gyroscopic moments lack in space; in the plane there are none.
 
     MuJoCo has -w x I w at the velocity that it keeps, half a step before the pose. This is first order in the step, and
@@ -78,7 +78,7 @@ def add_gyroscopic_correction(memory: Memory, setting: Setting, axes: tuple[int,
 
 
 @jitable
-def push(memory: Memory, setting: Setting, frames: Array, t: float) -> None:
+def push(memory: EngineArrays, setting: Setting, frames: Array, t: float) -> None:
     """Write the forces of the moving ground and of the dampers in the step that is set into the applied forces.
 
     A damper acts at the velocity of the pose. That of the text, which a fixed step has, acts half a step earlier. So it

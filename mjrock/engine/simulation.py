@@ -14,6 +14,7 @@ from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
+from ..result.ledger import StepError
 from ..result.response import Response, State
 from ..result.start import require_unbreakable, required_start
 from ..result.stopwatch import Stopwatch
@@ -26,12 +27,12 @@ from .estimate import warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
-from .reading import Asked, AskedMasonry, AskedWall
-from .record import StepError
 from .run import EngineRun, explained, sound_timestep
-from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_open, warn_if_sheared, warn_if_slid
+from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_sheared, warn_if_slid, warn_of_gain
 from .stepping import fitted_steps, fixed_steps
 
+Asked = tuple[Case | MasonryCase, Contacts | None]
+"""A case and its contacts; those of masonry are its own."""
 SPACING = 1e-3
 """Distance of samples between fitted steps, where none is asked for [s]."""
 
@@ -181,7 +182,7 @@ def simulate(
     course = course_of(case, scene)
     if state is not None:
         course = course.continued(*state)
-    asked: Asked = AskedMasonry(case) if isinstance(case, MasonryCase) else AskedWall(case, contacts)  # type: ignore[arg-type]
+    asked = case, contacts
     if options.timestep is None:
         if isinstance(case, MasonryCase):
             warn_if_slow(scene, case.masonry)
@@ -193,11 +194,11 @@ def simulate(
     response = run.response(options.spacing, options.stride, options.ledger, options.forces, settings)
     if not (options.timestep is None or options.slides):
         warn_if_lifted(scene, run.steps)
-    if isinstance(asked, AskedWall):
-        if asked.contacts.base.friction is None:
-            warn_of_low_stop(asked.case)
-        warn_if_slid(run, asked)
-        warn_if_open(response, run, asked, options.remedy)
+    if isinstance(case, Case) and contacts is not None:
+        if contacts.base.friction is None:
+            warn_of_low_stop(case)
+            warn_if_slid(run, case.block.half_base)
+        warn_of_gain(response, run, case, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
@@ -219,7 +220,7 @@ def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tupl
                 watch = Stopwatch()
                 steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
             took = watch.stepping()
-            run = EngineRun.judged(asked, scene, course, steps)
+            run = EngineRun.judged(*asked, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
             if used < 0.02 * options.accuracy:
@@ -241,7 +242,7 @@ def fixed(asked: Asked, scene: Scene, course: Course, options: Options, h: float
             watch = Stopwatch()
             steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
         took = watch.stepping()
-        run = EngineRun.judged(asked, scene, course, steps)
+        run = EngineRun.judged(*asked, scene, course, steps)
     except StepError as error:
         raise explained(error, scene, h, None) from None
     return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, **took}

@@ -23,7 +23,7 @@ from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apar
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, tangent
 from ..method import METHOD, Method
 from ..quantities import Array, Flags
-from .memory import IMPRATIO, TIMESTEP, Memory
+from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .points import Points
 from .setting import Setting, push
 from .solref import inertia_of
@@ -107,7 +107,7 @@ def turned_to(sliding: Sliding, i: int, way: Vector) -> float:
 
 
 @inlined
-def take_way(memory: Memory, places: Places, sliding: Sliding, i: int, meets: Meeting, frames: Array) -> float:
+def take_way(memory: EngineArrays, places: Places, sliding: Sliding, i: int, meets: Meeting, frames: Array) -> float:
     """Take the way of contact i at the velocity of the pose, and return by how much it has changed [-].
 
     The leapfrog keeps the velocity of half a step before. The slip may turn with the motion in between.
@@ -118,7 +118,7 @@ def take_way(memory: Memory, places: Places, sliding: Sliding, i: int, meets: Me
 
 
 @jitable
-def pressing_force(memory: Memory, points: Points, i: int, meets: Meeting, frames: Array) -> float:
+def pressing_force(memory: EngineArrays, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
     places, d, W = points.places, memory.rows.solimp[i, 0], points.inertia.weight[i]
     rate = dot(meets.normal, over_face(places, i, meets, frames, memory.velocity))
@@ -128,7 +128,7 @@ def pressing_force(memory: Memory, points: Points, i: int, meets: Meeting, frame
 
 
 @jitable
-def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array) -> bool:
+def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array) -> bool:
     """Whether a contact slides; its friction is guessed from the acceleration of the last step, its row let go.
 
     A contact slides where its slip is more than its row could stop, and the row would press it apart.
@@ -155,7 +155,7 @@ def find_sliding(memory: Memory, points: Points, sliding: Sliding, frames: Array
 
 
 @inlined
-def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
+def apply_friction(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Write the force of the moving ground and the friction of what slides into the applied forces."""
     places = setting.points.places
     push(memory, setting, frames, t)
@@ -167,7 +167,7 @@ def apply_friction(memory: Memory, setting: Setting, sliding: Sliding, frames: A
 
 
 @jitable
-def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int) -> tuple[bool, bool]:
+def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, n: int) -> tuple[bool, bool]:
     """Bring the friction of what slides up to date with the accelerations that the engine has found in look n.
 
     A contact gets its row back where friction stops its slip within the step, or where no force is found: beyond some
@@ -200,7 +200,7 @@ def look(memory: Memory, points: Points, sliding: Sliding, frames: Array, n: int
 
 
 @jitable
-def slide(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> bool:
+def slide(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, t: float) -> bool:
     """Whether contacts slide; the applied forces then hold their friction, and the engine all but the accelerations."""
     if not (sliding.coulomb and find_sliding(memory, setting.points, sliding, frames)):
         return False
@@ -233,7 +233,7 @@ def sliding_changed(sliding: Sliding) -> bool:
 
 
 @jitable
-def give_rows_back(memory: Memory, sliding: Sliding) -> None:
+def give_rows_back(memory: EngineArrays, sliding: Sliding) -> None:
     """Give every contact that slid its row back, and clear the applied forces."""
     memory.applied[:] = 0.0
     for i in range(len(sliding.slides)):
@@ -242,7 +242,7 @@ def give_rows_back(memory: Memory, sliding: Sliding) -> None:
 
 
 @inlined
-def find_acceleration(memory: Memory, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
+def find_acceleration(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, t: float) -> None:
     """Let the engine find the accelerations of a step, and make none."""
     if slide(memory, setting, sliding, frames, t):
         memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)

@@ -16,13 +16,14 @@ from tqdm import tqdm
 
 from ..geometry.frames import frames_of
 from ..method import METHOD, Method
+from ..result.ledger import StepError
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .loop import fitted_loop, fixed_loop, release, settle_ties
 from .model import Engine
 from .pace import Pace
 from .progress import Progress, StepClock
-from .record import Record, StepError, StepKinds, Steps
+from .record import Record, StepKinds, Steps
 from .setting import Setting
 from .sliding import Sliding
 from .sticking import Joints

@@ -10,7 +10,7 @@ import numpy as np
 from ..quantities import Array
 
 
-def turned(a: Array, b: Array) -> Array:
+def cross(a: Array, b: Array) -> Array:
     """The product a_x b_y - a_y b_x, of vectors with shape (..., 2)."""
     product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return product
@@ -22,7 +22,7 @@ def clipped(polygon: Array, window: Array) -> Array:
     It is cut by one edge after the other (Sutherland and Hodgman, Communications of the ACM 17, 1974, 32-42).
     """
     for start, way in zip(window, np.roll(window, -1, axis=0) - window, strict=True):
-        inwards = turned(way, polygon - start)
+        inwards = cross(way, polygon - start)
         if (inwards >= 0).all():
             continue
         kept = []
@@ -49,7 +49,7 @@ def cleaned(polygon: Array, tolerance: float) -> Array:
         before, after = np.roll(polygon, 1, axis=0), np.roll(polygon, -1, axis=0)
         chord = np.hypot(*(after - before).T)
         height = np.hypot(*(polygon - before).T)
-        np.divide(turned(polygon - before, after - before), chord, out=height, where=chord > 0)
+        np.divide(cross(polygon - before, after - before), chord, out=height, where=chord > 0)
         height = np.minimum(np.abs(height), np.hypot(*(polygon - before).T))
         flattest = int(height.argmin())
         if height[flattest] > tolerance:
@@ -61,14 +61,14 @@ def cleaned(polygon: Array, tolerance: float) -> Array:
 def area(polygon: Array) -> float:
     """Area of a polygon [m2]."""
     about = polygon - polygon[0]
-    return 0.5 * float(turned(about, np.roll(about, -1, axis=0)).sum())
+    return 0.5 * float(cross(about, np.roll(about, -1, axis=0)).sum())
 
 
 def centroid(polygon: Array) -> Array:
     """Centroid of the area of a polygon [m], shape (2,)."""
     about = polygon - polygon[0]
     after = np.roll(about, -1, axis=0)
-    twice = turned(about, after)
+    twice = cross(about, after)
     middle: Array = polygon[0] + (twice[:, None] * (about + after)).sum(axis=0) / (3 * twice.sum())
     return middle
 
@@ -89,7 +89,7 @@ def shares(polygon: Array, point: Array) -> Array:
     lengths = np.hypot(*spokes.T)
     after = np.roll(spokes, -1, axis=0)
     # tan of half the angle between a spoke and the next
-    halves = turned(spokes, after) / (lengths * np.roll(lengths, -1) + (spokes * after).sum(axis=1))
+    halves = cross(spokes, after) / (lengths * np.roll(lengths, -1) + (spokes * after).sum(axis=1))
     weights = (halves + np.roll(halves, 1)) / lengths
     normed: Array = weights / weights.sum()
     return normed

@@ -109,7 +109,7 @@ def _take_frames(q: Array, frames: Array, axes: tuple[int, ...]) -> None:
 
 
 @inlined
-def swung(frames: Array, body: int, r: Vector) -> Vector:
+def rotation_change(frames: Array, body: int, r: Vector) -> Vector:
     """(R - 1) r: the displacement of the end of a vector r of a body by its rotation alone."""
     if len(r) == 2:
         sine, versine = frames[body, 2], frames[body, 3]
@@ -127,12 +127,12 @@ def displaced(start: Vector, frames: Array, body: int, r: Vector) -> Vector:
     if len(r) == 2:
         sine, versine = frames[body, 2], frames[body, 3]
         return start[0] + r[1] * sine - r[0] * versine, start[1] - r[0] * sine - r[1] * versine
-    return plus(start, swung(frames, body, r))
+    return plus(start, rotation_change(frames, body, r))
 
 
 @inlined
-def unswung(frames: Array, body: int, r: Vector) -> Vector:
-    """(R^T - 1) r: the reverse of `swung`."""
+def inverse_rotation_change(frames: Array, body: int, r: Vector) -> Vector:
+    """(R^T - 1) r: the reverse of `rotation_change`."""
     if len(r) == 2:
         sine, versine = frames[body, 2], frames[body, 3]
         return -r[1] * sine - r[0] * versine, r[0] * sine - r[1] * versine
@@ -157,7 +157,7 @@ def spin(frames: Array, v: Array, body: int, axes: tuple[int, ...]) -> Vector:
     if len(axes) == 2:
         return (v[3 * body + 2],)
     local = v[6 * body + 3], v[6 * body + 4], v[6 * body + 5]
-    return plus(local, swung(frames, body, local))
+    return plus(local, rotation_change(frames, body, local))
 
 
 @inlined
@@ -180,7 +180,7 @@ def push_body(frames: Array, body: int, arm: Vector, force: Vector, total: Array
         total[3 * body + 1] += force[1]
         total[3 * body + 2] += turning[0]
     else:
-        local = plus(turning, unswung(frames, body, turning))
+        local = plus(turning, inverse_rotation_change(frames, body, turning))
         for axis in range(3):
             total[6 * body + axis] += force[axis]
             total[6 * body + 3 + axis] += local[axis]

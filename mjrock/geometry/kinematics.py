@@ -15,7 +15,7 @@ import numpy as np
 
 from ..compiled import compiled, inlined, jitable
 from ..quantities import Array, Integers
-from .frames import Freedom, displaced, linear, place, push_body, spin, swung, take_frames
+from .frames import Freedom, displaced, linear, place, push_body, rotation_change, spin, take_frames
 from .links import ends, parting
 from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, tangents, vector
 
@@ -78,7 +78,7 @@ class Ties(NamedTuple):
     squeeze: Array
 
 
-class Forces(NamedTuple):
+class AppliedForces(NamedTuple):
     """Forces that keep size and direction and follow a point of a body, as arrays for compiled functions.
 
     Args:
@@ -146,13 +146,13 @@ def meeting(places: Places, i: int, frames: Array) -> Meeting:
     axes, body, face = places.axes, places.body[i], places.face_body[i]
     at, normal = vector(places.at, i, axes), vector(places.normal, i, axes)
     between = plus(vector(places.between, i, axes), place(frames, body, axes))
-    arm, across = plus(at, swung(frames, body, at)), displaced(between, frames, body, at)
+    arm, across = plus(at, rotation_change(frames, body, at)), displaced(between, frames, body, at)
     if face < 0:
         return Meeting(dot(normal, across), normal, across, arm, across)
     at = vector(places.face_at, i, axes)
     across = minus(across, displaced(place(frames, face, axes), frames, face, at))
     normal = displaced(normal, frames, face, normal)
-    face_arm = plus(plus(at, swung(frames, face, at)), across)
+    face_arm = plus(plus(at, rotation_change(frames, face, at)), across)
     return Meeting(dot(normal, across), normal, across, arm, face_arm)
 
 
@@ -279,7 +279,7 @@ def snaps(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) ->
 
 
 @inlined
-def displacement(forces: Forces, i: int, frames: Array, axes: tuple[int, ...]) -> Vector:
+def displacement(forces: AppliedForces, i: int, frames: Array, axes: tuple[int, ...]) -> Vector:
     """Displacement of the point of force i from rest [m]."""
     body = forces.body[i]
     return displaced(place(frames, body, axes), frames, body, vector(forces.at, i, axes))

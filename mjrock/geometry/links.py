@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from ..compiled import inlined
 from ..quantities import Array
-from .frames import linear, place, spin, swung
+from .frames import linear, place, rotation_change, spin
 from .vectors import Vector, minus, plus, spun, vector
 
 
@@ -27,12 +27,12 @@ class Ends(NamedTuple):
 def ends(links: Any, i: int, frames: Array, axes: tuple[int, ...]) -> Ends:
     """The ends of link i of ties or dampers, see `kinematics.Ties`."""
     body, anchor, at = links.body[i], links.anchor_body[i], vector(links.at, i, axes)
-    arm = plus(at, swung(frames, body, at))
+    arm = plus(at, rotation_change(frames, body, at))
     across = plus(vector(links.between, i, axes), plus(place(frames, body, axes), minus(arm, at)))
     if anchor < 0:
         return Ends(across, arm, arm)
     at = vector(links.anchor_at, i, axes)
-    anchor_arm = plus(at, swung(frames, anchor, at))
+    anchor_arm = plus(at, rotation_change(frames, anchor, at))
     return Ends(minus(across, plus(place(frames, anchor, axes), minus(anchor_arm, at))), arm, anchor_arm)
 
 

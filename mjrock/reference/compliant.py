@@ -15,15 +15,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
-from ..problem.damping.contacts import Contacts, Uplift
+from ..problem.damping.contacts import Contacts
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
-from ..result.ending import ending
-from ..result.history import rocking_history
 from ..result.motion import SampledMotion
+from ..result.reading import wall_reading
 from ..result.response import Response
-from ..result.rocking import Rocking
 from ..result.samples import intervals, required_spacing, thinned
 from ..result.stopwatch import Stopwatch
 from ..result.ties import Plastic
@@ -69,25 +67,22 @@ def solve_compliant(
     require_size("the samples of this answer", count * parts, "follow it for less")
     output = np.linspace(0.0, case.duration, count * parts + 1)
     sampled, history, evaluations, switches = _integrated(system, case, output, period, rtol, atol)
-    theta, omega = history[:, 2], history[:, 5]
-    energy = system.energy(history)
-    uplift = Uplift.of(case, contacts)
-    _, peaks, impacts = rocking_history(case, sampled, theta, omega, energy, uplift)
-    kept = thinned(len(sampled), parts)
-    outcome, message = ending(case, sampled, theta, energy, uplift.energy, history[-1, 3:6])
+    motion = SampledMotion(history[:, None, :3], history[:, None, 3:6], system.energy(history))
+    reading, kept = wall_reading(case, contacts, sampled, motion), thinned(len(sampled), parts)
     return Response(
         case=case,
         solver="compliant",
         t=sampled[kept],
-        motion=SampledMotion(history[kept, None, :3], history[kept, None, 3:6], energy[kept]),
-        rocking=Rocking(impacts, peaks),
-        outcome=outcome,
-        message=message,
+        motion=SampledMotion(motion.pose[kept], motion.velocity[kept], motion.energy[kept]),
+        rocking=reading.rocking,
+        outcome=reading.outcome,
+        message=reading.message,
         plastic={
             name: Plastic(slider.path, slider.path * slider.law.strength, start=slider.start)
             for name, slider in system.sliders.items()
         },
         stats={
+            **reading.stats,
             **watch.took(),
             "evaluations": evaluations,
             "switches": switches,

@@ -161,7 +161,7 @@ def masonry_cautions(responses: Sequence[Response], names: Sequence[str]) -> lis
         said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
     if not any(response.solver == "explicit" for response in responses):
         said.append("In MuJoCo faces have no end, and blocks that fall meet no others: explicit steps know both.")
-    said.append("A margin hangs on k_n and the points of the joints: repeat it with others.")
+    said.append("A margin depends on k_n and the points of the joints: repeat it with others.")
     for response, name in zip(responses, names, strict=True):
         for tie, drawn in response.plastic.items():
             if drawn.broken < float("inf"):

@@ -53,12 +53,10 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
             return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
 
 
-def masonry_ending(
-    fallen: Mapping[str, float], quiet: bool, t_end: float, unmet: str = "other than those of the joints at rest"
-) -> tuple[Outcome, str]:
-    """How a run ended, and the same in words; `unmet` says which contacts of blocks that fell are left out."""
+def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, everywhere: bool) -> tuple[Outcome, str]:
+    """How a run ended, and the same in words; `everywhere` says whether blocks meet wherever they are."""
     if fallen:
-        left_out = f"; contacts {unmet} are not in the model" if unmet else ""
+        left_out = "" if everywhere else "; contacts other than those of the joints at rest are not in the model"
         first = f"{len(fallen)} blocks fell, the first at {next(iter(fallen.values())):.4g} s: {named(list(fallen))}."
         return Outcome.OVERTURNED, f"{first} The motion was followed for {t_end:.4g} s{left_out}."
     if quiet:

@@ -51,7 +51,7 @@ def fallen_blocks(masonry: Masonry, t: Array, parted: Flags, tilt: Array, drop: 
 def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
     """When each block that left its joints did [s]: it slid off, and none connects it with a fixed block any more.
 
-    In MuJoCo faces have no end and blocks have no other contacts. So the motion of such a block is none of masonry, and
+    In MuJoCo faces have no end and blocks have no other contacts. So such a block moves as no masonry does, and
     it counts as fallen there.
 
     Args:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled, jitable
-from ..geometry.frames import frames_of, take_frames, unswung
+from ..geometry.frames import frames_of, inverse_rotation_change, take_frames
 from ..geometry.kinematics import Places, meeting
 from ..geometry.vectors import Vector, minus, plus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints, travels
@@ -20,7 +20,7 @@ AT_ONCE = 1_000_000
 """Most gaps that are held at once while the joints of a run are looked at."""
 
 
-class Followed(NamedTuple):
+class JointRecord(NamedTuple):
     """What joints did in a run.
 
     Args:
@@ -37,7 +37,7 @@ class Followed(NamedTuple):
     parted: Flags
 
 
-def in_parts(pose: Array, joints: int, look: Callable[[Array], Followed]) -> Followed:
+def in_parts(pose: Array, joints: int, look: Callable[[Array], JointRecord]) -> JointRecord:
     """What joints did at poses, looked at a part of the steps at a time.
 
     `look` takes the poses of some steps and gives what the joints do at each: all but `deepest` has the shape (steps,
@@ -51,10 +51,10 @@ def in_parts(pose: Array, joints: int, look: Callable[[Array], Followed]) -> Fol
         opening, sliding = np.maximum(opening, seen.opening.max(axis=0)), np.maximum(sliding, seen.sliding.max(axis=0))
         off[first : first + size], parted[first : first + size] = seen.off, seen.parted
         deepest = max(deepest, seen.deepest)
-    return Followed(opening, sliding, deepest, off, parted)
+    return JointRecord(opening, sliding, deepest, off, parted)
 
 
-def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> Followed:
+def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array, pose: Array) -> JointRecord:
     """What the joints of masonry did.
 
     The blocks of a joint have parted where one has slid by more than the width of the joint, or where their faces are
@@ -71,10 +71,12 @@ def joint_motion(masonry: Masonry, places: Places, joint: Integers, start: Array
     slid_off = _slid_off_in_space(masonry) if masonry.in_space else _slid_off_in_plane(masonry)
     widths = np.array([each.width for each in joints])
 
-    def look(some: Array) -> Followed:
+    def look(some: Array) -> JointRecord:
         opened, nearest, slid = _looked(places, points, some, frames, len(joints))
         far, off = slid_off(slid)
-        return Followed(opened, far, max(0.0, -float(nearest.min())), off, (far > widths) | (nearest > PARTED * widths))
+        return JointRecord(
+            opened, far, max(0.0, -float(nearest.min())), off, (far > widths) | (nearest > PARTED * widths)
+        )
 
     return in_parts(pose, len(joints), look)
 
@@ -143,7 +145,7 @@ def _along(places: Places, i: int, frames: Array) -> Vector:
     """Where point i is along its face, from the origin of the face, in the axes of the face [m]."""
     meets, face = meeting(places, i, frames), places.face_body[i]
     along = minus(meets.across, scaled(meets.gap, meets.normal))
-    return along if face < 0 else plus(along, unswung(frames, face, along))
+    return along if face < 0 else plus(along, inverse_rotation_change(frames, face, along))
 
 
 @compiled

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,22 +15,46 @@ ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, over the energy there was [-]."""
 
 
-def from_nowhere(balance: Array, scale: float) -> tuple[int, float, str] | None:
-    """Where most energy has appeared from nowhere, its share of the energy there was, and the same in words; None where
-    the share is at most ENERGY_GAIN.
+class StepError(RuntimeError):
+    """Steps have broken down at the time `t` [s]; `share` of the energy there was has appeared from nowhere [-]."""
 
-    The two `require_no_gain`, in `engine.run` and `distinct.reading`, say of which samples.
+    def __init__(self, what: str, t: float, share: float = 0.0) -> None:
+        super().__init__(what)
+        self.t, self.share = t, share
+
+
+def require_no_gain(t: Array, balance: Array, scale: float) -> None:
+    """Make sure that at most ENERGY_GAIN of the energy there was appears from nowhere.
 
     Args:
-        balance: energy that is there and was taken, less what was put in [J], shape (n,). It may only fall.
+        t: times at which energy is judged [s], shape (n,). Each solver takes those at which it knows its energy best.
+        balance: energy that is there and was taken then, less what was put in [J], shape (n,). It may only fall.
         scale: the energy there was [J].
+
+    Raises:
+        StepError: if more has appeared.
     """
     gains = balance - np.minimum.accumulate(balance)
     worst = int(gains.argmax())
-    if gains[worst] <= ENERGY_GAIN * scale:
-        return None
-    share = gains[worst] / scale
-    return worst, float(share), f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
+    if gains[worst] > ENERGY_GAIN * scale:
+        share = float(gains[worst] / scale)
+        said = f"{gains[worst]:.3g} J, {share:.2%} of the energy there was, appeared from nowhere"
+        raise StepError(said, float(t[worst]), share)
+
+
+def warn_if_open(unpaid: float, scale: float, largest: float, of: str, advice: Callable[[float], str]) -> None:
+    """Warn of a ledger that does not close, with advice. The warning points at the call of a solver.
+
+    Args:
+        unpaid: energy without an account [J].
+        scale, of: what its share is taken of [J], and the same in words.
+        largest: share that is tolerated [-].
+        advice: what to do against that share, in words.
+    """
+    if unpaid > largest * scale:
+        share = unpaid / scale
+        said = f"the ledger does not close: {unpaid:.3g} J, {share:.1%} of {of}, have no account; {advice(share)}"
+        warnings.warn(said, stacklevel=4)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -11,7 +11,7 @@ from ..problem.masonry.faces_of_joints import faces_of_joints
 from ..problem.masonry.lines import edge_ends
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Integers, named
-from .joint_motion import Followed
+from .joint_motion import JointRecord
 
 LOOKS = 200
 """Most times at which a run is looked at."""
@@ -22,7 +22,7 @@ UPRIGHT = 1e-9
 
 
 def past_support(
-    masonry: Masonry, centroids: Array, motion: Followed, slips: Callable[[Integers], Array]
+    masonry: Masonry, centroids: Array, motion: JointRecord, slips: Callable[[Integers], Array]
 ) -> dict[str, float]:
     """How far the weight of each block has passed the edge of the faces that it stands on [m], at most, by its name.
 

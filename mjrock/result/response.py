@@ -50,9 +50,9 @@ class Response:
         plastic: what ties have yielded, and when they broke, by tie.
         ledger: every part of the energy, or None where none was asked for.
         stats: what the run took: `steps`, `timestep` [s] or solver tolerances, `wall_time`, `processor_time` [s], and
-            of the steps alone `stepping_time` and `stepping_processor_time` [s]. MuJoCo adds the deepest penetrations,
-            `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
-            `base_displacement` when the duration is over [m].
+            of the steps alone `stepping_time` and `stepping_processor_time` [s]. Solvers on compliant contacts add the
+            `base_displacement` of a wall when the duration is over, and the deepest penetration of masonry, `deepest`
+            [m]; MuJoCo has those of a wall, `deepest_base` and `deepest_side`.
         actuators: force of each actuator at the samples, by its name [N], shape (n,), positive where it pushes its
             block along its direction.
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.

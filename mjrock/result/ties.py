@@ -15,6 +15,7 @@ from ..problem.masonry.effects import laden, placed
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Anchored
 from ..quantities import Array
+from ..scene.scene import Scene
 
 PLAUSIBLE = 0.05
 """Share of its length up to which a tie may yield before that is warned of [-]: the characteristic strain at the
@@ -37,6 +38,13 @@ class Plastic(NamedTuple):
     broken: float = math.inf
     lost: float = 0.0
     start: float = 0.0
+
+
+def plastic_of(scene: Scene, *columns: Array) -> dict[str, Plastic]:
+    """What each link of a scene has yielded, from the fields of `Plastic` but `start`, shape (links,) each."""
+    links = scene.links.sprung
+    rows = zip(links.names, *columns, scene.ties.reach - links.reach, strict=True)
+    return {name: Plastic(*map(float, values)) for name, *values in rows}
 
 
 @dataclass(frozen=True, eq=False)

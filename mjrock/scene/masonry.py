@@ -17,7 +17,7 @@ from ..problem.masonry.statics import falling, friction_lacking, slippery
 from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
-from ..quantities import Array, Integers, named, require_kind
+from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .attachments import attachments
 from .checks import GROUND
 from .course import Course
@@ -25,6 +25,8 @@ from .parts import Bodies, ContactPoints, Limits
 from .rest import UnsettledError
 from .scene import Scene
 
+STIFF = 1e-5
+"""By how much joints that count as stiff give at each line under the heaviest block [m]."""
 GONE = 0.1
 """Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
 
@@ -60,13 +62,14 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
 
     What only ties keep from falling is left to the search for equilibrium.
     """
+    scene = standing_masonry(masonry, effects)
     try:
-        pose = standing_masonry(masonry, effects).at_rest
+        pose = scene.at_rest
     except UnsettledError as error:
         require_carried(masonry, effects)
-        raise unsettled(masonry, error.pose) from None
+        raise unsettled(masonry, scene, error.pose) from None
     if any(masonry.bonds):
-        require_held(masonry, standing_masonry(masonry, effects), pose)
+        require_held(masonry, scene, pose)
 
 
 def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
@@ -99,11 +102,11 @@ def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
 
 
-def unsettled(masonry: Masonry, pose: Array) -> ValueError:
+def unsettled(masonry: Masonry, scene: Scene, pose: Array) -> ValueError:
     """What is said of masonry that stands as rigid blocks, but of which no pose of rest was found.
 
     Args:
-        masonry: the masonry.
+        masonry, scene: the masonry.
         pose: of its free blocks at the end of the search, shape (free, nq).
     """
     slide, joints = slippery(masonry)
@@ -114,10 +117,27 @@ def unsettled(masonry: Masonry, pose: Array) -> ValueError:
         )
     moved = np.linalg.norm(pose[:, : 3 if masonry.in_space else 2], axis=1)
     gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= GONE * moved.max()]
+    if stands_on_stiff_joints(scene):
+        return ValueError(
+            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
+            "raise k_n"
+        )
     return ValueError(
-        f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
-        "raise k_n"
+        f"the masonry cannot stand: {named(gone)} would slide down, however large k_n is. Friction would hold them if "
+        "their joints were pressed together, as by wedges, but the weight alone does not press them enough; give the "
+        "joints more friction, or the blocks a support or a tie"
     )
+
+
+def stands_on_stiff_joints(scene: Scene) -> bool:
+    """Whether masonry comes to rest on joints that give by no more than STIFF under its heaviest block."""
+    k = scene.contacts.k
+    factor = max(1.0, float(scene.bodies.mass.max()) * GRAVITY / (STIFF * float(k.min())))
+    try:
+        _ = replace(scene, contacts=replace(scene.contacts, k=factor * k)).at_rest
+    except UnsettledError:
+        return False
+    return True
 
 
 @lru_cache(maxsize=16)

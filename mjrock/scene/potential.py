@@ -13,9 +13,17 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 
 from ..compiled import compiled, inlined
-from ..geometry.frames import displaced, frames_of, place, push_body, swung, unswung, velocities
+from ..geometry.frames import (
+    displaced,
+    frames_of,
+    inverse_rotation_change,
+    place,
+    push_body,
+    rotation_change,
+    velocities,
+)
 from ..geometry.kinematics import (
-    Forces,
+    AppliedForces,
     Places,
     Ties,
     along,
@@ -128,7 +136,7 @@ class Potential:
         total[upwards :: freedom.nv] = -GRAVITY * masses[upwards :: freedom.nv]
         for i, body in enumerate(forces.body):
             at = vector(forces.at, i, axes)
-            push_body(frames, body, plus(at, swung(frames, body, at)), vector(forces.force, i, axes), total)
+            push_body(frames, body, plus(at, rotation_change(frames, body, at)), vector(forces.force, i, axes), total)
         return total
 
     def energy(self, pose: Array) -> float:
@@ -174,16 +182,16 @@ class Potential:
         return self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
 
 
-def _turning_forces(forces: Forces, frames: Array, axes: tuple[int, ...], unknowns: int) -> csr_array:
+def _turning_forces(forces: AppliedForces, frames: Array, axes: tuple[int, ...], unknowns: int) -> csr_array:
     """Second derivatives of the energy of the constant forces, shape (n nv, n nv)."""
     bent, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 and len(forces.body) else np.zeros(0), velocities(axes)
     turning = np.zeros(unknowns)
     for i, body in enumerate(forces.body):
         at, force = vector(forces.at, i, axes), vector(forces.force, i, axes)
         if len(axes) == 2:
-            turning[nv * body + 2] += dot(force, plus(at, swung(frames, body, at)))
+            turning[nv * body + 2] += dot(force, plus(at, rotation_change(frames, body, at)))
         else:
-            r, local = np.array(at), np.array(plus(force, unswung(frames, body, force)))
+            r, local = np.array(at), np.array(plus(force, inverse_rotation_change(frames, body, force)))
             part = slice(nv * body + 3, nv * body + 6)
             bent[part, part] += r @ local * np.eye(3) - 0.5 * (np.outer(r, local) + np.outer(local, r))
     return csr_array(diags_array(turning) if not bent.size else csr_array(bent))

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
-from ..geometry.kinematics import Forces, Places, gaps
+from ..geometry.kinematics import AppliedForces, Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
 from ..problem.masonry.joint_law import Law, shear_limit
@@ -326,7 +326,7 @@ def tolerance(potential: Potential) -> float:
     return max(EXACT * heaviest(potential), ROUNDING * float((ties.k * ties.reach).max(initial=0)))
 
 
-def lowered(places: Places, springs: Array, forces: Forces, masses: Array, pose: Array) -> Array:
+def lowered(places: Places, springs: Array, forces: AppliedForces, masses: Array, pose: Array) -> Array:
     """A pose lowered until the springs of level ground carry the weight of all bodies, shape (n, nq).
 
     The bodies keep their rotations and their horizontal positions.

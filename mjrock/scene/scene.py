@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.frames import Freedom, frames_of
-from ..geometry.kinematics import Forces, Places, Ties, gaps
+from ..geometry.kinematics import AppliedForces, Places, Ties, gaps
 from ..geometry.links import ends
 from ..quantities import Array, Integers, frozen
 from .checks import require_on
@@ -133,7 +133,7 @@ class Scene:
     def potential(self) -> Potential:
         """The energy of all that may bear something at rest, as a function of the pose."""
         d = self.bodies.rest.shape[1]
-        forces = Forces(self.forces.body, self.forces.at.reshape(-1, d), self.forces.force.reshape(-1, d))
+        forces = AppliedForces(self.forces.body, self.forces.at.reshape(-1, d), self.forces.force.reshape(-1, d))
         own = self.contacts.k, self._ties(self.links.bearing), forces, self.bodies.masses, self.bodies.products
         return Potential(Structure(self.places, *own), np.asarray(self.contacts.tension) > 0)
 

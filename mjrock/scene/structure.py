@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compiled import compiled, inlined, jitable
 from ..geometry.frames import Freedom, take_frames
-from ..geometry.kinematics import Forces, Places, Ties, depth, displacement, slack, stretch
+from ..geometry.kinematics import AppliedForces, Places, Ties, depth, displacement, slack, stretch
 from ..geometry.vectors import dot, vector
 from ..problem.masonry.joint_law import Law, stored
 from ..quantities import GRAVITY, Array, Integers
@@ -34,7 +34,7 @@ class Structure(NamedTuple):
     places: Places
     k: Array
     ties: Ties
-    forces: Forces
+    forces: AppliedForces
     masses: Array
     products: Array = NO_PRODUCTS
 
@@ -59,7 +59,7 @@ def weight_energy(masses: Array, q: Array, axes: tuple[int, ...]) -> float:
 
 
 @jitable
-def force_energy(forces: Forces, frames: Array, axes: tuple[int, ...]) -> float:
+def force_energy(forces: AppliedForces, frames: Array, axes: tuple[int, ...]) -> float:
     """Energy of the constant forces above their position at rest [J]."""
     energy = 0.0
     for i in range(len(forces.body)):

@@ -67,8 +67,8 @@ def campaign(
         TypeError: for an argument of another type.
         ValueError: if the file is not a store or is damaged, `workers` or `time_limit` is not positive, a time limit is
             given with an executor, or the name of a label is that of a column or of another label, up to upper and
-            lower case. A label that repeats a column, as `solver` does, is none that clashes. For a list, and for a
-            `Grid`, this is found before anything runs.
+            lower case. A label that repeats a column, as `solver` does, does not clash. For a list, and for a `Grid`,
+            this is found before anything runs.
         OSError: if the disk is full, or another process writes to the store.
         RuntimeError: if the executor given has broken down, or worker processes die as they start.
         KeyboardInterrupt: at Ctrl-C, once the worker processes have been ended; it says how many rows are kept.

@@ -22,7 +22,7 @@ from ..quantities import Array, require_kind, require_within
 from ..result.response import Response
 from ..theory.impact import as_one
 from .contacts_by_matching import TOUCH_DOWN
-from .match import BASE_BOUNDS, SIDE_BOUNDS, Found, highest_branch
+from .match import BASE_BOUNDS, SIDE_BOUNDS, Closest, highest_branch
 
 STRONG = 4.0
 """Damping ratio of the joints above the base, in the lowest mode in which the stack bends over an edge of it [-]. From
@@ -135,7 +135,7 @@ def excess(obtained: float, target: float) -> float:
     return (target**2 - obtained**2) / max(1 - target**2, 1e-9)
 
 
-def _matched(name: str, closest: Found, target: float) -> float:
+def _matched(name: str, closest: Closest, target: float) -> float:
     """The damping ratio that is matched, with a warning where the match is missed."""
     if abs(excess(closest.value, target)) > MISSED:
         warnings.warn(

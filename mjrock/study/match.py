@@ -201,7 +201,7 @@ class Match:
 
 
 @dataclass(frozen=True)
-class Found:
+class Closest:
     """What a search found.
 
     Args:
@@ -235,7 +235,7 @@ class Found:
 
 def highest_branch(
     measure: Callable[[float], float], target: float, bounds: tuple[float, float], *, whole: bool = True
-) -> Found:
+) -> Closest:
     """The highest damping ratio at which `measure`, a restitution, is `target`.
 
     Several damping ratios can give one restitution: little damping lets the wall bounce, and a bounce may cost as much
@@ -256,13 +256,13 @@ def highest_branch(
     lowest, highest = at(bottom), at(top)
     if not lowest < target <= highest:
         best = top if target > highest else bottom
-        return Found(False, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
+        return Closest(False, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
     best = float(brentq(lambda log_xi: at(log_xi) - target, top, bottom, xtol=XI_TOLERANCE))
     reached = abs(at(best) / target - 1) < E_TOLERANCE  # a wall that no longer rocks drops to 0 from one xi to the next
-    return Found(reached, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
+    return Closest(reached, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
 
 
-def least_difference(measure: Callable[[float], float], bounds: tuple[float, float]) -> Found:
+def least_difference(measure: Callable[[float], float], bounds: tuple[float, float]) -> Closest:
     """The damping ratio at which `measure`, a difference, is least; not reached where that is at a bound."""
     at, grid = _searched(measure, bounds)
     values = [at(here) for here in grid]
@@ -271,7 +271,7 @@ def least_difference(measure: Callable[[float], float], bounds: tuple[float, flo
     if inside:
         minimum = minimize_scalar(at, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
         best, inside = min(grid[i], float(minimum.x), key=at), bool(minimum.success)
-    return Found(inside, math.exp(best), at(best), min(values), max(values), at.cache_info().currsize)
+    return Closest(inside, math.exp(best), at(best), min(values), max(values), at.cache_info().currsize)
 
 
 def _searched(measure: Callable[[float], float], bounds: tuple[float, float]) -> tuple[Any, list[float]]:

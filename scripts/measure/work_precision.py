@@ -30,10 +30,10 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.engine.model import Engine
 from mjrock.engine.points import inverse_weights
-from mjrock.engine.record import StepError
 from mjrock.engine.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.stepping import fixed_steps
 from mjrock.result.history import rocking_history
+from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
 from mjrock.result.rocking import Rocking, peak_energies, restitution_of
 from mjrock.scene.of_case import course_of

@@ -261,7 +261,7 @@ def test_the_shear_dashpot_of_a_landing_block_stretches_no_spring():
 
 
 def test_a_small_arch_holds_still_by_the_friction_of_its_joints():
-    """Friction takes less than a newton, from the start, else its shear springs would have to give way first."""
+    """Friction takes less than a newton, from the start; otherwise its shear springs would have to give way first."""
     small = mr.Masonry.arch(0.05, 0.01, voussoirs=7, k_n=1e10, k_s=1e10, density=100.0, friction=0.7)
     run = solve(small, 0.02)
     assert np.abs(run.pose - run.pose[0]).max() < 1e-3 * np.abs(run.pose[0]).max()

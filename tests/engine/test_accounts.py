@@ -132,13 +132,13 @@ def test_on_ice_a_pushed_block_has_the_energy_that_was_put_in(monkeypatch):
     contacts = mr.Contacts.from_damping(SQUAT, k_base=5e8, xi_base=0.05, friction=0.0)
     motion = mr.GroundMotion([-a, -a], 1.0)
     case = mr.Case(SQUAT, 0.0, 0.5, side_stop=False, motion=motion)
-    seen, honest = [], engine_run.require_no_gain
+    seen, honest = [], engine_run.balance
 
-    def noted(scene, steps, work, marks, scale):
+    def noted(scene, steps, work, marks):
         seen.append((scene, steps, work))
-        honest(scene, steps, work, marks, scale)
+        return honest(scene, steps, work, marks)
 
-    monkeypatch.setattr(engine_run, "require_no_gain", noted)
+    monkeypatch.setattr(engine_run, "balance", noted)
     run, (scene, steps, work) = mr.simulate(case, contacts, h), seen[-1]
     assert run.energy[-1] == pytest.approx(0.5 * SQUAT.mass * (a * run.t[-1]) ** 2, rel=1e-3)
     assert len(work) == len(steps.t)
@@ -150,7 +150,8 @@ def test_on_ice_a_pushed_block_has_the_energy_that_was_put_in(monkeypatch):
         mirrored = SimpleNamespace(
             links=scene.links, accounts=lambda q, v, sign=sign: [sign * p for p in scene.accounts(q, v)]
         )
-        honest(mirrored, steps, sign * work, everywhere, most / engine_run.ENERGY_GAIN)
+        balance = honest(mirrored, steps, sign * work, everywhere)
+        engine_run.require_no_gain(steps.windows.t, balance, most / engine_run.ENERGY_GAIN)
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
@@ -160,7 +161,7 @@ def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
     motion = mr.GroundMotion([-2.0, -2.0, 2.0, 2.0], 0.1)
     shaken, still = mr.Case(SQUAT, 0.0, 0.2, side_stop=False, motion=motion), mr.Case(SQUAT, 0.0, 0.2, side_stop=False)
     slid = mr.simulate(shaken, ice, 1e-3).energy  # the push speeds the block up and slows it down again
-    honest = engine_run.require_no_gain
+    honest = engine_run.balance
 
     def at_rest(block, contacts):
         """Energy of springs that carry a weight: half of it times the depth, W^2 / 2 K [J]."""
@@ -174,15 +175,15 @@ def test_how_much_energy_may_appear(share, monkeypatch, two_sided, contacts):
         most += at_rest(case.wall, made_of)
         gain = share * engine_run.ENERGY_GAIN * most
 
-        def growing(scene, steps, work, marks, scale, gain=gain):
-            """The check of a run in which nothing changes the energy but the ground, and some more that appears."""
+        def growing(scene, steps, work, marks, gain=gain):
+            """The balance of a run in which nothing changes the energy but the ground, and some more that appears."""
             stored = np.append(0.0, np.cumsum(work))[marks]
             stored[-1] += gain
             accounts = stored[:, None], np.zeros((len(marks), 0))
             made_up = SimpleNamespace(links=scene.links, accounts=lambda q, v: accounts)
-            honest(made_up, steps, work, marks, scale)
+            return honest(made_up, steps, work, marks)
 
-        monkeypatch.setattr(engine_run, "require_no_gain", growing)
+        monkeypatch.setattr(engine_run, "balance", growing)
         if share < 1:
             mr.simulate(case, made_of, 1e-3)
         else:

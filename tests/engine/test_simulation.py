@@ -11,8 +11,8 @@ import mjrock as mr
 from mjrock.engine import model
 from mjrock.engine import run as engine_run
 from mjrock.engine.model import Engine
-from mjrock.engine.record import StepError
 from mjrock.method import METHOD
+from mjrock.result.ledger import StepError
 from mjrock.scene.wall import inner_friction
 from scripts.shared.paper import K_N
 
@@ -127,7 +127,8 @@ def test_gain_from_peak_to_peak_is_what_counts(two_sided, contacts, energy, mark
     scene = mr.wall_scene(two_sided, contacts)
     pose = np.outer(energy, (0, 1 / two_sided.wall.weight, 0))
     windows = SimpleNamespace(t=2.0 * np.arange(len(energy)), pose=pose, velocity=np.zeros_like(pose))
-    run = scene, SimpleNamespace(windows=windows), np.zeros(len(energy)), np.array(marks)
+    balance = engine_run.balance(scene, SimpleNamespace(windows=windows), np.zeros(len(energy)), np.array(marks))
+    run = windows.t[marks], balance
     engine_run.require_no_gain(*run, 1.001 * gain / engine_run.ENERGY_GAIN)
     if gain > 0:
         with pytest.raises(StepError, match=rf"^{gain:g} J, 0\.10% of the energy there was, appeared") as caught:

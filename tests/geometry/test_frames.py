@@ -10,9 +10,19 @@ from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.compiled import compiled
-from mjrock.geometry.frames import PLANE, SPACE, displaced, frames_of, linear, push_body, spin, swung, unswung
+from mjrock.geometry.frames import (
+    PLANE,
+    SPACE,
+    displaced,
+    frames_of,
+    inverse_rotation_change,
+    linear,
+    push_body,
+    rotation_change,
+    spin,
+)
 from mjrock.geometry.kinematics import (
-    Forces,
+    AppliedForces,
     Places,
     Ties,
     depth,
@@ -108,7 +118,7 @@ def tumbling():
     between = origin(held) + ends - origin(anchor_body) - anchors
     k, reach = np.array([2e4, 3e4, 1e4]), np.array([0.5, 0.9, 9.0])
     ties = Ties(held, ends, anchor_body, anchors, between, k, reach, *np.full((2, 3), math.inf), np.zeros(3))
-    forces = Forces(np.array([0, 1]), *rng.normal(0, [[[0.5]], [[300.0]]], (2, 2, 3)))
+    forces = AppliedForces(np.array([0, 1]), *rng.normal(0, [[[0.5]], [[300.0]]], (2, 2, 3)))
     masses = np.array([40.0, 40.0, 40.0, 2.0, 3.0, 4.0, 25.0, 25.0, 25.0, 1.0, 2.5, 1.5])
     return rest, Structure(places, np.array([1e5, 2e5, 3e5, 1e5, 2e5]), ties, forces, masses)
 
@@ -180,8 +190,9 @@ class TestFrames:
             for body in range(2):
                 turn = Rotation.from_quat(q[7 * body + 3 : 7 * body + 7], scalar_first=True)
                 r = np.array([0.3, -1.2, 0.7])
-                np.testing.assert_allclose(r + swung(frames, body, tuple(r)), turn.apply(r), atol=1e-14)
-                np.testing.assert_allclose(r + unswung(frames, body, tuple(r)), turn.inv().apply(r), atol=1e-14)
+                np.testing.assert_allclose(r + rotation_change(frames, body, tuple(r)), turn.apply(r), atol=1e-14)
+                back = r + inverse_rotation_change(frames, body, tuple(r))
+                np.testing.assert_allclose(back, turn.inv().apply(r), atol=1e-14)
                 moved = np.array([1.0, 2.0, 3.0]) + turn.apply(r) - r
                 np.testing.assert_allclose(displaced((1.0, 2.0, 3.0), frames, body, tuple(r)), moved, atol=1e-14)
                 own = v[6 * body + 3 : 6 * body + 6]  # a spin is that of the body in its own axes
@@ -198,10 +209,10 @@ class TestFrames:
         if freedom is SPACE:
             q, r, expected = pose_in_space(q), (0.4, 0.9, 2.0), (expected[0], 0.0, expected[1])
         frames = frames_of(q, freedom)
-        np.testing.assert_allclose(swung(frames, 0, r), expected, rtol=2e-15, atol=0)
-        turned = tuple(np.add(r, swung(frames, 0, r)))
-        np.testing.assert_allclose(np.add(turned, unswung(frames, 0, turned)), r, rtol=2e-15)
-        np.testing.assert_allclose(unswung(frames, 0, turned), -np.array(expected), rtol=2e-15, atol=0)
+        np.testing.assert_allclose(rotation_change(frames, 0, r), expected, rtol=2e-15, atol=0)
+        turned = tuple(np.add(r, rotation_change(frames, 0, r)))
+        np.testing.assert_allclose(np.add(turned, inverse_rotation_change(frames, 0, turned)), r, rtol=2e-15)
+        np.testing.assert_allclose(inverse_rotation_change(frames, 0, turned), -np.array(expected), rtol=2e-15, atol=0)
 
     def test_velocities_are_those_of_the_points(self):
         """v + spin x arm, by central differences along the motion."""
@@ -210,7 +221,7 @@ class TestFrames:
             frames = frames_of(q, SPACE)
             before, after = (later(q, v, a, s) for s in (-t, t))
             for body in range(2):
-                arm = plus(tuple(r), swung(frames, body, tuple(r)))
+                arm = plus(tuple(r), rotation_change(frames, body, tuple(r)))
                 moving = plus(linear(v, body, AXES), spun(spin(frames, v, body, AXES), arm))
                 found = (material(rest, after, body, r) - material(rest, before, body, r)) / (2 * t)
                 np.testing.assert_allclose(found, moving, atol=1e-6)
@@ -247,7 +258,7 @@ class TestFrames:
             frames = frames_of(q, SPACE)
             for number in range(2):
                 at, force = rng.normal(0, 1, (2, 3))
-                arm = plus(tuple(at), swung(frames, number, tuple(at)))
+                arm = plus(tuple(at), rotation_change(frames, number, tuple(at)))
                 point = data.xpos[number + 1] + data.xmat[number + 1].reshape(3, 3) @ at
                 np.testing.assert_allclose(rest[number] + q[7 * number : 7 * number + 3] + arm, point, atol=1e-14)
                 jacobian, total, found = np.zeros((3, 12)), np.zeros(12), np.zeros(12)
@@ -281,7 +292,7 @@ class TestThePlaneInSpace:
         np.testing.assert_allclose(mine, gaps(scene.places, q), rtol=0, atol=1e-14)
 
     def test_what_a_contact_does_to_two_bodies(self, scene):
-        """Along the normal and along the face: x, z and the moment about y are those of the plane, all else is none."""
+        """Along the normal and along the face: x, z and the moment about y are those of the plane, the rest is zero."""
         flat, places, bodies = scene.places, in_space(scene).places, len(scene.bodies.mass)
         for q, _, _ in moves(np.random.default_rng(7), scene, 5):
             one, other = frames_of(q), frames_of(pose_in_space(q), SPACE)

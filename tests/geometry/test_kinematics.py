@@ -8,7 +8,7 @@ import pytest
 from scenes import changed, two_blocks
 
 import mjrock as mr
-from mjrock.geometry.frames import PLANE, frames_of, swung
+from mjrock.geometry.frames import PLANE, frames_of, rotation_change
 from mjrock.geometry.kinematics import along, depth, gap, gaps, slack, stretch
 from mjrock.problem.wall.restoring_moment import pose_of
 from mjrock.problem.wall.ties_on_wall import pulled
@@ -260,7 +260,7 @@ def test_formulas_of_walls_alone_are_those_of_any_body():
     for theta in (0.1, -0.2, 1e-9):
         (pose,), frames = pose_of(np.array([theta]), *rest, wall.half_base), frames_of(np.array([0.0, 0.0, theta]))
         toe = math.copysign(wall.half_base, theta)
-        turned = swung(frames, 0, (toe - rest[0], -rest[1]))  # the toe stays where it is
+        turned = rotation_change(frames, 0, (toe - rest[0], -rest[1]))  # the toe stays where it is
         assert pose == pytest.approx([-turned[0], -turned[1], theta], rel=1e-12, abs=1e-15)
         velocity = wall.turning(theta, math.copysign(1.0, theta))
         now = slack(scene.ties, 0, frames_of(pose), velocity, velocity, PLANE.axes)

@@ -55,7 +55,7 @@ def run(*command, **options):
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
-    """The wheel, built here where hatchling is installed, else in an environment of pip's."""
+    """The wheel, built here where hatchling is installed, otherwise in an environment of pip's."""
     folder = tmp_path_factory.mktemp("wheel")
     here = ["--no-build-isolation"] if importlib.util.find_spec("hatchling") else []
     done = run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", *here, "--wheel-dir", folder, ROOT)

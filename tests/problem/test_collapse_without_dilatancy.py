@@ -12,7 +12,7 @@ from scripts.checks import limit_analysis as study
 
 B, H = 0.4, 1.6
 STANDS = 1e-6
-"""Error of a force over the weight, and of a rate over the largest, below which it is none [-]."""
+"""Error of a force over the weight, and of a rate over the largest, below which it counts as zero [-]."""
 
 
 def weight(masonry):

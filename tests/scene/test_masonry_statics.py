@@ -106,6 +106,17 @@ def test_a_stack_without_friction_is_not_told_to_be_stiffer(k_n):
     require_standing(columns(2, k_n, friction=1e-3))
 
 
+@pytest.mark.parametrize("k_n", [1e6, 1e10])
+def test_a_keystone_without_thrust_is_not_told_to_be_stiffer(k_n):
+    """Between upright jambs friction would hold it if they were pushed together, and limit analysis says so."""
+    jambs = [box(-2, -0.5, -1, 1, fixed=True, name="left"), box(0.5, 2, -1, 1, fixed=True, name="right")]
+    masonry = mr.Masonry([*jambs, box(-0.5, 0.5, 0, 0.4, name="key")], k_n=k_n)
+    assert falling(masonry) == ()
+    with pytest.raises(ValueError, match=r"cannot stand: key would slide down, however large k_n is.*press") as said:
+        require_standing(masonry)
+    assert "raise k_n" not in str(said.value)
+
+
 def test_a_wall_beside_a_smooth_one_on_a_soft_base_is_told_to_be_stiffer():
     """Joints without friction that nothing slides on are not to blame."""
     wall = mr.Block.from_size(0.6, 4.2)

@@ -273,7 +273,7 @@ def test_properties_by_kind_and_by_name():
 
 @pytest.mark.parametrize("towards", [1.0, -1.0])
 def test_rebounds_count_from_the_release_to_either_side(towards):
-    """The last sample is on its way to a maximum, which is none; the one before it may be one."""
+    """The last sample is on its way to a maximum and is not one; the one before it may be one."""
     theta = towards * np.array([0.8, 1.0, 0.5, -0.5, -0.6, -0.3, 0.001, 0.2, 0.4, 0.3])
     released = SimpleNamespace(theta=np.column_stack([theta, theta]), energy=np.arange(10.0, 0.0, -1.0))
     pile = SimpleNamespace(masses=np.array([1.0, 3.0]))

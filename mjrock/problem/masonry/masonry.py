@@ -131,7 +131,7 @@ class Masonry:
                 raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon or Polyhedron")
             if type(block) is not type(self.blocks[0]):
                 raise TypeError(
-                    f"blocks[{i}] is a {type(block).__name__}, and blocks[0] is none; give blocks of one kind"
+                    f"blocks[{i}] is a {type(block).__name__}, and blocks[0] is not; give blocks of one kind"
                 )
         if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
             raise ValueError(

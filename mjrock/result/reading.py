@@ -1,0 +1,141 @@
+"""Reading: what a motion of a wall or of masonry on compliant contacts says, whichever solver found it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..geometry.poses import angles, tilts
+from ..problem.damping.contacts import Contacts, Uplift
+from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.effects import laden
+from ..problem.wall.case import Case
+from ..quantities import Array, named
+from ..scene.scene import Scene, is_quiet
+from .ending import Outcome, ending, masonry_ending
+from .fallen import below_everything, fallen_blocks, in_order, left_joints, sunk_ground
+from .history import rocking_history
+from .joint_motion import JointRecord, joint_motion, slips
+from .joints import JointMotion
+from .motion import SampledMotion
+from .overhang import past_support, told_of_overhang
+from .rocking import Rocking
+
+STILL = 0.2
+"""Time without motion after which blocks that have left their joints lie still [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """What is read from a motion.
+
+    Args:
+        outcome, message: how it ended.
+        rocking: impacts and peaks of a wall.
+        joints: openings, slidings and falls of masonry.
+        peak_times: times of the peaks of a wall [s].
+        slip: of the base of a wall at each time [m], shape (n,).
+        stats: numbers for the `stats` of the response.
+    """
+
+    outcome: Outcome
+    message: str
+    rocking: Rocking | None = None
+    joints: JointMotion | None = None
+    peak_times: Array = field(default_factory=lambda: np.zeros(0))
+    slip: Array = field(default_factory=lambda: np.zeros(1))
+    stats: dict[str, Any] = field(default_factory=dict)
+
+
+class BesidePoses(NamedTuple):
+    """What is known of blocks that meet wherever they are, beside their poses.
+
+    Args:
+        widest: the widest gap of each contact in any step [m], shape (m,).
+        left: whether blocks have left joints.
+        cracked: when each mortared joint that cracked did [s], by its name, the first first.
+    """
+
+    widest: Array
+    left: bool
+    cracked: Mapping[str, float]
+
+
+def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion, *, released: bool = True) -> Reading:
+    """Impacts, peaks and the ending of a wall. `released` says whether the motion starts with the release."""
+    uplift, theta, omega = Uplift.of(case, contacts), motion.theta[:, 0], motion.omega[:, 0]
+    times, peaks, impacts = rocking_history(case, t, theta, omega, motion.energy, uplift, released=released)
+    slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
+    return Reading(
+        *ending(case, t, theta, motion.energy, uplift.energy, motion.velocity[-1, 0]),
+        rocking=Rocking(impacts, peaks),
+        peak_times=times,
+        slip=slip,
+        stats={"base_displacement": float(np.interp(case.duration, t, slip) - slip[0])},
+    )
+
+
+def masonry_reading(
+    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, beside: BesidePoses | None = None
+) -> Reading:
+    """Openings, slidings and falls of masonry. Without `beside` blocks meet at the joints at rest alone, whose faces
+    have no end."""
+    masonry, pose = case.masonry, motion.pose.reshape(len(t), -1)
+    up = scene.freedom.translations - 1
+    joints = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), pose)
+    drop = scene.at_rest[:, up] - motion.pose[:, :, up]
+    below = drop - sunk_ground(masonry, case.supports, t)
+    fallen = fallen_blocks(masonry, t, joints.parted, tilts(pose, scene.freedom), below)
+    quiet, opening = is_quiet(scene, float(motion.energy[-1]), motion.velocity[-1]), joints.opening.copy()
+    if beside is None:
+        fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
+        told = told_of_overhang(_past_edges(case, scene, pose, joints, fallen))
+    else:
+        quiet = quiet or (beside.left and _lies_still(scene, t, motion))
+        gone = below_everything(masonry, case.supports, t, drop)
+        told = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
+        np.maximum.at(opening, scene.contacts.joint, beside.widest)
+    outcome, message = masonry_ending(fallen, quiet, min(float(t[-1]), case.duration), everywhere=beside is not None)
+    return Reading(
+        outcome,
+        message + told,
+        joints=JointMotion(opening, joints.sliding, fallen, {} if beside is None else beside.cracked),
+        stats={"deepest": joints.deepest},
+    )
+
+
+def _fallen_from_faces(
+    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, joints: JointRecord, fallen: dict[str, float]
+) -> dict[str, float]:
+    """When each block fell [s], where one that has slid off its joints counts as fallen, and one that ended the run."""
+    left = left_joints(case.masonry, t, joints.off)
+    both = {name: min(left.get(name, np.inf), fallen.get(name, np.inf)) for name in left | fallen}
+    early = t[-1] < case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to the duration
+    return in_order(both) or (_left_behind(scene, motion.pose[-1], float(t[-1])) if early else {})
+
+
+def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
+    """The end of a run that a block ended by going too far or turning over [s], by the name of each that did."""
+    freedom, first = scene.freedom, scene.at_rest
+    shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
+    far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
+    return {name: end for name, distance in zip(scene.bodies.names, far, strict=True) if distance >= 0.5 * far.max()}
+
+
+def _past_edges(
+    case: MasonryCase, scene: Scene, pose: Array, joints: JointRecord, fallen: dict[str, float]
+) -> dict[str, float]:
+    """How far the weight of each block that has not fallen has passed the edge of what it stands on [m]."""
+    masonry, places, joint, start = case.masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel()
+    centroids = laden(masonry, case.effects)[1]
+    past = past_support(masonry, centroids, joints, lambda some: slips(masonry, places, joint, start, pose[some]))
+    return {name: far for name, far in past.items() if name not in fallen}
+
+
+def _lies_still(scene: Scene, t: Array, motion: SampledMotion) -> bool:
+    """Whether nothing moves any more: for the last 0.2 s none did as `is_quiet` says."""
+    last = motion.velocity[t >= t[-1] - STILL]
+    return t[-1] > STILL and all(is_quiet(scene, 0.0, velocity) for velocity in last)
