@@ -18,11 +18,21 @@ GROUND = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")
 def free_body(mass, inertia, spin):
     """A body far from everything, with a spin about its axes."""
     kind, inverse = kinds(3), np.linalg.inv(inertia)[None]
-    body = rows(kind.body, 1, mass=mass, inverse_inertia=inverse, quaternion=[1.0, 0, 0, 0], momentum=inertia @ spin)
-    none = {"ties": kind.link, "dampers": kind.link, "forces": kind.link}
+    body = rows(
+        kind.body,
+        1,
+        mass=mass,
+        inverse_mass=1 / mass,
+        inverse_inertia=inverse,
+        quaternion=[1.0, 0, 0, 0],
+        momentum=inertia @ spin,
+    )
+    none = {"ties": kind.link, "dampers": kind.link, "forces": kind.link, "actuators": kind.link}
     none |= {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
     tables = {name: rows(of, 0) for name, of in none.items()}
-    return System(axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), **tables)
+    return System(
+        axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), drives=moving((), 1), **tables
+    )
 
 
 def followed(system, duration, h, every):

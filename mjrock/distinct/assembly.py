@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..geometry.vectors import tangents
+from ..problem.masonry.actuator import Actuator
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
@@ -19,7 +20,7 @@ from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
 from .rows import Rows, joined, kinds, rows
 from .system import Supports, System
-from .turning import start_turning
+from .turning import rotations, start_turning
 
 
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
@@ -28,11 +29,12 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     kind = kinds(d)
     inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
     bodies = rows(kind.body, n, mass=scene.bodies.mass, inverse_inertia=inverse, rest=scene.bodies.rest)
+    bodies["inverse_mass"] = 1 / scene.bodies.mass[:, None]
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
     ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
-    acting = *links_of(scene), Ground.of(None), moving((), d)
+    acting = *links_of(scene), rows(kind.link, 0), Ground.of(None), moving((), d), moving((), 1)
     system = System(scene.freedom.axes, bodies, lines, edges, ways, rows(kind.bond, 0), *acting)
     return started(system, scene.potential.unmoved.reshape(n, -1))
 
@@ -120,24 +122,54 @@ def moved_by(system: System, scene: Scene, masonry: Masonry, supports: Sequence[
     below = np.array([numbers.get(joint.below, -1) for joint in masonry.joints])
     of = scene.contacts.joint
     system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)
-    return system._replace(supports=moving(supports, len(system.axes)))
+    return system._replace(supports=moving([(each.t, each.displacement) for each in supports], len(system.axes)))
 
 
-def moving(supports: Sequence[Support], d: int) -> Supports:
-    """The supports for compiled functions, along d axes."""
-    sizes = [len(support.t) for support in supports]
+def moving(histories: Sequence[tuple[Sequence[float], Array]], d: int) -> Supports:
+    """Histories of displacement along d axes for compiled functions: times, and displacements of the shape (t, d)."""
     return Supports(
-        np.concatenate([np.empty(0), *(support.t for support in supports)]),
-        np.concatenate([np.empty((0, d)), *(support.displacement for support in supports)]),
-        np.cumsum([0, *sizes]),
-        np.zeros((len(supports), d)),
-        np.zeros((len(supports), d)),
+        np.concatenate([np.empty(0), *(t for t, _ in histories)]),
+        np.concatenate([np.empty((0, d)), *(displacement for _, displacement in histories)]),
+        np.cumsum([0, *(len(t) for t, _ in histories)]),
+        np.zeros((len(histories), d)),
+        np.zeros((len(histories), d)),
     )
+
+
+def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequence[Actuator]) -> System:
+    """The system with actuators, which count displacements from the pose of rest, and with the blocks they guide."""
+    if not actuators:
+        return system
+    number, d, bodies = free_numbers(masonry.blocks), len(system.axes), system.bodies
+    held, way = number[[each.block for each in actuators]], np.array([each.way for each in actuators])
+    at = np.array([each.at for each in actuators]) - scene.bodies.rest[held]
+    change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
+    table = rows(
+        kinds(d).link,
+        len(actuators),
+        body=held,
+        anchor=-1,
+        support=-1,
+        at=at,
+        between=way,
+        k=np.array([each.stiffness for each in actuators]),
+        c=np.array([each.damping for each in actuators]),
+        reach=((bodies["place"][held] + change) * way).sum(axis=1),
+    )
+    for body, each in zip(held, actuators, strict=True):
+        if each.guide.turning:
+            bodies["inverse_inertia"][body] = 0.0
+            bodies["spin"][body] = 0.0
+        if each.guide.rising:
+            bodies["inverse_mass"][body, d - 1] = 0.0
+            bodies["velocity"][body, d - 1] = 0.0
+    histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
+    return system._replace(actuators=table, drives=moving(histories, 1))
 
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables = ("bodies", "lines", "edges", "ways", "bonds", "ties", "dampers", "forces")
+    tables = ("bodies", "lines", "edges", "ways", "bonds", "ties", "dampers", "forces", "actuators")
     return system._replace(**{name: getattr(system, name).copy() for name in tables})
 
 

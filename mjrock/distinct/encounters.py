@@ -20,7 +20,7 @@ from ..quantities import GRAVITY, Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Places, Poses, in_pairs, places_of, take_over
-from .limit import Side, shares_within, ways_of
+from .limit import Side, shares_within, sums_of_yields, ways_of
 from .looking import Wear, held, nearest, wears
 from .pair_law import SHARED, PairLaw, are_among, pair_number
 from .rows import POINT, Rows, joined, rows
@@ -47,6 +47,9 @@ without a common joint that are so near at rest touch at edges or corners, and a
 STABLE = 0.5
 """Longest step over the longest one with which the places of a block alone are stable [-]. Intact joints, and places of
 blocks that have not moved, act on it besides."""
+PROVED, FADING = 1.2, 0.97
+"""What the sum of `limit.sums_of_yields` of a body may grow by until its places are looked at again, and share of that
+which is left at the next look [-]."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
 TOWARDS = 0.4
@@ -65,6 +68,7 @@ class Met:
         poses: where each block was when it was last taken to have moved.
         moves: how often it has, shape (blocks,).
         found: moves of both blocks when each line was found, shape (lines,).
+        proved: sum of `limit.sums_of_yields` up to which the places of each body are known to be stable, (bodies,).
     """
 
     watched: Flags
@@ -74,6 +78,7 @@ class Met:
     poses: Poses
     moves: Integers
     found: Integers
+    proved: Array
 
 
 class Encounters:
@@ -117,7 +122,7 @@ class Encounters:
     def _nothing_met(self) -> Met:
         none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(nobody, intact, none, np.zeros(0), self.start, unmoved, none)
+        return Met(nobody, intact, none, np.zeros(0), self.start, unmoved, none, np.zeros(len(self.free)))
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
@@ -259,16 +264,29 @@ class Encounters:
 
     def _stable(self, law: dict[str, Array], found: Found, poses: Poses, h: float) -> dict[str, Array]:
         """The law of places, softened where a step of h [s] asks for it."""
-        ways = ways_of(found.normal)
+        blocks = found.face, found.other
+        arms = [found.place - poses.drawn[block] - poses.moved[block] for block in blocks]
+        bodies = self.body[found.face], self.body[found.other]
+        sums = sums_of_yields(bodies, arms, law, self.roots, h / STABLE)
+        asked = (sums > 4) & (sums > self.met.proved)
+        self.met.proved = np.where(asked, PROVED * sums, FADING * self.met.proved)
+        pairs = np.stack(bodies)
+        doubtful = np.asarray(((pairs >= 0) & asked[pairs]).any(axis=0))
+        if not doubtful.any():
+            return law
+        ways = ways_of(found.normal[doubtful])
         first, second = (
             Side(
-                self.body[block],
-                poses.turned_back(block, found.place - poses.drawn[block] - poses.moved[block]),
-                tuple(poses.turned_back(block, way) for way in ways),
+                body[doubtful],
+                poses.turned_back(block[doubtful], arm[doubtful]),
+                tuple(poses.turned_back(block[doubtful], way) for way in ways),
             )
-            for block in (found.face, found.other)
+            for body, block, arm in zip(bodies, blocks, arms, strict=True)
         )
-        share = shares_within((first, second), law, self.roots, h / STABLE)
+        share = np.ones(len(doubtful))
+        of_some = {name: law[name][doubtful] for name in SHARED}
+        share[doubtful] = shares_within((first, second), of_some, self.roots, h / STABLE)
+        self.met.proved[pairs[(pairs >= 0) & (share < 1)]] = 0.0
         return law | {name: share * law[name] for name in SHARED}
 
     def _slack(

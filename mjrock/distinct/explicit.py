@@ -20,7 +20,7 @@ from ..scene.of_case import require_case
 from .following import Stepping, follow, warn_if_long
 from .overlap import checked_overlap
 from .reading import Run, response_of
-from .setup import carried_on, setup_of
+from .setup import carried_on, setup_of, slowed
 from .system import Books, Samples
 
 
@@ -33,6 +33,8 @@ def solve_explicit(
     ledger: bool = False,
     forces: bool = False,
     start: State | None = None,
+    mass_damping: float = 0.0,
+    local_damping: float = 0.0,
 ) -> Response:
     """Rocking of a wall, or motion of masonry of many blocks, by explicit steps.
 
@@ -56,6 +58,9 @@ def solve_explicit(
         start: pose and velocity to start from instead of the release, the `end` of an earlier response. The end of
             explicit steps of the same structure carries on to rounding, histories of supports from wherever they have
             ended. It does not go with ties that yield.
+        mass_damping: rate at which every velocity decays [1/s], 0 to 1e4, for slow motions.
+        local_damping: share of the unbalanced force along each axis of a body that acts against its velocity [-], 0 to
+            0.9, for slow motions of masonry with k_s. `ledger.dashpots["motion"]` has what both take.
 
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, for a step that is not stable,
@@ -74,16 +79,16 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
-    setup = carried_on(setup_of(case, contacts, state), start)
+    setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
     count, bodies = steps.samples, len(scene.bodies.names)
     require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
-    books = Books.empty(setup.system, len(scene.contacts.joints) + 1)
+    books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.is_slowed)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
-    looks = len(steps.looks(steps.last + 1))
-    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, looks=looks)
+    counts = {"looks": len(steps.looks(steps.last + 1)), "actuators": len(setup.system.actuators)}
+    samples = Samples.room(count, bodies, books, scene.freedom, ledger=ledger, **counts)
     if forces:
         samples = samples.with_forces(*required_room(case, count))
     if timestep is not None:

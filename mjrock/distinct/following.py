@@ -117,6 +117,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
         0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
     )
     clock = clock._replace(lead=LEAD if stepping.h <= SHORT * setup.limit else 0.0)
+    clock = clock._replace(drag=setup.drag, local=setup.local)
     look = 0
     if memory is not None:
         clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look

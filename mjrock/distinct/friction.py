@@ -20,7 +20,6 @@ from ..geometry.vectors import (
     Vector,
     components,
     dot,
-    increase,
     minus,
     moment,
     plus,
@@ -29,18 +28,21 @@ from ..geometry.vectors import (
     spin_components,
     spun,
     tangent,
+    times,
     vector,
 )
 from ..problem.masonry.joint_law import shear_limit
 from ..quantities import Array, Integers
 from .rows import Row, Rows
 from .system import Books, Supports, System
-from .turning import in_body, in_world, spin_from_moment, strike_spin
+from .turning import in_body, in_world, kick_place, spin_from_moment, strike_spin
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
 SETTLED = 1e-3
 """Change of an impulse in a sweep, over the largest of a line that is pressed most, below which the sweeps end [-]."""
+HELD = 1e-9
+"""Least compliance of a body that a guide holds, over that of its mass [-]."""
 
 
 @inlined
@@ -129,6 +131,16 @@ def way_along(normal: Vector, number: int) -> Vector:
 
 
 @inlined
+def yielding(body: Row, way: Vector) -> float:
+    """Velocity that a unit impulse along a unit vector gives to the centroid of a body along it [1/kg].
+
+    It is not quite zero of a body that a guide holds, so that it can be divided by.
+    """
+    light: float = max(dot(way, times(components(body.inverse_mass, way), way)), HELD / body.mass)
+    return light
+
+
+@inlined
 def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vector, face_arm: Vector) -> None:
     """Prepare the ways of a line that sticks rigidly.
 
@@ -147,13 +159,13 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
         put(row.way, way)
         put(row.lever, lever)
         put(row.spin, spin)
-        row.compliance = 1 / body.mass + dot(lever, spin)
+        row.compliance = yielding(body, way) + dot(lever, spin)
         if on_face:
             lever = moment(face_arm, way)
             spin = spin_from_moment(face, lever)
             put(row.lever_on_face, lever)
             put(row.spin_of_face, spin)
-            row.compliance += 1 / face.mass + dot(lever, spin)
+            row.compliance += yielding(face, way) + dot(lever, spin)
     if len(normal) == 3:
         a, b = system.ways[first], system.ways[first + 1]
         a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
@@ -178,11 +190,11 @@ def slip_along(system: System, line: Row, row: Row, axes: tuple[int, ...]) -> fl
 def strike(system: System, line: Row, row: Row, impulse: float, axes: tuple[int, ...]) -> None:
     """Let an impulse along a way act on the body of a line and on that of its face [N s]."""
     body, way = system.bodies[line.body], components(row.way, axes)
-    increase(body.velocity, scaled(impulse / body.mass, way))
+    kick_place(body, scaled(impulse, way))
     strike_spin(body, impulse, spin_components(row.lever, axes), spin_components(row.spin, axes))
     if line.face >= 0:
         face = system.bodies[line.face]
-        increase(face.velocity, scaled(-impulse / face.mass, way))
+        kick_place(face, scaled(-impulse, way))
         strike_spin(face, -impulse, spin_components(row.lever_on_face, axes), spin_components(row.spin_of_face, axes))
 
 

@@ -6,6 +6,7 @@ one mode. Contacts that are found later are softened until the step that a run h
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,13 +26,14 @@ def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
     lines, bodies = system.lines, len(system.bodies)
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
-    rates += [link_rates(links, bodies) for links in (system.ties, system.dampers)]
+    linked = (system.ties, system.dampers, system.actuators)
+    rates += [link_rates(links, bodies) for links in linked]
     lengths, root = csr_array(vstack(rates)), csr_array(block_diag(roots_of_masses(system.bodies)))
 
     def weights(along: str, across: str) -> Array:
         shear = np.where(np.isfinite(lines["k_s"]), lines[across], 0.0)
         ways = [shear] * (len(system.axes) - 1)
-        return np.concatenate([lines[along], *ways, system.ties[along], system.dampers[along]])
+        return np.concatenate([lines[along], *ways, *(links[along] for links in linked)])
 
     return stable_step(highest(lengths, weights("k", "k_s"), root), highest(lengths, weights("c", "c_s"), root))
 
@@ -81,6 +83,30 @@ class Side(NamedTuple):
     body: Integers
     arm: Array
     ways: tuple[Array, ...]
+
+
+def sums_of_yields(
+    bodies: tuple[Integers, Integers], arms: Sequence[Array], law: dict[str, Array], roots: Array, step: float
+) -> Array:
+    """A quick bound of the highest eigenvalue that `shares_within` holds at 4, never too low, shape (bodies,).
+
+    A place adds to that of a body at most its stiffest way, over what mass and inertia of both blocks yield to it.
+
+    Args:
+        bodies: the two of each place, negative for a fixed block, shape (n,) each.
+        arms: from their centroids to the places [m], shape (n, d) each.
+        law, roots, step: as `shares_within` takes them.
+    """
+    across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
+    weight = np.maximum(step**2 * law["k"] + 2 * step * law["c"], across)
+    d = arms[0].shape[1]
+    linear, spun = roots[:, 0, 0] ** 2, np.linalg.norm(roots[:, d:, d:], ord=2, axis=(1, 2)) ** 2
+    for_unit = [
+        np.where(body >= 0, linear[body] + np.sum(arm**2, axis=1) * spun[body], 0.0)
+        for body, arm in zip(bodies, arms, strict=True)
+    ]
+    pairs, added = np.concatenate(bodies), np.tile(weight * (for_unit[0] + for_unit[1]), 2)
+    return np.asarray(np.bincount(pairs[pairs >= 0], added[pairs >= 0], len(roots)))
 
 
 def shares_within(sides: tuple[Side, Side], law: dict[str, Array], roots: Array, step: float) -> Array:

@@ -1,4 +1,5 @@
-"""Ties, dampers and constant forces on bodies, from the ground or from another body, and the supports that move."""
+"""Ties, dampers, actuators and constant forces on bodies, from the ground or from another body, and the supports that
+move."""
 
 from __future__ import annotations
 
@@ -133,15 +134,35 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
         books.dampers[i] -= 0.5 * h * (force + damper.pulled) * rate
         book_support(damper, system, books, now, force, h)
         act(damper, bodies, now, force)
+    for i in range(len(system.actuators)):
+        drive(system, books, i, h, axes)
     for i in range(len(system.forces)):
         row = system.forces[i]
         body, at = bodies[row.body], components(row.at, axes)
         add_force(body, plus(at, rotation_change(body, at)), components(row.between, axes))
 
 
+@inlined
+def drive(system: System, books: Books, i: int, h: float, axes: tuple[int, ...]) -> None:
+    """Add the force of actuator i, and book the work that it has put in in the last step of length h."""
+    row = system.actuators[i]
+    body, way = system.bodies[row.body], components(row.between, axes)
+    at = components(row.at, way)
+    change = rotation_change(body, at)
+    moved = dot(way, plus(components(body.place, way), change)) - row.reach
+    speed = dot(way, plus(components(body.velocity, way), spun(spin_components(body.spin, way), plus(at, change))))
+    rate = system.drives.moving[i, 0] - speed
+    dragged = row.c * rate
+    force = row.k * (system.drives.moved[i, 0] - moved) + dragged
+    books.totals[0].ground += 0.5 * h * (row.pulled + force) * system.drives.moving[i, 0]
+    books.dampers[len(system.dampers) + i] += 0.5 * h * (row.dragged + dragged) * rate
+    row.pulled, row.dragged = force, dragged
+    add_force(body, plus(at, change), scaled(force, way))
+
+
 @jitable
 def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
-    """Potential energy of constant forces, and energy in the springs of the ties [J]."""
+    """Potential energy of constant forces, and energy in the springs of ties and actuators [J]."""
     falls, elastic = 0.0, 0.0
     for i in range(len(system.ties)):
         tie = system.ties[i]
@@ -149,6 +170,10 @@ def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
             continue
         stretched = elongation(tie, pull(tie, system, axes).length)
         elastic += 0.5 * tie.k * stretched * stretched
+    for i in range(len(system.actuators)):
+        actuator = system.actuators[i]
+        held = actuator.pulled - actuator.dragged
+        elastic += 0.5 * held * held / actuator.k
     for i in range(len(system.forces)):
         row = system.forces[i]
         body = system.bodies[row.body]

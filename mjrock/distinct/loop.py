@@ -32,11 +32,13 @@ from .friction import book_rubbing, note_slips, stick
 from .gathering import keep_forces
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
+from .slowing import oppose, slow_down
 from .system import Books, Samples, System
 from .touches import in_transit, was_open
 from .turning import (
     apply_inverse_inertia,
     in_body,
+    kick_place,
     kick_spin,
     momentum_of,
     take_turn,
@@ -63,6 +65,7 @@ class Clock(NamedTuple):
         before: length of the step that led to the start, zero for a start that no step led to [s].
         pushed: mean acceleration of the ground over the half of a step before the start [m/s2].
         look: steps from one look to the next.
+        drag, local: mass-proportional damping [1/s] and local damping [-] of the motion, see `slowing`.
         lead: by how many steps dashpots look ahead, see `touches.foreseen`.
     """
 
@@ -77,6 +80,8 @@ class Clock(NamedTuple):
     pushed: Vector
     look: int = sys.maxsize
     lead: float = 0.0
+    drag: float = 0.0
+    local: float = 0.0
 
 
 @inlined
@@ -124,7 +129,7 @@ def kick_bodies(bodies: Rows, kick: float, axes: tuple[int, ...]) -> None:
     """Let forces and moments act for a time [s]."""
     for b in range(len(bodies)):
         body = bodies[b]
-        increase(body.velocity, scaled(kick / body.mass, components(body.force, axes)))
+        kick_place(body, scaled(kick, components(body.force, axes)))
         kick_spin(body, kick, axes)
 
 
@@ -171,6 +176,8 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     keep_account(books.broken, samples.broken[row])
     keep_account(books.ends, energy.ends)
     keep_account(books.bonds, energy.bonds)
+    for i in range(len(system.actuators)):
+        samples.actuators[row, i] = system.actuators[i].pulled
 
 
 @jitable
@@ -253,6 +260,7 @@ def make_steps(
         looked = n % clock.look == 0 or n == clock.last
         kept = row if sampled else len(samples.pose) - 1  # the one that is not kept
         move_supports(system.supports, n * h, before)
+        move_supports(system.drives, n * h, before)
         push = scaled(h / kick, accelerated(system.ground, n * h, h, axes))
         if n == 0:
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
@@ -264,6 +272,8 @@ def make_steps(
             keep_pose(system, books, samples, kept, before, axes)
         if accounted:
             note_slips(system, books.active, sticking, axes)
+        if clock.local > 0:
+            oppose(system, books, clock.local, kick, axes)
         kick_bodies(system.bodies, kick, axes)
         stick(system, books.active, sticking, kick, axes)
         taken, put_in = settle_touches(system, books, touched, kick, axes)
@@ -274,6 +284,8 @@ def make_steps(
             if before > 0:  # halves that belong to the time before the pose
                 samples.energy[kept].friction += rubbed
                 samples.energy[kept].ground += put_in
+        if clock.drag > 0:
+            slow_down(system, books, clock.drag * kick, axes)
         if sampled or looked:
             keep_velocity(system.bodies, samples, kept, before, axes)
         if looked:

@@ -101,6 +101,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         motion=SampledMotion(samples.pose[kept], samples.velocity[kept], run.energy[kept]),
         plastic=plastic_of(run),
         ledger=ledger_of(run, kept) if ledger else None,
+        actuators=dict(zip(actuators_of(run.case), samples.actuators[kept].T, strict=True)),
         kept_forces=kept_forces(run, kept),
         stats=reading.pop("stats") | stats,
         end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
@@ -108,6 +109,11 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
     )
     warn_if_open(response, run.rounding)
     return response
+
+
+def actuators_of(case: Case | MasonryCase) -> tuple[str, ...]:
+    """Names of the actuators of a case."""
+    return tuple(case.actuators) if isinstance(case, MasonryCase) else ()
 
 
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
@@ -121,7 +127,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
         lines = np.bincount(run.scene.contacts.joint, minlength=samples.damage.shape[1])
         dry = [bond is None for bond in run.case.masonry.bonds]
         damage = np.where(dry, np.nan, samples.damage / lines)
-    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled, damage)
+    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled, samples.actuators, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
@@ -242,8 +248,9 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
     scene, samples = run.scene, run.samples.taken(kept)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip(scene.links.damped.names, samples.dampers.T, strict=True))
-    dashpots |= dict(zip((*scene.contacts.joints, "encounters"), samples.dashpots.T, strict=True))
+    dashpots = dict(zip((*scene.links.damped.names, *actuators_of(run.case)), samples.dampers.T, strict=True))
+    groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
+    dashpots |= dict(zip(groups, samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
     return Ledger(
         t=run.t[kept],

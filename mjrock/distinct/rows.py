@@ -33,7 +33,8 @@ class Kinds(NamedTuple):
         edge: an edge of a face, of which one in the plane has two.
         way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
         bond: what a mortared line has beside its row, a row for each line of the joints.
-        link: a tie, a damper or a constant force on a point of a body, from the ground or from another body.
+        link: a tie, a damper, an actuator or a constant force on a point of a body, from the ground or from another
+            body.
         total: what is booked for all lines together.
     """
 
@@ -79,6 +80,7 @@ def _body(d: int, s: int) -> Fields:
     deep = [*_vector(4, "quaternion"), ("turn", float, (3, 3)), *_vector(3, "momentum")]
     return [
         *_number("mass"),  # [kg]
+        *_vector(d, "inverse_mass"),  # along the axes, zero where a guide holds the body [1/kg]
         ("inverse_inertia", float, (s, s)),  # in its axes [1/(kg m2)]
         *_vector(d, "rest"),  # centroid at rest [m]
         *_vector(d, "place"),  # displacement from there [m]
@@ -154,11 +156,13 @@ def _link(d: int) -> Fields:
         *_integer("support"),  # the support that moves the fixed block of the other end, -1 for none
         *_vector(d, "at"),  # where, from its centroid [m]
         *_vector(d, "origin"),  # the other end from the centroid of the anchor [m]
-        *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]
+        *_vector(d, "between"),  # from the anchor at rest [m]; components of a force [N]; way of an actuator
         *_number("k", "c"),  # spring and dashpot [N/m, N s/m]
-        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]
+        *_number("reach", "strength", "push"),  # slack length of a tie [m], and its yield either way [N]; of an
+        # actuator the displacement of its point at the start of its history [m]
         *_number("drawn", "ultimate", "broken"),  # plastic elongation, its limit [m], time [s]
         *_number("pulled"),  # force in the last step, negative where it pulls [N]
+        *_number("dragged"),  # of an actuator, the part of it that its dashpot has [N]
     ]
 
 

@@ -7,19 +7,22 @@ from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import numpy as np
+
 from ..problem.damping.contacts import Contacts
+from ..problem.masonry.actuator import Actuator
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
-from ..quantities import ON_ITS_FACE
+from ..quantities import ON_ITS_FACE, require_within
 from ..result.response import State
 from ..scene.course import Course
 from ..scene.explicit_step import SHARE
 from ..scene.masonry import drawn_masonry, masonry_course, require_standing, standing_masonry
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
-from .assembly import copied, moved_by, started, system_of, take_grips
+from .assembly import copied, driven_by, moved_by, started, system_of, take_grips
 from .bonds import bonded
 from .encounters import Encounters
 from .limit import longest_step
@@ -43,6 +46,7 @@ class Setup:
         encounters: where blocks that fall meet others, or None where that is not followed.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
+        drag, local: mass-proportional [1/s] and local damping [-] of the motion.
         memory: of the run that this one carries on, or None.
     """
 
@@ -57,6 +61,29 @@ class Setup:
     of: object = None
     blocks: tuple[str, ...] = ()
     memory: Memory | None = None
+    drag: float = 0.0
+    local: float = 0.0
+
+    @property
+    def is_slowed(self) -> bool:
+        """Whether its motion is damped."""
+        return self.drag > 0 or self.local > 0
+
+
+def slowed(setup: Setup, drag: object, local: object) -> Setup:
+    """The setup with mass-proportional [1/s] and local damping [-] of the motion.
+
+    Raises:
+        ValueError: for a value outside its range, or for local damping of joints that stick rigidly.
+    """
+    drag = require_within("mass_damping", drag, 0.0, 1e4, "1/s")
+    local = require_within("local_damping", local, 0.0, 0.9)
+    if local > 0 and not np.isfinite(setup.system.lines["k_s"]).all():
+        raise ValueError(
+            f"local_damping = {local:g} needs joints with a shear stiffness, whose friction is part of the unbalanced "
+            "force: give the masonry k_s, or take mass_damping"
+        )
+    return replace(setup, drag=drag, local=local) if drag or local else setup
 
 
 def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
@@ -87,11 +114,12 @@ def setup_of_wall(case: Case, contacts: Contacts | None, state: State | None) ->
 def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     """Masonry at the start of a case, or in a given state."""
     masonry = case.masonry
-    scene, at_rest, drawn = standing(masonry, case.effects, case.settled)
+    scene, at_rest, drawn = standing(masonry, case.passive, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
+    system = driven_by(system, scene, masonry, case.each(Actuator))
     limit, system = longest_step(system), bonded(system, masonry, scene.contacts.joint)
-    of, blocks = (masonry, case.effects), tuple(support.block for support in case.supports)
+    of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
     return Setup(scene, course, system, limit, SHARE, encounters=encounters, of=of, blocks=blocks)

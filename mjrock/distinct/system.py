@@ -41,7 +41,8 @@ class Supports(NamedTuple):
 
 class System(NamedTuple):
     """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly. `bonds`
-    has a row for each line of the joints, or none where all are dry."""
+    has a row for each line of the joints, or none where all are dry. `drives` are the histories of the actuators, along
+    one axis each."""
 
     axes: tuple[int, ...]
     bodies: Rows
@@ -52,8 +53,10 @@ class System(NamedTuple):
     ties: Rows
     dampers: Rows
     forces: Rows
+    actuators: Rows
     ground: Ground
     supports: Supports
+    drives: Supports
 
 
 class Books(NamedTuple):
@@ -61,7 +64,7 @@ class Books(NamedTuple):
 
     Args:
         dashpots: by group, shape (g,).
-        ties, broken, dampers: by tie, yielding and breaking, and by damper, shapes (t,), (t,) and (d,).
+        ties, broken, dampers: by tie, yielding and breaking, shape (t,) each, and by damper and actuator, shape (d,).
         bonds: what bonds have taken in tension, slip and crushing, shape (3,).
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
@@ -85,7 +88,7 @@ class Books(NamedTuple):
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
-        sizes = groups, len(system.ties), len(system.ties), len(system.dampers), 2, 3
+        sizes = groups, len(system.ties), len(system.ties), len(system.dampers) + len(system.actuators), 2, 3
         dashpots, ties, broken, dampers, ends, bonds = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
         totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
@@ -112,6 +115,7 @@ class Samples(NamedTuple):
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
         looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
         dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        actuators: force of each actuator [N], shape (samples, a).
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
         pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
@@ -127,6 +131,7 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
+    actuators: Array
     loads: Array
     held: Array
     pulled: Array
@@ -134,13 +139,22 @@ class Samples(NamedTuple):
 
     @classmethod
     def room(
-        cls, count: int, bodies: int, books: Books, freedom: Freedom = PLANE, *, ledger: bool = False, looks: int = 2
+        cls,
+        count: int,
+        bodies: int,
+        books: Books,
+        freedom: Freedom = PLANE,
+        *,
+        ledger: bool = False,
+        looks: int = 2,
+        actuators: int = 0,
     ) -> Samples:
         """Room for some samples and looks, for a sample that is not kept, and for the accounts of a ledger."""
         count += 1
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
+        accounts.append(np.zeros((count, actuators)))
         accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), (), ())]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 

@@ -25,6 +25,7 @@ from ..geometry.vectors import (
     scaled,
     spin_components,
     spun,
+    times,
 )
 from ..quantities import Array
 from .rows import Row, Rows
@@ -107,7 +108,8 @@ def spin_from_moment(body: Row, a: Vector) -> Vector:
 def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
     """Angular momentum in the axes of the world [N m s]."""
     if len(axes) == 2:
-        return (body.spin[0] / body.inverse_inertia[0, 0],)
+        inverse = body.inverse_inertia[0, 0]
+        return (body.spin[0] / inverse if inverse > 0 else 0.0,)
     return components(body.momentum, axes)
 
 
@@ -146,10 +148,16 @@ def strike_spin(body: Row, impulse: float, lever: Vector, spin: Vector) -> None:
 
 
 @inlined
+def kick_place(body: Row, impulse: Vector) -> None:
+    """Let an impulse act on the centroid of a body [N s]."""
+    increase(body.velocity, times(components(body.inverse_mass, impulse), impulse))
+
+
+@inlined
 def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
     """Let an impulse act at an arm from the centroid of a body [N s]."""
     lever = moment(arm, impulse)
-    increase(body.velocity, scaled(1 / body.mass, impulse))
+    kick_place(body, impulse)
     strike_spin(body, 1.0, lever, spin_from_moment(body, lever))
 
 
@@ -225,7 +233,7 @@ def start_turning(bodies: Rows, pose: Array, velocity: Array) -> None:
         bodies["angle"], bodies["spin"] = pose[:, 2], velocity[:, 2:]
         return
     bodies["quaternion"] = pose[:, 3:]
-    momentum = np.linalg.solve(bodies["inverse_inertia"], velocity[:, 3:, None])[:, :, 0]
+    momentum = (np.linalg.pinv(bodies["inverse_inertia"]) @ velocity[:, 3:, None])[:, :, 0]  # zero of guided bodies
     bodies["momentum"] = momentum + np.einsum("nij,nj->ni", rotations(bodies), momentum)
 
 
@@ -262,6 +270,7 @@ def roots_of_masses(bodies: Rows) -> Array:
     d = bodies["rest"].shape[1]
     nv = d + bodies["inverse_inertia"].shape[1]
     roots = np.zeros((len(bodies), nv, nv))
-    roots[:, range(d), range(d)] = 1 / np.sqrt(np.asarray(bodies["mass"]))[:, None]
-    roots[:, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"])
+    roots[:, range(d), range(d)] = np.sqrt(np.asarray(bodies["inverse_mass"]))
+    turning = bodies["inverse_inertia"].any(axis=(1, 2))  # guides keep the others from it
+    roots[turning, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"][turning])
     return roots

@@ -9,6 +9,7 @@ import numpy as np
 from ..method import METHOD
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
+from ..quantities import named
 from ..result.response import Response
 from ..scene.scene import Scene
 from .energy_work import contact_work
@@ -33,9 +34,11 @@ SLID = 0.01
 
 
 def require_still(case: MasonryCase) -> None:
-    """Raise a ValueError where joints have bonds or supports move: contacts of MuJoCo push only, and its fixed blocks
-    belong to the world."""
+    """Raise a ValueError where joints have bonds, supports move or actuators drive: contacts of MuJoCo push only, and
+    its fixed blocks belong to the world."""
     case.masonry.require_dry("MuJoCo")
+    if case.actuators:
+        raise ValueError(f"{named(tuple(case.actuators))}: MuJoCo has no row for actuators; take solve_explicit")
     if case.supports:
         names = ", ".join(support.block for support in case.supports)
         raise ValueError(f"supports = {names}: blocks that are fixed do not move in MuJoCo; take solve_explicit")

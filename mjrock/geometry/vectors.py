@@ -98,6 +98,14 @@ def scaled(factor: float, a: Vector) -> Vector:
 
 
 @inlined
+def times(a: Vector, b: Vector) -> Vector:
+    """The products of the components of two vectors."""
+    if len(a) == 2:
+        return a[0] * b[0], a[1] * b[1]
+    return a[0] * b[0], a[1] * b[1], a[2] * b[2]
+
+
+@inlined
 def dot(a: Vector, b: Vector) -> float:
     """Scalar product."""
     if len(a) == 1:

@@ -7,7 +7,7 @@ from .histories import acceleration, comparison, displacement, energy, grid, his
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
 from .masonry import blocks
 from .mechanism import mechanism
-from .pushing import moment_rotation, pushover
+from .pushing import moment_rotation, push, pushover
 from .sketch import sketch
 from .style import STYLES, Drawing, panels, save, single
 from .thrust import thrust
@@ -17,6 +17,6 @@ __all__ = [
     "MODES", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "convergence",
     "damping_curves", "displacement", "distributions", "energy", "fragility", "grid", "history", "incremental",
     "mechanism", "mode_legend", "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity",
-    "peers", "pushover", "residuals", "rotation", "save", "sensitivity", "single", "sketch", "spectra", "thrust",
-    "ties", "tornado", "work_precision",
+    "peers", "push", "pushover", "residuals", "rotation", "save", "sensitivity", "single", "sketch", "spectra",
+    "thrust", "ties", "tornado", "work_precision",
 ]  # fmt: skip

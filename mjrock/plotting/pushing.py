@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from ..study.push import Push
 from ..study.pushover import PushoverCurve
 from .arguments import equal_rows, kind, mapping, picture
 from .style import folded
@@ -49,6 +50,22 @@ def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Close
     points = {name: (at, np.asarray(values, dtype=float) / 1e3) for name, (at, values) in (closed or {}).items()}
     _drawn(ax, lines, points)
     ax.set_ylabel("restoring moment $M$ [kN m]")
+    return ax
+
+
+@picture(curves=mapping(kind(Push)))
+def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> Axes:
+    """Force against displacement of slow pushes, a line a push, to and fro too; closed forms [m, N] as points; no
+    legend."""
+    factor = 1e-3 if all(curve.unit == "N" for curve in curves.values()) else 1.0
+    lines = {name: (1e3 * curve.displacement, factor * curve.force) for name, curve in curves.items()}
+    points = {
+        name: (1e3 * np.asarray(at, dtype=float), factor * np.asarray(values, dtype=float))
+        for name, (at, values) in (closed or {}).items()
+    }
+    _drawn(ax, lines, points)
+    ax.set(xlim=(None, None), ylim=(None, None), xlabel="displacement [mm]")
+    ax.set_ylabel("force [kN]" if factor < 1 else r"multiplier $\lambda$ [-]")
     return ax
 
 

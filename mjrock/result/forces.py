@@ -18,7 +18,7 @@ from ..quantities import Array, Integers, require_size
 from .ties import across
 
 ANCHORS = "anchors"
-"""Name of the reaction of all links whose anchors are on no block."""
+"""Name of the reaction of all links whose anchors are on no block, and of actuators."""
 
 
 class JointFrames(NamedTuple):
@@ -116,7 +116,8 @@ class Forces:
         links: what each tie, damper or other link pulls with, negative where it pushes [N], shape (n,), by its name.
         reactions: forces on the masonry by each fixed block, moved or not, along x and z and in space x, y and z [N],
             shape (n, 2) or (n, 3), by its name: of all its contacts, whether of joints or found where blocks are, and
-            of the links that are anchored on it. "anchors" is that of all links anchored on no block. Of a wall those
+            of the links that are anchored on it. "anchors" is that of all links anchored on no block and of
+            actuators without their guides. Of a wall those
             of "base", "side" and "anchors".
         damage: share of its bond that each joint has lost [-], shape (n, joints), NaN where it is dry.
     """
@@ -170,6 +171,7 @@ class Gathered(NamedTuple):
             (n, joints, 3), in space (n, joints, 6).
         held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
         pulled: what each link pulls with [N], by its name, shape (n,).
+        driven: force of each actuator [N], shape (n, actuators), or None without.
         damage: share of its bond that each joint has lost [-], shape (n, joints), or None without bonds.
     """
 
@@ -178,6 +180,7 @@ class Gathered(NamedTuple):
     loads: Array
     held: Array
     pulled: Mapping[str, Array]
+    driven: Array | None = None
     damage: Array | None = None
 
 
@@ -215,6 +218,9 @@ def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str,
             anchor = case.masonry.names[link.anchor_block]
         force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
         reactions[anchor] = reactions.get(anchor, 0.0) + force
+    if isinstance(case, MasonryCase) and case.actuators and gathered.driven is not None:
+        ways = np.array([actuator.direction for actuator in case.actuators.values()])
+        reactions[ANCHORS] = reactions.get(ANCHORS, 0.0) + gathered.driven @ ways
 
 
 def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int]:

@@ -53,6 +53,8 @@ class Response:
             of the steps alone `stepping_time` and `stepping_processor_time` [s]. MuJoCo adds the deepest penetrations,
             `deepest_base` and `deepest_side` of a wall or `deepest` of masonry, and for a wall the
             `base_displacement` when the duration is over [m].
+        actuators: force of each actuator at the samples, by its name [N], shape (n,), positive where it pushes its
+            block along its direction.
         end: pose and velocity at the end, to continue from with `simulate(..., start=...)`. None from other solvers.
         kept_forces: what `forces` and `reactions` give, or None where they were not asked for.
     """
@@ -68,6 +70,7 @@ class Response:
     plastic: Mapping[str, Plastic] = field(default_factory=dict)
     ledger: Ledger | None = None
     stats: dict[str, Any] = field(default_factory=dict)
+    actuators: Mapping[str, Array] = field(default_factory=dict)
     end: State | None = None
     kept_forces: Forces | None = None
 
@@ -310,6 +313,7 @@ class Response:
         for field_name, name in (("motion", "horizontal"), ("vertical", "vertical"), ("transverse", "transverse")):
             if (motion := getattr(self.case, field_name, None)) is not None:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
+        columns |= {f"force of {name} [N]": force for name, force in self.actuators.items()}
         if self.kept_forces is not None:
             columns |= self.kept_forces.columns()
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())

@@ -14,6 +14,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.masonry.statics import falling, friction_lacking, slippery
+from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
 from ..quantities import Array, Integers, named, require_kind
@@ -38,16 +39,19 @@ def masonry_scene(case: MasonryCase) -> Scene:
     """
     require_kind("case", case, MasonryCase)
     if not case.settled:
-        return drawn_masonry(case.masonry, case.effects)
-    require_standing(case.masonry, case.effects)
-    return standing_masonry(case.masonry, case.effects)
+        return drawn_masonry(case.masonry, case.passive)
+    require_standing(case.masonry, case.passive)
+    return standing_masonry(case.masonry, case.passive)
 
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:
     """What happens to the scene of a case: it starts at rest, with the velocities of the case."""
     still = np.zeros((len(scene.bodies.names), scene.freedom.nv))
     velocity = still if case.velocity is None else np.asarray(case.velocity)
-    return Course(scene.at_rest, velocity, case.duration, case.motion, case.vertical, transverse=case.transverse)
+    motion, vertical = case.motion, case.vertical
+    if case.tilt is not None:
+        motion, vertical = motions_of_tilt(case.tilt, case.duration)
+    return Course(scene.at_rest, velocity, case.duration, motion, vertical, transverse=case.transverse)
 
 
 @lru_cache(maxsize=16)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import require_kind, require_path, require_row, shown
+from ...quantities import require_kind, require_path, require_row, require_text, shown
 from .code_spectrum import CodeSpectrum, FloorSpectrum
 from .motion import GroundMotion
 from .spectrum import scaled_to_spectrum
@@ -41,7 +41,7 @@ def records_in(
         ValueError: for a folder without such files, names that go together in more than one way, or a file that is not
             what it should be.
     """
-    folder = require_path("folder", folder)
+    folder, pattern = require_path("folder", folder), require_text("pattern", pattern)
     files = {path.name: path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")}
     names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
     if not names:

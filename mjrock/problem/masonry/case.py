@@ -23,14 +23,16 @@ from ..ground.motion import GroundMotion
 from ..wall.effect import Effect
 from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import LATER, require_in_plane
-from .effects import require_anchored, require_in_space
+from .actuator import Actuator
+from .effects import numbered, require_anchored, require_in_space, require_pushing
 from .masonry import Masonry
 from .plausible import doubts
 from .support import supports_of
+from .tilt import tilt_of
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled")
+COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled", "tilt")
 """What two equal cases share, beside the velocity."""
 
 
@@ -44,9 +46,9 @@ class MasonryCase(Carrying):
         motion: horizontal acceleration of the ground and of all fixed blocks, or None. A positive one pushes the blocks
             to the left. Responses are motions as seen from the ground.
         vertical: the same, vertical. A positive one is upwards and presses the blocks on their joints.
-        effects: ties, loads, thrusts, added masses and dampers. Each says which `block` it belongs to, by its number in
-            `masonry.blocks`. Heights are z; offsets are measured from the centroid of the block. A tie holds the left
-            end of its block at its height. In space each acts at a point, `at`.
+        effects: ties, loads, thrusts, added masses, dampers and actuators. Each says which `block` it belongs to, by
+            its name or its number in `masonry.blocks`. Heights are z; offsets are measured from the centroid of the
+            block. A tie holds the left end of its block at its height. In space each acts at a point, `at`.
         velocity: velocity of each block that is not fixed at the release: x, z and rotation [m/s, m/s, rad/s], shape
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
             turns to the right. In space x, y, z and the angular velocity about the three axes, shape (bodies, 6).
@@ -56,6 +58,9 @@ class MasonryCase(Carrying):
         transverse: in space, the acceleration of the ground along y, or None; `motion` is that along x.
         settled: whether the masonry starts at rest under its weight. False starts it as drawn, with springs that are
             not stretched and without friction, whether or not it stands.
+        tilt: (t, angle) of a table on which the masonry stands, in s and rad, in space about y. A positive angle lets
+            the blocks slide and turn towards +x. It is linear in between and constant after the last. The motion is
+            seen from the table, and what the table puts in is in `ledger.ground`.
 
     Raises:
         ValueError: for a value outside its range, velocities of another shape, an effect that is not on its block, or
@@ -74,6 +79,7 @@ class MasonryCase(Carrying):
     supports: Any = ()
     transverse: GroundMotion | None = field(default=None, kw_only=True, metadata=LATER)
     settled: bool = field(default=True, kw_only=True, metadata=LATER)
+    tilt: Any = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
         require_kind("masonry", self.masonry, Masonry)
@@ -85,6 +91,9 @@ class MasonryCase(Carrying):
             raise ValueError(
                 "transverse is for masonry in space; blocks in the plane are shaken by motion and vertical"
             )
+        keep(self, tilt=tilt_of(self.tilt))
+        if self.tilt is not None and (self.motion is not None or self.vertical is not None):
+            raise ValueError("tilt does not go with motion and vertical: a table either tilts or shakes; leave one out")
         if self.velocity is not None:
             unknowns = 6 if self.masonry.in_space else 3
             velocity = require_array("velocity", self.velocity, (len(self.masonry.free), unknowns))
@@ -99,14 +108,20 @@ class MasonryCase(Carrying):
 
     def _require_effects(self) -> None:
         """Check that each effect is on a block that is not fixed, and keep them as a tuple."""
-        self._keep_sequence()
+        self._keep_sequence(Actuator)
+        numbers: list[Effect] = []
         for i, effect in enumerate(self.effects):
-            require_kind(f"effects[{i}]", effect, *KINDS)
+            require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
+            effect = numbered(f"effects[{i}]", effect, self.masonry)
+            numbers.append(effect)
             require_whole(f"effects[{i}], block", effect.block, 0, len(self.masonry.blocks) - 1)
             block = self.masonry.blocks[effect.block]
             name = f"effects[{i}] on {self.masonry.names[effect.block]}"
             if block.fixed:
                 raise ValueError(f"{name}: this block is fixed; the valid ones are {list(self.masonry.free)}")
+            if isinstance(effect, Actuator):
+                require_pushing(name, effect, self.masonry)
+                continue
             if self.masonry.in_space:
                 require_in_space(name, effect, self.masonry)
                 continue
@@ -117,6 +132,17 @@ class MasonryCase(Carrying):
             if isinstance(effect, Load):
                 middle = float(block.centroid[0])
                 require_within(f"{name}, offset", effect.offset, float(low[0]) - middle, float(high[0]) - middle, "m")
+        keep(self, effects=tuple(numbers))
+
+    @property
+    def actuators(self) -> dict[str, Actuator]:
+        """The actuators by name: `actuator_0` and so on."""
+        return {f"{Actuator.label}_{i}": actuator for i, actuator in enumerate(self.each(Actuator))}
+
+    @property
+    def passive(self) -> tuple[Effect, ...]:
+        """The effects that are not driven, with which the masonry comes to rest."""
+        return tuple(effect for effect in self.effects if not isinstance(effect, Actuator))
 
     def __eq__(self, other: object) -> bool:
         return (

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ...quantities import GRAVITY, Array, require_whole
+from ...quantities import GRAVITY, Array, named, require_whole
 from ..wall.effect import Anchored, Effect
+from .actuator import Actuator
 from .masonry import Masonry
 from .polygon import Polygon
 from .polyhedron import Polyhedron
@@ -16,7 +19,7 @@ BESIDE = 1e-3
 
 def placed(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
     """Where an effect acts on its block, from the origin of the world [m]."""
-    if masonry.in_space:
+    if effect.at is not None:
         return tuple(held_at(effect).tolist())
     block = masonry.polygons[effect.block]
     x = block.left_at(effect.height) if effect.on_face else float(block.centroid[0]) + effect.offset
@@ -54,6 +57,34 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
             centroids[i] += added / total * apart
             mass[i] = total
     return mass, centroids, inertia
+
+
+def numbered(name: str, effect: Effect, masonry: Masonry) -> Effect:
+    """An effect with the number of each block that it names.
+
+    Raises:
+        ValueError: with the name of the effect, for a block that the masonry does not have.
+    """
+    for field in ("block", "anchor_block"):
+        block = getattr(effect, field, None)
+        if isinstance(block, str):
+            if block not in masonry.names:
+                raise ValueError(f"{name}, {field} = {block!r} is no block; the valid ones are {named(masonry.names)}")
+            effect = replace(effect, **{field: masonry.names.index(block)})  # type: ignore[type-var]
+    return effect
+
+
+def require_pushing(name: str, actuator: Actuator, masonry: Masonry) -> None:
+    """Raise a ValueError that names the field, unless an actuator pushes its block, in the plane or in space."""
+    d = 3 if masonry.in_space else 2
+    if len(actuator.at) != d:
+        raise ValueError(f"{name}, at = {actuator.at} m has {len(actuator.at)} numbers; this masonry takes {d}")
+    _require_on(f"{name}, at", actuator.at, masonry.blocks[actuator.block])
+    if actuator.guide.rising and actuator.direction[-1] != 0:
+        raise ValueError(
+            f"{name}, direction = {actuator.direction} rises, which guided = 'translation' keeps the block from; the "
+            "valid ones are horizontal"
+        )
 
 
 def require_in_space(name: str, effect: Effect, masonry: Masonry) -> None:
@@ -101,5 +132,5 @@ def _require_on(name: str, point: tuple[float, ...], block: Polygon | Polyhedron
 
 
 def held_at(effect: Effect) -> Array:
-    """The point where an effect acts, at rest [m], shape (3,)."""
+    """The point where an effect acts, at rest [m], shape (3,), of an actuator in the plane (2,)."""
     return np.array(effect.at)

@@ -220,11 +220,12 @@ class Carrying:
         """The links with a spring, by name."""
         return {name: effect for name, effect in self.links.items() if effect.law.k > 0}
 
-    def _keep_sequence(self) -> None:
-        """Keep the effects, or a single one, as a tuple."""
-        given = (self.effects,) if isinstance(self.effects, KINDS) else self.effects
+    def _keep_sequence(self, *further: type[Effect]) -> None:
+        """Keep the effects, or a single one, as a tuple. They are of `KINDS` or `further` ones."""
+        kinds = (*KINDS, *further)
+        given = (self.effects,) if isinstance(self.effects, kinds) else self.effects
         if not isinstance(given, Sequence) or isinstance(given, str):
-            names = [kind.__name__ for kind in KINDS]
+            names = [kind.__name__ for kind in kinds]
             raise TypeError(
                 f"effects = {shown(self.effects)} is not a sequence of {', '.join(names[:-1])} or {names[-1]}"
             )

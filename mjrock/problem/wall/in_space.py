@@ -50,13 +50,17 @@ def keep_place(effect: Any, kind: str) -> None:
         if hasattr(effect, name):
             keep(effect, **{name: point_or_none(f"{name} of the {kind}", getattr(effect, name))})
     if getattr(effect, "anchor_block", None) is not None:
-        anchor_block = require_whole(f"anchor_block of the {kind}", effect.anchor_block, 0, BLOCKS)
-        keep(effect, anchor_block=anchor_block)
+        keep(effect, anchor_block=_block(f"anchor_block of the {kind}", effect.anchor_block))
     keep(
         effect,
         height=_height(kind, effect.height, effect.at),
-        block=require_whole(f"block of the {kind}", effect.block, 0, BLOCKS),
+        block=_block(f"block of the {kind}", effect.block),
     )
+
+
+def _block(name: str, given: Any) -> Any:
+    """A block as it is named, of which a case of masonry knows the number, or its number."""
+    return given if isinstance(given, str) else require_whole(name, given, 0, BLOCKS)
 
 
 def _height(kind: str, height: float | None, at: Point | None) -> float:

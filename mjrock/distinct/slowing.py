@@ -1,0 +1,53 @@
+"""Damping of a slow motion: of all velocities alike, or of each force that is not balanced.
+
+Mass-proportional damping lets every velocity decay at one rate. Local damping takes a share of the unbalanced force
+along each axis, against the velocity (Cundall, Distinct element models of rock and soil structure, 1987): a steady
+motion is not dragged, and what swings is damped alike at all frequencies. What they take is in the last account of the
+dashpots.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import inlined, jitable
+from ..geometry.vectors import components, dot, put, scaled, spin_components
+from ..quantities import Array
+from .system import Books, System
+from .turning import momentum_of
+
+
+@jitable
+def slow_down(system: System, books: Books, share: float, axes: tuple[int, ...]) -> None:
+    """Let all velocities decay by exp(-share)."""
+    left, taken = math.exp(-share), 0.0
+    for b in range(len(system.bodies)):
+        body = system.bodies[b]
+        velocity, spin = components(body.velocity, axes), spin_components(body.spin, axes)
+        taken += body.mass * dot(velocity, velocity) + dot(momentum_of(body, axes), spin)
+        put(body.velocity, scaled(left, velocity))
+        put(body.spin, scaled(left, spin))
+        if len(axes) == 3:
+            put(body.momentum, scaled(left, components(body.momentum, axes)))
+    books.dashpots[len(books.dashpots) - 1] += 0.5 * (1 - left * left) * taken
+
+
+@inlined
+def opposed(force: Array, velocity: Array, share: float) -> float:
+    """Take a share of the components of a force against those of a velocity. Returns the power that it takes [W]."""
+    power = 0.0
+    for i in range(len(force)):
+        less = math.copysign(share * abs(force[i]), velocity[i]) if velocity[i] != 0 else 0.0
+        power += less * velocity[i]
+        force[i] -= less
+    return power
+
+
+@jitable
+def oppose(system: System, books: Books, share: float, kick: float, axes: tuple[int, ...]) -> None:
+    """Take a share of the unbalanced force and moment on each body while they act for a time [s]."""
+    taken = 0.0
+    for b in range(len(system.bodies)):
+        body = system.bodies[b]
+        taken += kick * (opposed(body.force, body.velocity, share) + opposed(body.moment, body.spin, share))
+    books.dashpots[len(books.dashpots) - 1] += taken

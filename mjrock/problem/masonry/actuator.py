@@ -1,0 +1,119 @@
+"""An actuator: it pushes a point of a block to a displacement, as the jack of a laboratory does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Literal, NamedTuple
+
+import numpy as np
+
+from ...quantities import Array, keep, require_array, require_reals, require_whole, require_within, shown
+from ..wall.effect import Effect
+from ..wall.in_space import BLOCKS, FARTHEST
+from .histories import history_of
+
+LARGEST = 10.0
+"""Largest displacement of an actuator [m]: a larger one is in mm."""
+
+
+class Guide(NamedTuple):
+    """What a guide keeps a block from: rising, and turning."""
+
+    rising: bool = False
+    turning: bool = False
+
+
+GUIDES = {None: Guide(), "upright": Guide(turning=True), "translation": Guide(rising=True, turning=True)}
+"""What `guided` may be."""
+
+
+@dataclass(frozen=True, repr=False)
+class Actuator(Effect):
+    """An actuator that drives a point of a block of masonry along a direction, through a spring.
+
+    Its force is stiffness (d - u) + damping (d' - u'): d is the history, u the displacement of the point along the
+    direction since the masonry stood at rest, or as drawn, and d' and u' are their rates. The actuator pushes and
+    pulls, and its direction stays as it is in space. Its force at the samples is `response.actuators` [N], positive
+    where it pushes along the direction. What it puts in is in `ledger.ground`, what its spring holds in
+    `ledger.elastic`, and what its dashpot takes in `ledger.dashpots`. A stiffness far above that of the joints follows
+    the history closely and makes the steps short. Without damping the block swings on the spring.
+
+    Args:
+        block: the block that it drives, by its name or number.
+        at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m].
+        direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z).
+        displacement: (t, d) in s and m, from (0, 0) on, linear in between and constant after the last, within 10 m.
+            None rests, for `push`, which finds its own.
+        stiffness: of its spring [N/m], 1 to 1e12.
+        damping: of its dashpot [N s/m], 0 to 1e12.
+        guided: how the block is guided from rest on: None leaves it free, "upright" keeps it from turning, as a beam
+            that a constant load presses on the wall, and "translation" from turning and rising, as a beam of a rig
+            that is held in both. Guides do no work.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range. A case checks that the point is on the block.
+    """
+
+    label: ClassVar[str] = "actuator"
+    arguments: ClassVar[str] = "block, at, direction,\ndisplacement, stiffness"
+    block: Any
+    at: Any
+    direction: Any
+    displacement: Any
+    stiffness: float
+    damping: float = 0.0
+    guided: Literal["upright", "translation"] | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        at = require_reals("at of the actuator", self.at, "x, z or x, y, z")
+        at = require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,))
+        require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST, FARTHEST, "m")
+        if self.guided not in GUIDES:
+            names = "None, 'upright' and 'translation'"
+            raise ValueError(f"guided of the actuator = {shown(self.guided)} is not known; the valid ones are {names}")
+        if not isinstance(self.block, str):
+            keep(self, block=require_whole("block of the actuator", self.block, 0, BLOCKS))
+        if self.displacement is None:
+            keep(self, displacement=((0.0,), (0.0,)))
+        keep(
+            self,
+            at=tuple(at.tolist()),
+            direction=_unit(self.direction, len(at)),
+            displacement=history_of("displacement of the actuator", self.displacement, LARGEST, "m", from_zero=True),
+            stiffness=require_within("stiffness of the actuator", self.stiffness, 1.0, 1e12, "N/m"),
+            damping=require_within("damping of the actuator", self.damping, 0.0, 1e12, "N s/m"),
+        )
+
+    @property
+    def height(self) -> float:  # type: ignore[override]
+        """Of its point [m]."""
+        return float(self.at[-1])
+
+    @property
+    def way(self) -> Array:
+        """Unit vector of its direction, shape (2,), in space (3,)."""
+        return np.array(self.direction)
+
+    @property
+    def guide(self) -> Guide:
+        """What its block is kept from."""
+        return GUIDES[self.guided]
+
+    @property
+    def said(self) -> str:
+        """For sketch and report."""
+        far = max(self.displacement[1], key=abs)
+        return f"z = {self.height:g} m,\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:g} kN/mm"
+
+
+def _unit(direction: Any, d: int) -> tuple[float, ...]:
+    """The unit vector of a direction, along x for a number, in d dimensions."""
+    given = require_reals("direction of the actuator", direction, f"1, -1 or a vector of the shape ({d},)")
+    if given.shape == () and abs(float(given)) == 1:
+        given = float(given) * np.eye(d)[0]
+    vector = require_array("direction of the actuator", given, (d,))
+    length = float(np.linalg.norm(vector))
+    if not 1e-9 < length < math.inf:
+        raise ValueError(f"direction of the actuator = {shown(direction)} has no length; it is above 1e-9 and finite")
+    return tuple((vector / length).tolist())

@@ -1,0 +1,155 @@
+"""Actuators against closed forms: a block that rocks, one that slides to and fro, guided blocks, a run in two parts."""
+
+import numpy as np
+import pytest
+from driven import WEIGHT, B, H, panel
+
+import mjrock as mr
+
+
+def actuator(x, z, displacement, *, in_space=False, stiffness=1e8, damping=2.7e5, **more):
+    """An actuator along x at a point of the panel."""
+    at, way = ((x, 0.0, z), (1.0, 0.0, 0.0)) if in_space else ((x, z), (1.0, 0.0))
+    return mr.Actuator("panel", at, way, displacement, stiffness, damping, **more)
+
+
+def pushed(masonry, *effects, duration, **options):
+    """The answer and the force of the first actuator over the weight."""
+    case = mr.MasonryCase(masonry, duration, effects=effects)
+    answer = mr.solve_explicit(case, output_step=0.01, ledger=True, **options)
+    assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
+    return answer, answer.actuators["actuator_0"] / WEIGHT
+
+
+def rocking_force(theta):
+    """Horizontal force at the left top corner over the weight, of the rigid panel on its right toe, and how far the
+    corner has moved [m]."""
+    sine, cosine = np.sin(theta), np.cos(theta)
+    force = (B * cosine - H * sine) / (2 * H * cosine + 2 * B * sine)
+    return force, 2 * B * (1 - cosine) + 2 * H * sine
+
+
+@pytest.mark.parametrize("in_space", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_a_panel_pushed_at_its_top_has_the_force_of_a_rigid_block_down_to_overturning(in_space):
+    far = 2 * B
+    history = ([0.0, 0.5, 6.0], [0.0, 0.005, far])
+    answer, force = pushed(
+        panel(0.9, in_space=in_space, k_n=1e10), actuator(-B, 2 * H, history, in_space=in_space), duration=6.0
+    )
+    theta = np.linspace(0.0, np.arctan(B / H), 1000)
+    closed, moved = rocking_force(theta)
+    driven = np.interp(answer.t, *history) - force * WEIGHT / 1e8
+    rocks = (driven > 0.02 * far) & (driven < moved.max())
+    assert rocks.sum() > 400
+    expected = np.interp(driven, moved, closed)
+    assert np.abs(force - expected)[rocks].max() < 0.01 * B / (2 * H)
+    assert force[40:50].max() == pytest.approx(B / (2 * H), rel=0.01)
+
+
+@pytest.mark.parametrize("k_s", [None, 1e10])
+def test_a_panel_pushed_to_and_fro_loses_friction_times_path(k_s):
+    history = ([0.0, 1.0, 3.0, 5.0], [0.0, 0.05, -0.05, 0.05])
+    answer, force = pushed(panel(0.3, k_s=k_s, k_n=1e10), actuator(-B, 0.1, history), duration=5.0)
+    foot = answer.pose[:, 0, 0] - H * np.sin(answer.theta[:, 0])
+    path = np.abs(np.diff(foot)).sum()
+    assert path > 0.24
+    assert answer.ledger.friction[-1] == pytest.approx(0.3 * WEIGHT * path, rel=0.005)
+    assert answer.ledger.dashpots["actuator_0"][-1] < 0.02 * answer.ledger.friction[-1]
+    assert np.median(force[(answer.t > 0.5) & (answer.t < 1.0)]) == pytest.approx(0.3, rel=0.01)
+    assert np.median(force[(answer.t > 2.0) & (answer.t < 3.0)]) == pytest.approx(-0.3, rel=0.01)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("guided", ["upright", "translation"])
+def test_a_guided_block_does_not_turn(guided, in_space):
+    history = ([0.0, 0.5], [0.0, 0.02])
+    driven = actuator(-B, 2 * H, history, in_space=in_space, guided=guided)
+    answer, force = pushed(panel(0.3, in_space=in_space), driven, duration=0.5)
+    assert np.median(force[25:]) == pytest.approx(0.3, rel=0.001)  # free, it would turn at 0.125
+    turned = answer.pose[:, 0, 3:] if in_space else answer.theta
+    np.testing.assert_array_equal(turned, turned[:1].repeat(len(answer.t), axis=0))
+
+
+def test_a_wall_under_a_beam_that_does_not_rise_bears_more_than_its_weight_gives():
+    """The panel between two faces becomes a strut: as it turns, the guide presses it down."""
+    beam = mr.Polygon([(-1.0, 2 * H), (1.0, 2 * H), (1.0, 2.2), (-1.0, 2.2)], density=2000.0, name="beam")
+    masonry = mr.Masonry([*panel(0.9).blocks, beam], k_n=2e9, friction=0.9, xi=0.1)
+    tops = {}
+    for guided in ("upright", "translation"):
+        jack = mr.Actuator("beam", (-1.0, 2.1), 1, ([0.0, 1.0], [0.0, 0.01]), 1e8, 2e5, guided=guided)
+        answer, force = pushed(masonry, jack, duration=1.0)
+        tops[guided] = force[20:].max()
+        assert (np.ptp(answer.pose[:, 1, 1]) == 0) == (guided == "translation")
+    # two hinges at opposite corners: the weight of the beam acts with the lever 2b, that of the panel with b
+    both = (2000.0 * 0.4 * mr.GRAVITY * 2 * B + WEIGHT * B) / (2 * H) / WEIGHT
+    assert tops["upright"] == pytest.approx(both, rel=0.05)
+    assert tops["translation"] > 3 * both
+
+
+def test_a_run_in_two_parts_is_the_run_in_one():
+    masonry, whole = panel(0.3, k_s=2e9), ([0.0, 1.0], [0.0, 0.02])
+    _, force = pushed(masonry, actuator(-B, 0.1, whole), duration=1.0, timestep=2e-4)
+    half = mr.MasonryCase(masonry, 0.5, effects=(actuator(-B, 0.1, ([0.0, 1.0], [0.0, 0.02])),))
+    first = mr.solve_explicit(half, timestep=2e-4, output_step=0.01)
+    second = mr.solve_explicit(half, timestep=2e-4, output_step=0.01, start=first.end)
+    np.testing.assert_allclose(second.actuators["actuator_0"] / WEIGHT, force[50:], atol=1e-9)
+
+
+def test_a_step_knows_the_stiffness_of_an_actuator():
+    masonry = panel(0.3)
+    still = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).stats["stable_timestep"]
+    stiff = mr.MasonryCase(masonry, 0.01, effects=(actuator(-B, 0.1, ([0.0], [0.0]), stiffness=1e12),))
+    assert mr.solve_explicit(stiff).stats["stable_timestep"] < 0.2 * still
+
+
+def test_forces_are_columns_of_the_table():
+    case = mr.MasonryCase(panel(0.3), 0.01, effects=actuator(-B, 0.1, ([0.0, 1.0], [0.0, 0.1])))
+    answer = mr.solve_explicit(case)
+    assert "force of actuator_0 [N]" in answer.csv()
+    assert answer.actuators["actuator_0"][-1] > 0
+    with pytest.raises(ValueError, match="actuator_0: MuJoCo has no row for actuators; take solve_explicit"):
+        mr.simulate(case)
+
+
+HISTORY = ([0.0, 1.0], [0.0, 0.1])
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"displacement": ([0.0, 1.0], [0.0, np.nan])}, "values holds a value that is not finite"),
+        ({"displacement": ([0.0, 1.0], [0.01, 0.02])}, "begins at 0.01 m; the valid start is 0 m"),
+        ({"displacement": ([0.5, 1.0], [0.0, 0.02])}, "t begins at 0.5 s; the valid start is 0 s"),
+        ({"displacement": ([0.0, 1.0, 0.5], [0.0, 0.1, 0.2])}, "has to increase"),
+        ({"displacement": ([0.0, 1.0], [0.0, 40.0])}, "= 40 m is outside"),
+        ({"displacement": ([0.0, 1.0], [0.0])}, "have 2 and 1 numbers"),
+        ({"displacement": 0.1}, "is not \\(t, values\\)"),
+        ({"stiffness": 0.0}, "stiffness of the actuator"),
+        ({"direction": (0.0, 0.0)}, "has no length"),
+        ({"direction": 2}, "shape"),
+        ({"guided": "rotation"}, "the valid ones are None, 'upright' and 'translation'"),
+        ({"at": (1.0, 2.0)}, "0.75 m outside the block"),
+        ({"at": (0.0, 0.0, 2.0), "direction": (1.0, 0.0, 0.0)}, "has 3 numbers; this masonry takes 2"),
+        ({"block": "beam"}, "'beam' is no block; the valid ones are base, panel"),
+        ({"block": "base"}, "this block is fixed"),
+        ({"block": 7}, "outside the valid range"),
+        ({"direction": (0.0, 1.0), "guided": "translation"}, "the valid ones are horizontal"),
+    ],
+)
+def test_what_is_wrong_is_named(changed, said):
+    given = {"block": "panel", "at": (-B, H), "direction": 1, "displacement": HISTORY, "stiffness": 1e8} | changed
+    with pytest.raises((ValueError, TypeError), match=said):
+        mr.MasonryCase(panel(0.3), 1.0, effects=mr.Actuator(**given))
+
+
+def test_effects_of_masonry_take_the_name_of_their_block():
+    named = mr.MasonryCase(panel(0.3), 1.0, effects=mr.Load(1e3, 2.0, block="panel"))
+    assert named.effects == (mr.Load(1e3, 2.0, block=1),)
+    with pytest.raises(ValueError, match="'roof' is no block; the valid ones are base, panel"):
+        mr.MasonryCase(panel(0.3), 1.0, effects=mr.Load(1e3, 2.0, block="roof"))
+
+
+def test_a_wall_of_one_block_takes_no_actuator():
+    wall = mr.Block.from_size(0.5, 2.0)
+    with pytest.raises(TypeError, match="Actuator"):
+        mr.Case(wall, 0.0, 1.0, effects=(mr.Actuator(0, (0.0, 1.0), 1, HISTORY, 1e8),))
