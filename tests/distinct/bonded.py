@@ -6,7 +6,6 @@ import mjrock as mr
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.setup import setup_of
 from mjrock.distinct.system import Books, Samples
-from mjrock.quantities import GRAVITY
 
 K_N, K_S = 62.7e9, 27.5e9
 MORTAR = mr.Bond(0.25e6, 0.35e6, 18.0, 125.0)
@@ -40,10 +39,9 @@ class Led:
     """
 
     def __init__(self, masonry, angle=0.0, h=1e-5):
-        falls = mr.GroundMotion([-GRAVITY, -GRAVITY], 1.0)  # so that nothing weighs
-        setup = setup_of(mr.MasonryCase(masonry, 1.0, vertical=falls, settled=False), None, None)
+        setup = setup_of(mr.MasonryCase(masonry, 1.0, settled=False), None, None)
         self.system, self.h, self.at, self.step = setup.system, h, np.zeros(len(setup.system.axes)), 0
-        self.system.bodies["mass"], self.system.bodies["inverse_inertia"] = 1e30, 0.0
+        self.system.bodies["inverse_mass"], self.system.bodies["inverse_inertia"] = 0.0, 0.0
         self.books = Books.empty(self.system, 2)
         self.samples = Samples.room(2, 1, self.books, setup.scene.freedom, ledger=True)
         d = len(self.at)
