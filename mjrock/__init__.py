@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from .problem.ground.record_sets import records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.actuator import Actuator
+    from .problem.masonry.bond import BONDS, Bond
     from .problem.masonry.case import MasonryCase
     from .problem.masonry.collapse import Collapse, collapse_multiplier
     from .problem.masonry.joints import Joint
@@ -91,21 +92,22 @@ if TYPE_CHECKING:
     from .theory.impact import RigidImpact, rigid_impact
 
 __all__ = [
-    "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass", "Analysis",
-    "Block", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "ContactParameters", "ContactWarning",
-    "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility", "FrictionDamper", "Gable",
-    "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface", "Joint", "Ledger", "Load",
-    "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase", "MasonryResponse", "MasonryType",
-    "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact", "PairContacts", "PairedRatio", "Plan",
-    "Polygon", "Polyhedron", "PowerLaw", "Push", "Response", "ResponseSpectrum", "Restitution", "RigidImpact",
-    "RockingSpectrum", "Scene", "Sensitivity", "SideStop", "SimulationError", "SpaceJoint", "StiffnessRange", "Store",
-    "Thrust", "Tie", "__version__", "as_theory", "automatic_timestep", "calibrate", "campaign", "code_spectrum",
-    "collapse_multiplier", "compare", "contact_for", "contact_parameters", "contact_stiffness", "contacts_for",
-    "crushed_inset", "fit_capacities", "fit_fragility", "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness",
-    "layered_stiffness", "lost", "masonry_mjcf", "masonry_scene", "matched_contacts", "matched_masonry",
-    "measured_contact", "measured_stiffness", "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio",
-    "push", "pushover", "records_in", "reference_frequency", "report", "response_spectrum", "results", "rigid_impact",
-    "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
+    "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
+    "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "ContactParameters",
+    "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility",
+    "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
+    "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
+    "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
+    "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Push", "Response",
+    "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop",
+    "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory",
+    "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "contact_for",
+    "contact_parameters", "contact_stiffness", "contacts_for", "crushed_inset", "fit_capacities", "fit_fragility",
+    "hertz_stiffness", "ida", "inspect_contacts", "joint_stiffness", "layered_stiffness", "lost", "masonry_mjcf",
+    "masonry_scene", "matched_contacts", "matched_masonry", "measured_contact", "measured_stiffness",
+    "mechanism_check", "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in",
+    "reference_frequency", "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum",
+    "scaled_to_sa", "scaled_to_spectrum", "scaled_together", "scene_of", "sensitivity", "simulate",
     "solve_analytical", "solve_compliant", "solve_explicit", "stiffness_range", "wall_mjcf", "wall_scene",
     "wall_stiffness",
 ]  # fmt: skip

@@ -65,6 +65,7 @@ OWN = {
     "distinct/touches.py": ("touches_inside_a_step", "books_close"),
     **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py", "result/forces.py")},
     "distinct/slowing.py": ("push",),
+    **{name: ("bonds", "bonded_masonry") for name in ("distinct/bonds.py", "problem/masonry/bond_law.py")},
     "distinct/links.py": ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},

@@ -35,7 +35,7 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
         edges = add_joints(lines, scene, masonry)
     ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
     acting = *links_of(scene), rows(kind.link, 0), Ground.of(None), moving((), d), moving((), 1)
-    system = System(scene.freedom.axes, bodies, lines, edges, ways, *acting)
+    system = System(scene.freedom.axes, bodies, lines, edges, ways, rows(kind.bond, 0), *acting)
     return started(system, scene.potential.unmoved.reshape(n, -1))
 
 
@@ -169,7 +169,7 @@ def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequenc
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables = ("bodies", "lines", "edges", "ways", "ties", "dampers", "forces", "actuators")
+    tables = ("bodies", "lines", "edges", "ways", "bonds", "ties", "dampers", "forces", "actuators")
     return system._replace(**{name: getattr(system, name).copy() for name in tables})
 
 

@@ -177,6 +177,8 @@ def press_lines(
     rubbed, put_in = 0.0, 0.0
     for p in range(len(lines)):
         line = lines[p]
+        if line.k == 0 and line.margin == math.inf:
+            continue  # its bond is intact, see `bonds`
         meet = meeting(system, line, axes)
         if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, 0.0 if meet.past else meet.gap)

@@ -17,6 +17,7 @@ import numpy as np
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
+from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import ContactPlaces, Poses, in_pairs, places_of, take_over
 from .limit import Side, shares_within, sums_of_yields, ways_of
@@ -162,6 +163,7 @@ class Encounters:
         if not (wears(system, wear, LOOK) or met.watched.any() or system.supports.moved.any()):
             return system, books, LOOK
         worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
+        worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
         poses, (velocity, about) = self.poses(system), self._velocities(system)
         ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
         watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
@@ -203,6 +205,8 @@ class Encounters:
         lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
+        if len(system.bonds):
+            released(joints, system.bonds, worn)
         before, gone = held(system, of_gone), lines[of_gone]
         old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
         gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])

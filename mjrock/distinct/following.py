@@ -150,7 +150,7 @@ def warn_if_long(setup: Setup, stepping: Stepping) -> None:
     if seconds < WORTH_SAYING:
         return
     said = f"{stepping.last:.2g} steps of {stepping.h:.2g} s on {len(lines)} contact lines"
-    slowest = float((lines["c"] / lines["k"]).max())
+    slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, setup.system.bonds))
     shorter = math.sqrt(1 + 2 * slowest / setup.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > DAMPED:
         said += (

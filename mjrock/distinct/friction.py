@@ -32,7 +32,7 @@ from ..geometry.vectors import (
     vector,
 )
 from ..problem.masonry.joint_law import shear_limit
-from ..quantities import Integers
+from ..quantities import Array, Integers
 from .rows import Row, Rows
 from .system import Books, Supports, System
 from .turning import in_body, in_world, kick_place, spin_from_moment, strike_spin
@@ -81,6 +81,15 @@ def carried(line: Row, supports: Supports, way: Vector) -> float:
 
 
 @inlined
+def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, way: Vector) -> Vector:
+    """Stretch of a shear spring, kept in the axes of its face, after a way along the face [m]."""
+    kept = spin_components(grip, normal)
+    if face >= 0:
+        kept = in_world(bodies[face], kept)
+    return along_face(normal, plus(kept, way))
+
+
+@inlined
 def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push: float, time: float) -> Vector:
     """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it for
     as long as the line was closed in the last step [s].
@@ -88,10 +97,8 @@ def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push:
     The slider shortens the spring to what the face holds, and then spring and dashpot together pull no more than that.
     A dashpot that alone exceeds it stretches no spring, which would put energy in.
     """
-    grip, limit = spin_components(line.grip, normal), shear_limit(line, push)
-    if line.face >= 0:
-        grip = in_world(bodies[line.face], grip)
-    grip = shortened(along_face(normal, plus(grip, scaled(time, slip))), limit / line.k_s)
+    limit = shear_limit(line, push)
+    grip = shortened(stretched(bodies, line.face, line.grip, normal, scaled(time, slip)), limit / line.k_s)
     drag = shortened(minus(scaled(-line.k_s, grip), scaled(line.c_s, slip)), limit)
     if line.face >= 0:
         grip = in_body(bodies[line.face], grip)

@@ -41,11 +41,18 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
-        line = system.lines[p]
-        if was_open(line):
+        line, bonded = system.lines[p], False
+        if p < len(system.bonds):
+            bonded = system.bonds[p].k > 0
+            samples.damage[row, line.group] += 1 - system.bonds[p].left
+        if was_open(line) and not bonded:
             continue
         meet = where_friction_rubs(meeting(system, line, axes))
-        force = plus(scaled(line.push, meet.normal), as_vector(meet.normal, whole_friction(system, line, axes)))
+        push, drag = line.push, whole_friction(system, line, axes)
+        if bonded:
+            push += system.bonds[p].push
+            drag = plus(drag, spin_components(system.bonds[p].dragged, axes))
+        force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
         if line.group < len(loads):
             body = system.bodies[line.body]
             place = plus(components(body.rest, axes), plus(components(body.place, axes), meet.arm))

@@ -26,6 +26,7 @@ from ..geometry.vectors import (
 from ..problem.masonry.joint_law import stored, stored_along
 from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground, mean_acceleration
+from .bonds import bonded_energy, hold_bonds
 from .contact import press_lines, settle_touches
 from .friction import book_rubbing, note_slips, stick
 from .gathering import keep_forces
@@ -156,7 +157,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
         put(velocity[d:], momentum_of(body, axes))
     keep_account(books.dashpots, samples.dashpots[row])
     potential, elastic = linked_energy(system, axes)
-    sheared = 0.0
+    bonded, sheared = bonded_energy(system, axes)
     for p in range(len(system.lines)):
         line = system.lines[p]
         if not was_open(line):
@@ -168,7 +169,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
             grip = spin_components(line.grip, axes)
             sheared += stored_along(line, dot(grip, grip))
     energy, totals = samples.energy[row], books.totals[0]
-    energy.potential, energy.elastic = potential, elastic + sheared
+    energy.potential, energy.elastic = potential, elastic + bonded + sheared
     energy.friction, energy.ground = totals.friction - sheared, totals.ground
     keep_account(books.dampers, samples.dampers[row])
     keep_account(books.ties, samples.ties[row])
@@ -176,6 +177,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     keep_account(books.ends, energy.ends)
     for i in range(len(system.actuators)):
         samples.actuators[row, i] = system.actuators[i].pulled
+    keep_account(books.bonds, energy.bonds)
 
 
 @jitable
@@ -264,6 +266,7 @@ def make_steps(
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
+        hold_bonds(system, books, before, axes)
         sticking, touched = press_lines(system, books, before, kick, clock.lead, axes)
         if sampled or looked:
             keep_pose(system, books, samples, kept, before, axes)

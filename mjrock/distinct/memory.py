@@ -108,6 +108,8 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried = copied(memory.system)
     carried.lines["support"][: len(system.lines)] = system.lines["support"]
     carried.ties["support"], carried.dampers["support"] = system.ties["support"], system.dampers["support"]
-    carried.lines["widest"] = 0.0
+    carried.lines["widest"] = carried.bonds["age"] = 0.0
     carry_drives(memory, system)
-    return system._replace(bodies=carried.bodies, lines=carried.lines, ties=carried.ties, dampers=carried.dampers)
+    return system._replace(
+        bodies=carried.bodies, lines=carried.lines, bonds=carried.bonds, ties=carried.ties, dampers=carried.dampers
+    )

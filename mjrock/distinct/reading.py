@@ -24,6 +24,7 @@ from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.course import Course
 from ..scene.scene import Scene
+from .bonds import TAKEN, cracked
 from .following import Followed
 from .memory import remembered
 from .rows import Rows
@@ -125,7 +126,13 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     if not samples.held.shape[1]:
         return None
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
-    gathered = Gathered(run.t[kept], samples.pose, samples.loads, samples.held, pulled, samples.actuators)
+    damage = None
+    if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
+        lines = np.bincount(run.scene.contacts.joint, minlength=samples.damage.shape[1])
+        dry = [bond is None for bond in run.case.masonry.bonds]
+        damage = np.where(dry, np.nan, samples.damage / lines)
+    loads = samples.pose, samples.loads, samples.held
+    gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 
@@ -143,7 +150,8 @@ def reading_of(run: Run) -> Reading:
         met = None if run.followed.memory is None else run.followed.memory.met
         widest = run.followed.system.lines["widest"][: len(run.scene.contacts.joint)]
         left = met is not None and bool(met.handed.any())
-        return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left))
+        gone = cracked(run.followed.system.bonds, run.scene.contacts.joint, case.masonry)
+        return masonry_reading(case, run.scene, run.t, motion, BesidePoses(widest, left, gone))
     assert contacts is not None
     return wall_reading(case, contacts, run.t, motion, released=run.course.released)
 
@@ -201,4 +209,5 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),
+        bonds=dict(zip(TAKEN, energy["bonds"].T, strict=True)) if len(run.followed.system.bonds) else {},
     )

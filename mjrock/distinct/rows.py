@@ -32,6 +32,7 @@ class Kinds(NamedTuple):
         line: a contact line, in space a contact point: a point of a body on the face of another body or fixed block.
         edge: an edge of a face, of which one in the plane has two.
         way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
+        bond: what a mortared line has beside its row, a row for each line of the joints.
         link: a tie, a damper, an actuator or a constant force on a point of a body, from the ground or from another
             body.
         total: what is booked for all lines together.
@@ -41,6 +42,7 @@ class Kinds(NamedTuple):
     line: np.dtype[np.void]
     edge: np.dtype[np.void]
     way: np.dtype[np.void]
+    bond: np.dtype[np.void]
     link: np.dtype[np.void]
     total: np.dtype[np.void]
 
@@ -54,6 +56,7 @@ def kinds(d: int) -> Kinds:
         _line(d, s),
         _edge(d),
         _way(d, s),
+        _bond(s),
         _link(d),
         [*_number("friction", "ground"), *_vector(d, "push")],
     )
@@ -130,6 +133,20 @@ def _way(d: int, s: int) -> Fields:
         *_vector(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
         *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
         *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
+    ]
+
+
+def _bond(s: int) -> Fields:
+    return [
+        *_number("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
+        *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
+        *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
+        *_number("left"),  # what is left of the bond: 1 - D [-]
+        *_number("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
+        *_number("secant"),  # stiffness that holds both ways [N/m]
+        *_number("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
+        *_vector(s, "grip", "dragged"),  # stretch of the shear spring [m], and its force in the last step [N]
+        *_number("age"),  # time that it has held until it cracked [s]
     ]
 
 

@@ -23,6 +23,7 @@ from ..scene.masonry import drawn_masonry, masonry_course, require_standing, sta
 from ..scene.of_case import course_of, scene_of
 from ..scene.scene import Scene
 from .assembly import copied, driven_by, moved_by, started, system_of, take_grips
+from .bonds import bonded
 from .encounters import Encounters
 from .limit import longest_step
 from .memory import Memory, memory_of, recalled
@@ -117,10 +118,11 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     system = driven_by(system, scene, masonry, case.each(Actuator))
+    limit, system = longest_step(system), bonded(system, masonry, scene.contacts.joint)
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
-    return Setup(scene, course, system, longest_step(system), SHARE, encounters=encounters, of=of, blocks=blocks)
+    return Setup(scene, course, system, limit, SHARE, encounters=encounters, of=of, blocks=blocks)
 
 
 def continued(course: Course, state: State | None) -> Course:

@@ -12,10 +12,14 @@ from ..scene.ground import Ground
 from .rows import Rows, kinds, rows
 
 ENERGY = np.dtype(
-    [*((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")), ("ends", float, (2,))]
+    [
+        *((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")),
+        ("ends", float, (2,)),
+        ("bonds", float, (3,)),
+    ]
 )
 """Energy at a sample or a look, what friction has taken, what ground and supports have put in, and what lines of joints
-and of encounters have lost at the ends of faces by then [J]."""
+and of encounters have lost at the ends of faces, and what bonds have taken by then [J]."""
 
 
 class Supports(NamedTuple):
@@ -37,13 +41,15 @@ class Supports(NamedTuple):
 
 class System(NamedTuple):
     """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly, and
-    `drives` are the histories of the actuators, along one axis each."""
+    `drives` are the histories of the actuators, along one axis each. `bonds` has a row for each line of the joints, or
+    none where all are dry."""
 
     axes: tuple[int, ...]
     bodies: Rows
     lines: Rows
     edges: Rows
     ways: Rows
+    bonds: Rows
     ties: Rows
     dampers: Rows
     forces: Rows
@@ -59,6 +65,7 @@ class Books(NamedTuple):
     Args:
         dashpots: by group, shape (g,).
         ties, broken, dampers: by tie, yielding and breaking, shape (t,) each, and by damper and actuator, shape (d,).
+        bonds: what bonds have taken in tension, slip and crushing, shape (3,).
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
@@ -72,6 +79,7 @@ class Books(NamedTuple):
     broken: Array
     dampers: Array
     ends: Array
+    bonds: Array
     totals: Rows
     active: Integers
     touched: Integers
@@ -80,11 +88,11 @@ class Books(NamedTuple):
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
-        sizes = groups, len(system.ties), len(system.ties), len(system.dampers) + len(system.actuators), 2
-        dashpots, ties, broken, dampers, ends = (np.zeros(size) for size in sizes)
+        sizes = groups, len(system.ties), len(system.ties), len(system.dampers) + len(system.actuators), 2, 3
+        dashpots, ties, broken, dampers, ends, bonds = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
         totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
-        return cls(dashpots, ties, broken, dampers, ends, totals, active, touched, struck)
+        return cls(dashpots, ties, broken, dampers, ends, bonds, totals, active, touched, struck)
 
     def with_room(self, lines: int) -> Books:
         """The books with room for so many lines."""
@@ -110,8 +118,9 @@ class Samples(NamedTuple):
         actuators: force of each actuator [N], shape (samples, a).
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
-        pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links). All
-            three have no columns where no forces are kept.
+        pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
+        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints). All four have
+            no columns where no forces are kept.
     """
 
     pose: Array
@@ -126,6 +135,7 @@ class Samples(NamedTuple):
     loads: Array
     held: Array
     pulled: Array
+    damage: Array
 
     @classmethod
     def room(
@@ -145,14 +155,14 @@ class Samples(NamedTuple):
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         accounts.append(np.zeros((count, actuators)))
-        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), ())]
+        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), (), ())]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
     def with_forces(self, joints: int, blocks: int, links: int) -> Samples:
         """The same with room for the forces of so many joints, fixed blocks and links."""
-        parts, counts = (self.loads, self.held, self.pulled), (joints, blocks, links)
+        parts, counts = (self.loads, self.held, self.pulled, self.damage), (joints, blocks, links, joints)
         room = [np.zeros((len(part), n, *part.shape[2:])) for part, n in zip(parts, counts, strict=True)]
-        return self._replace(loads=room[0], held=room[1], pulled=room[2])
+        return self._replace(loads=room[0], held=room[1], pulled=room[2], damage=room[3])
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""
@@ -162,7 +172,7 @@ class Samples(NamedTuple):
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
         for table in (self.energy, self.looks):
-            for name in ("friction", "ground", "ends"):
+            for name in ("friction", "ground", "ends", "bonds"):
                 table[name] -= table[name][0]
         for account in (self.dampers, self.ties, self.broken, self.dashpots):
             account -= account[0]

@@ -35,7 +35,11 @@ SLID = 0.01
 
 
 def require_still(case: MasonryCase) -> None:
-    """Raise a ValueError where supports move, as in MuJoCo the fixed blocks belong to the world, or actuators drive."""
+    """Raise a ValueError where joints have bonds, supports move or actuators drive.
+
+    Contacts of MuJoCo push only, and its fixed blocks belong to the world.
+    """
+    case.masonry.require_dry("MuJoCo")
     if case.actuators:
         raise ValueError(f"{named(tuple(case.actuators))}: MuJoCo has no row for actuators; take solve_explicit")
     if case.supports:

@@ -33,6 +33,8 @@ def mjcf_of(case: Case | MasonryCase, contacts: Contacts | None, timestep: float
     """
     timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
     newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
+    if isinstance(case, MasonryCase):
+        case.masonry.require_dry("MuJoCo")
     scene = scene_of(case, contacts)
     return released_mjcf(scene, course_of(case, scene), timestep, newmark_beta)
 

@@ -119,6 +119,7 @@ class Forces:
             of the links that are anchored on it. "anchors" is that of all links anchored on no block and of
             actuators without their guides. Of a wall those
             of "base", "side" and "anchors".
+        damage: share of its bond that each joint has lost [-], shape (n, joints), NaN where it is dry.
     """
 
     frames: JointFrames
@@ -127,6 +128,7 @@ class Forces:
     eccentricity: Array
     links: Mapping[str, Array]
     reactions: Mapping[str, Array]
+    damage: Array
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -170,6 +172,7 @@ class Gathered(NamedTuple):
         held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
         pulled: what each link pulls with [N], by its name, shape (n,).
         driven: force of each actuator [N], shape (n, actuators), or None without.
+        damage: share of its bond that each joint has lost [-], shape (n, joints), or None without bonds.
     """
 
     t: Array
@@ -178,6 +181,7 @@ class Gathered(NamedTuple):
     held: Array
     pulled: Mapping[str, Array]
     driven: Array | None = None
+    damage: Array | None = None
 
 
 def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered) -> Forces:
@@ -199,7 +203,8 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     add_links(case, gathered, reactions)
     if d == 2:
         shear, eccentricity = shear[..., 0], eccentricity[..., 0]
-    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions)
+    damage = np.full(normal.shape, np.nan) if gathered.damage is None else gathered.damage
+    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions, damage)
 
 
 def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,16 +22,19 @@ class JointMotion:
             lies lower than at rest by more than half its height. A joint holds nothing where one block has slid by more
             than its width, or where its faces are apart by more than a tenth of its width at the nearest point. In
             MuJoCo, where faces have no end, a block that has slid off its joints counts as fallen at once.
+        cracked: when each mortared joint that cracked did [s], by its name, the first first. A joint has cracked when
+            all its lines have less than half of their bond.
     """
 
     opening: Array
     sliding: Array
     fallen: Mapping[str, float]
+    cracked: Mapping[str, float] = field(default_factory=dict)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, JointMotion):
             return NotImplemented
         same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in ("opening", "sliding"))
-        return same and dict(self.fallen) == dict(other.fallen)
+        return same and dict(self.fallen) == dict(other.fallen) and dict(self.cracked) == dict(other.cracked)
 
     __hash__ = None  # type: ignore[assignment]

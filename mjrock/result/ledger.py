@@ -75,6 +75,7 @@ class Ledger:
         ends: energy that contacts of masonry have lost at the ends of faces since the release, those of "joints" and
             of "encounters". A contact that passes the end of its face leaves what its spring held, and its force
             turns from the normal of one face to that of the other. Negative where energy was gained.
+        bonds: what bonds of mortared joints have taken since the release, in "tension", "slip" and "crushing".
     """
 
     t: Array
@@ -87,6 +88,7 @@ class Ledger:
     ties: Mapping[str, Array] = field(default_factory=dict)
     broken: Mapping[str, Array] = field(default_factory=dict)
     ends: Mapping[str, Array] = field(default_factory=dict)
+    bonds: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def held(self) -> Array:
@@ -100,6 +102,7 @@ class Ledger:
         It is zero for an exact integration. A positive residual is energy that nothing has put in.
         """
         taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values(), *self.ends.values())
+        taken += tuple(self.bonds.values())
         gone = sum(taken, self.friction) - self.ground
         total: Array = self.held + gone
         return np.asarray(total - total[0])
@@ -107,7 +110,7 @@ class Ledger:
     @property
     def largest(self) -> float:
         """The largest part at any time [J]: of the energies, of what was put in and of what was taken."""
-        groups = (self.dashpots, self.ties, self.broken, self.ends)
+        groups = (self.dashpots, self.ties, self.broken, self.ends, self.bonds)
         accounts = [account for group in groups for account in group.values()]
         fallen = self.potential - self.potential[0]
         parts = (self.kinetic, fallen, self.elastic, self.friction, self.ground, *accounts)
@@ -129,6 +132,7 @@ class Ledger:
             + [f"{tie} {account[-1]:.4g}" for tie, account in self.ties.items()]
             + [f"breaking of {tie} {account[-1]:.4g}" for tie, account in self.broken.items()]
             + [f"ends of faces of {kind} {account[-1]:.4g}" for kind, account in self.ends.items()]
+            + [f"{kind} of bonds {account[-1]:.4g}" for kind, account in self.bonds.items()]
         )
         return (
             f"<Ledger over {self.t[-1]:.4g} s [J]: at the end held {self.held[-1]:.4g}, taken by {taken}, "

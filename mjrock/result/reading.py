@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -55,10 +56,12 @@ class BesidePoses(NamedTuple):
     Args:
         widest: the widest gap of each contact in any step [m], shape (m,).
         left: whether blocks have left joints.
+        cracked: when each mortared joint that cracked did [s], by its name, the first first.
     """
 
     widest: Array
     left: bool
+    cracked: Mapping[str, float]
 
 
 def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion, *, released: bool = True) -> Reading:
@@ -99,7 +102,7 @@ def masonry_reading(
     return Reading(
         outcome,
         message + told,
-        joints=JointMotion(opening, joints.sliding, fallen),
+        joints=JointMotion(opening, joints.sliding, fallen, {} if beside is None else beside.cracked),
         stats={"deepest": joints.deepest},
     )
 

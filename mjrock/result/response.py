@@ -231,6 +231,11 @@ class Response:
         return self.of_joints.fallen
 
     @property
+    def cracked(self) -> Mapping[str, float]:
+        """When each mortared joint that cracked did [s], by its name, the first first, see `JointMotion`."""
+        return self.of_joints.cracked
+
+    @property
     def peak_over_alpha(self) -> float:
         """Largest rotation of a wall over alpha [-], over a low side stop too; infinite for one that has overturned."""
         return self._largest(self.of_wall[0].wall.alpha, self.of_wall[0].wall.alpha)

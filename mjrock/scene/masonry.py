@@ -64,10 +64,33 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
     """
     scene = standing_masonry(masonry, effects)
     try:
-        _ = scene.at_rest
+        pose = scene.at_rest
     except UnsettledError as error:
         require_carried(masonry, effects)
         raise unsettled(masonry, scene, error.pose) from None
+    if any(masonry.bonds):
+        require_held(masonry, scene, pose)
+
+
+def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
+    """Raise ValueError with the names of the joints whose bonds need more than their strength at the pose of rest."""
+    contacts = scene.contacts
+    push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
+    crushing = np.array([np.inf if bond is None or bond.crushing is None else bond.crushing for bond in masonry.bonds])
+    area = contacts.k / masonry.joint_stiffness[contacts.joint]
+    share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / area / crushing[contacts.joint])
+    torn = np.unique(contacts.joint[share > 1])
+    if len(torn):
+        names = named([masonry.joints[i].name for i in torn])
+        raise ValueError(
+            f"the masonry cannot stand: at rest the bonds of {names} would need {share.max():.3g} times their strength"
+        )
+
+
+def strength(masonry: Masonry, lines: Lines, name: str) -> Array:
+    """A strength of the bond of each contact line [N], zero where there is none."""
+    held = np.array([0.0 if bond is None else getattr(bond, name) for bond in masonry.bonds])
+    return np.asarray(held[lines.joint] * lines.k / masonry.joint_stiffness[lines.joint])
 
 
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
@@ -150,6 +173,8 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             friction=masonry.joint_friction[lines.joint],
             joint=lines.joint,
             joints=tuple(joint.name for joint in masonry.joints),
+            tension=strength(masonry, lines, "tension"),
+            cohesion=strength(masonry, lines, "cohesion"),
         ),
         *attachments(effects, number, lambda effect: placed(masonry, effect), centroids[free]),
         limits=limits,

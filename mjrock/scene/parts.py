@@ -104,6 +104,8 @@ class ContactPoints:
         joints: names of the joints. The ledger has an account for each.
         holds: which contacts stand for a base that holds, shape (m,), or one answer for all. Their coefficient of
             friction is a number that holds it, and no law of sliding.
+        tension, cohesion: what the bond of each contact holds in tension and along the face [N], shape (m,), or one
+            number for all.
     """
 
     body: Integers
@@ -117,6 +119,8 @@ class ContactPoints:
     joint: Integers
     joints: tuple[str, ...]
     holds: Flags | bool = False
+    tension: Array | float = 0.0
+    cohesion: Array | float = 0.0
 
     def __post_init__(self) -> None:
         m, directions = len(self.k), np.shape(self.normal)[-1] if np.size(self.normal) else 2
@@ -133,6 +137,8 @@ class ContactPoints:
         if not ((self.joint >= 0) & (self.joint < len(self.joints))).all():
             raise ValueError(f"joint of the contacts is outside the valid range 0 to {len(self.joints) - 1}")
         object.__setattr__(self, "holds", frozen(np.broadcast_to(np.array(self.holds, dtype=bool), (m,))))
+        for name in ("tension", "cohesion"):
+            object.__setattr__(self, name, frozen(np.broadcast_to(np.array(getattr(self, name), dtype=float), (m,))))
 
     @property
     def group(self) -> tuple[str, ...]:

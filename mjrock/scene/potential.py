@@ -37,15 +37,35 @@ from ..geometry.poses import at_rest
 from ..geometry.vectors import dot, minus, plus, vector
 from ..linear import entries, sprung
 from ..problem.masonry.joint_law import resting
-from ..quantities import GRAVITY, Array, Integers
+from ..quantities import GRAVITY, Array, Flags, Integers
 from .structure import Structure, force_energy, weight_energy
 
 
 @dataclass(frozen=True, eq=False)
 class Potential:
-    """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities."""
+    """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities.
+
+    `bonds` says which contacts pull as they push; None stands for none of them.
+    """
 
     structure: Structure
+    bonds: Flags | None = None
+
+    @cached_property
+    def bonded(self) -> Flags:
+        """Which contacts and ties pull as they push, shape (m + t,)."""
+        none = np.zeros(len(self.springs), dtype=bool)
+        if self.bonds is not None:
+            none[: len(self.bonds)] = self.bonds
+        return none
+
+    def closed(self, openings: Array) -> Flags:
+        """Which springs act at their openings [m], shape (m + t,)."""
+        return np.asarray((openings < 0) | self.bonded)
+
+    def forces_at(self, openings: Array) -> Array:
+        """Force of each spring at its opening, below zero where a bond pulls [N], shape (m + t,)."""
+        return resting(self.springs, openings, self.bonded)[0]
 
     @property
     def springs(self) -> Array:
@@ -65,8 +85,8 @@ class Potential:
         return pressed
 
     def pushes(self, pose: Array) -> Array:
-        """Force of each spring that is pressed or stretched [N], zero where it is open, shape (m + t,)."""
-        return resting(self.springs, self.openings(pose))[0]
+        """Force of each spring [N], zero where it is open and below zero where a bond pulls, shape (m + t,)."""
+        return self.forces_at(self.openings(pose))
 
     def rates(self, pose: Array) -> csr_array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
@@ -122,7 +142,7 @@ class Potential:
     def energy(self, pose: Array) -> float:
         """Energy of springs, weight and constant forces [J]."""
         places, forces, masses = self.structure.places, self.structure.forces, self.structure.masses
-        elastic = float(resting(self.springs, self.openings(pose))[1].sum())
+        elastic = float(resting(self.springs, self.openings(pose), self.bonded)[1].sum())
         weight = weight_energy(masses, pose, places.axes)
         return elastic + float(weight + force_energy(forces, frames_of(pose, places.freedom), places.axes))
 
@@ -158,7 +178,7 @@ class Potential:
 
     def hessian(self, pose: Array) -> csr_array:
         """Second derivatives of the energy, shape (n nv, n nv)."""
-        closed = self.openings(pose) < 0
+        closed = self.closed(self.openings(pose))
         return self.stiffness(pose, np.where(closed, self.springs, 0.0)) + self.curvature(pose)
 
 

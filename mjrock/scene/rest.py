@@ -18,7 +18,7 @@ from scipy.sparse.linalg import splu
 from ..geometry.kinematics import AppliedForces, Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, sprung
-from ..problem.masonry.joint_law import Law, resting, shear_limit
+from ..problem.masonry.joint_law import Law, shear_limit
 from ..quantities import GRAVITY, Array, Flags
 from .parts import ContactPoints
 from .potential import Potential
@@ -202,9 +202,9 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
     scales, loose, share, least, last = diags_array(1 / size), LOOSE, 1.0, SLIPPING, np.inf
     m, pose = len(contacts.k), potential.unmoved if start is None else start
     openings, slipped = potential.openings(pose), np.zeros((m, freedom.translations - 1))
-    closed = touching(potential, pose) if start is None else openings < 0
+    closed = touching(potential, pose) if start is None else potential.closed(openings)
     for tried in range(search.poses):
-        rates, push = potential.rates(pose), resting(k, openings)[0]
+        rates, push = potential.rates(pose), potential.forces_at(openings)
         sliders = sliders_at(contacts, search, np.where(closed, push, -1.0)[:m], slipped)
         grips = grips_at(potential, pose, sliders)
         missing = (potential.load(pose) + rates.T @ push + grips.held) / size
@@ -223,7 +223,7 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
         motion = splu(csc_array(scaled + diags_array(lent))).solve(missing) / size
         pose = lowering(potential, pose, motion, sliders)
         openings = potential.openings(pose)
-        closed = openings < 0
+        closed = potential.closed(openings)
         if not turned(pose, freedom).max() < TURNED:
             break
     raise UnsettledError(pose.reshape(-1, freedom.nq))
@@ -231,8 +231,10 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
 
 def sliders_at(contacts: ContactPoints, search: Search, push: Array, slipped: Array) -> Sliders:
     """Sliders at places [m], shape (m, ways), under forces of the contacts, negative where one is open [N], (m,)."""
-    rubs, m = (push >= 0) & (contacts.friction > 0), len(push)
-    limit = np.where(rubs, shear_limit(Law(friction=contacts.friction), push) if search.limited else np.inf, -np.inf)
+    bonded, m = np.asarray(contacts.tension) > 0, len(push)
+    rubs = bonded | ((push >= 0) & (contacts.friction > 0))
+    most = contacts.cohesion + shear_limit(Law(friction=contacts.friction), np.maximum(push, 0.0))
+    limit = np.where(rubs, most if search.limited else np.inf, -np.inf)
     joint = np.arange(m) if search.limited else contacts.joint
     points = csr_array((rubs.astype(float), (joint, np.arange(m))))
     means = diags_array(1 / np.maximum(points.sum(axis=1), 1.0)) @ points
@@ -284,7 +286,8 @@ def falling_way(potential: Potential, grips: Grips, pose: Array) -> Array | None
 
     What touches without force resists nothing: a motion the other way opens it.
     """
-    presses, bent = potential.pushes(pose) > tolerance(potential), potential.curvature(pose)
+    presses = (potential.pushes(pose) > tolerance(potential)) | potential.bonded
+    bent = potential.curvature(pose)
     stiffness = potential.stiffness(pose, np.where(presses, potential.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
     lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(grips, 1.0) + bent), most)

@@ -135,7 +135,7 @@ class Scene:
         d = self.bodies.rest.shape[1]
         forces = AppliedForces(self.forces.body, self.forces.at.reshape(-1, d), self.forces.force.reshape(-1, d))
         own = self.contacts.k, self._ties(self.links.bearing), forces, self.bodies.masses, self.bodies.products
-        return Potential(Structure(self.places, *own))
+        return Potential(Structure(self.places, *own), np.asarray(self.contacts.tension) > 0)
 
     @cached_property
     def at_rest(self) -> Array:

@@ -81,6 +81,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     """
     require_kind("masonry", masonry, Masonry)
     masonry.require_plane("rigid_impact")
+    masonry.require_dry("rigid_impact")
     before = require_array("velocity", velocity, (len(masonry.free), 3)).ravel()
     if not before.any():
         raise ValueError("velocity is zero everywhere; an impact needs a block that moves")

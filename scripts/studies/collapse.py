@@ -120,8 +120,9 @@ def creep(duration: float, rest: float) -> tuple[float, float]:
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the study."""
     parser = cli.parser(__doc__, "collapse")
-    parser.add_argument("--seeds", type=int, default=10, help="of the wall and the facades, besides the first run")
-    parser.add_argument("--seeds-of-storeys", type=int, default=3, help="of the wall of two storeys")
+    parser.add_argument("--seeds", type=int, default=10, help="of the wall in running bond, besides the first run")
+    parser.add_argument("--seeds-of-facades", type=int, default=4, help="of each facade")
+    parser.add_argument("--seeds-of-storeys", type=int, default=1, help="of the wall of two storeys")
     args = parser.parse_args(argv)
     out = cli.folder(args.out)
     durations = {"wall of 36 units": 8.0, "two storeys": 6.0}
@@ -130,7 +131,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         scenes, args.seeds = [("wall of 36 units", 1.0, 0.4)], 1
     runs = []
     for scene in scenes:
-        seeds = args.seeds_of_storeys if scene[0] == "two storeys" else args.seeds
+        seeds = {"wall of 36 units": args.seeds, "two storeys": args.seeds_of_storeys}.get(
+            scene[0], args.seeds_of_facades
+        )
         runs += [Run(*scene), Run(*scene, step=0.5), *(Run(*scene, seed=seed) for seed in range(1, seeds + 1))]
     with ProcessPoolExecutor(None if len(runs) > 3 else 1) as pool:
         found = dict(zip(runs, tqdm(pool.map(followed, runs), total=len(runs), delay=3, disable=None), strict=True))

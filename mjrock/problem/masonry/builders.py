@@ -133,9 +133,9 @@ def arch_of(
 
 
 def bonded_wall(
-    length: float, height: float, unit: tuple[float, float], thickness: float, density: float
+    length: float, height: float, unit: tuple[float, float], thickness: float, density: float, halved: bool
 ) -> list[Polygon]:
-    """The ground and units in running bond on it, see `Masonry.running_bond`."""
+    """The ground and units in running bond on it, whole ones in two halves or not, see `Masonry.running_bond`."""
     long, high = required_unit(unit)
     length = require_within("wall length", length, long, 1e3, "m")
     height = require_within("wall height", height, high, 1e3, "m")
@@ -143,8 +143,8 @@ def bonded_wall(
     courses = round(height / high)
     if not math.isclose(courses * high, height, rel_tol=1e-6):
         raise ValueError(f"wall height = {height:g} m is not a whole number of units of {high:g} m")
-    if courses * (length / long + 1) > MOST_BLOCKS:
-        count = courses * length / long
+    count = courses * length / long * (2 if halved else 1)
+    if count + courses > MOST_BLOCKS:
         raise ValueError(
             f"length = {length:g} m makes a wall of {count:.3g} units; the valid range ends at {MOST_BLOCKS}"
         )
@@ -156,5 +156,9 @@ def bonded_wall(
         for i, (left, right) in enumerate(pairwise(ends)):
             name = f"unit_{course}_{i}"
             level = course * high, (course + 1) * high
-            polygons.append(rectangle(left, right, *level, density, thickness, False, name))
+            parts = {name: (left, right)}
+            if halved and math.isclose(right - left, long):
+                middle = 0.5 * (left + right)
+                parts = {f"{name}a": (left, middle), f"{name}b": (middle, right)}
+            polygons += [rectangle(*ends, *level, density, thickness, False, part) for part, ends in parts.items()]
     return polygons

@@ -17,7 +17,7 @@ from .joint_law import Law, shear_limit
 from .joints_in_space import axes_along
 from .limit_state import Programme, states_without_dilatancy
 from .masonry import Masonry
-from .statics import cones, edges_of, falling, method, moving, sizes_of, weight_of
+from .statics import bonded, cones, edges_of, falling, method, moving, sizes_of, weight_of
 
 LARGEST = 1e6
 """Multiplier from which it counts as infinite [-]."""
@@ -70,6 +70,9 @@ def collapse_multiplier(
     cones do not stop a mechanism, as the joints may be more or less wedged. The answer is the least multiplier that a
     descent finds from some starts, and `Collapse.others` has the rest. A state below it may exist.
 
+    Bonds of mortared joints hold their tension and cohesion everywhere at once, which moves the apex of the cones. As
+    they soften, this is an upper bound.
+
     Args:
         masonry: the masonry.
         direction: of the force, which is opposite to the acceleration of the ground: 1 along x, -1 against it, or in
@@ -87,6 +90,8 @@ def collapse_multiplier(
     """
     require_kind("masonry", masonry, Masonry)
     dilates = require_flag("associated", associated)
+    if not dilates:
+        masonry.require_dry("collapse_multiplier without dilatancy")
     parts = 3 if masonry.in_space else 2
     push = np.zeros(parts) if direction is None and angle is None else _push(masonry, direction, angle)
     weight, free = weight_of(masonry), len(masonry.free)
@@ -114,18 +119,25 @@ def _associated(masonry: Masonry, grown: Array, across: tuple[Array, ...]) -> tu
     """
     weight, sizes, friction = weight_of(masonry), sizes_of(masonry), masonry.joint_friction
     pressed, total, lines = cones(masonry, friction, across), float(np.abs(weight).sum()), masonry.lines
-    raised = (grown.ravel() / total / sizes)[:, None]
-    prices = np.zeros(pressed.shape[1] + 1)
+    raised, count = (grown.ravel() / total / sizes)[:, None], pressed.shape[1]
+    pulls, held, ways = bonded(masonry, across)
+    highest = np.concatenate([np.full(count, np.inf), held / total, [np.inf]])
+    bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
     prices[-1] = -1.0
+    columns = hstack([pressed, pulls, raised])
     answer = scipy.optimize.linprog(
-        prices, A_eq=hstack([pressed, raised]), b_eq=-weight / total / sizes, method=method(masonry)
+        prices, A_eq=columns, b_eq=-weight / total / sizes, bounds=bounds, method=method(masonry)
     )
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return None  # unbounded
     if answer.status != 0:
         raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")
-    shares, limits = answer.x[:-1].reshape(-1, len(lines.k), 1), shear_limit(Law(friction=friction[lines.joint]), 1.0)
+    shares, limits = (
+        answer.x[:count].reshape(-1, len(lines.k), 1),
+        shear_limit(Law(friction=friction[lines.joint]), 1.0),
+    )
     forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(across))).sum(axis=0)
+    forces += (answer.x[count:-1].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)
     return (float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces
 
 

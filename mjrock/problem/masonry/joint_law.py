@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...compiled import compiled, inlined
-from ...quantities import Array
+from ...quantities import Array, Flags
 
 
 class Law(NamedTuple):
@@ -60,11 +60,14 @@ def stored_along(row: Any, square: float) -> float:
     return energy
 
 
-def resting(k: Array, gap: Array) -> tuple[Array, Array]:
-    """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each."""
+def resting(k: Array, gap: Array, bonded: Flags) -> tuple[Array, Array]:
+    """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each.
+
+    Those that are bonded pull as they push.
+    """
     force, energy = np.empty(len(gap)), np.empty(len(gap))
     _resting(k, gap, force, energy)
-    return force, energy
+    return np.where(bonded, -k * gap, force), np.where(bonded, 0.5 * k * gap * gap, energy)
 
 
 @compiled

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -23,6 +23,7 @@ from ...quantities import (
     keep,
     named,
     require_flag,
+    require_kind,
     require_path,
     require_stiffness,
     require_text,
@@ -33,9 +34,12 @@ from ...quantities import (
 from ..damping.contacts import AnyLaw, required_law
 from ..wall.block import Block
 from ..wall.effects import SideStop
+from ..wall.in_space import LATER
 from ..wall.section import Opening
+from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below
+from .drawing import odd_sizes, split_faces
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
@@ -96,12 +100,15 @@ class Masonry:
             wall is as thick as the joint where it is thinnest, and no fixed block may stand beside the stack.
         k_s: shear stiffness of the joints [N/m3], 1e4 to 1e16, or a function of the joint, for `solve_explicit`. None
             lets them stick rigidly, up to their friction, as they always do in MuJoCo.
+        bond: what mortar holds, a `Bond` or a function of the joint that gives one, or None where a joint is dry, for
+            `solve_explicit`. It needs `k_s`, and three `points` or more are advised, see docs/mortar.md.
 
     Raises:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
 
     Warns:
-        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd.
+        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
+            so large or small that they are probably not in m, and for faces that rounded vertices have split.
     """
 
     blocks: Sequence[Polygon | Polyhedron]
@@ -113,6 +120,7 @@ class Masonry:
     tolerance: float = 1e-5
     law: AnyLaw | str | None = None
     k_s: OfJoint | None = None
+    bond: OfBond = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
         if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
@@ -148,11 +156,21 @@ class Masonry:
                 raise ValueError(f"{given} is given with a law, which has its own; leave it")
         if not self.joints:
             raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
-        _ = self.joint_stiffness, self.joint_friction, self.joint_damping, self.joint_shear  # checks what they hold
+        keep(self, bond=required_bond(self.bond))
+        _ = (
+            self.joint_stiffness,
+            self.joint_friction,
+            self.joint_damping,
+            self.joint_shear,
+            self.bonds,
+        )  # checks what they hold
         if self.law is not None:
             _ = self.retardation
         elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
             warnings.warn(odd, Implausible, stacklevel=3)
+        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.names)):
+            if odd:
+                warnings.warn(odd, Implausible, stacklevel=3)
 
     @property
     def in_space(self) -> bool:
@@ -183,6 +201,12 @@ class Masonry:
         """Raise a ValueError that says what takes blocks in the plane alone, if these are in space."""
         if self.in_space:
             raise ValueError(f"masonry in space: {what} takes blocks in the plane, of the kind Polygon")
+
+    def require_dry(self, what: str) -> None:
+        """Raise a ValueError that says what takes joints without bonds alone, if some have one."""
+        if any(self.bonds):
+            held = named([joint.name for joint, bond in zip(self.joints, self.bonds, strict=True) if bond is not None])
+            raise ValueError(f"bond of {held}: {what} takes joints that push only; solve_explicit takes bonds")
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -225,6 +249,11 @@ class Masonry:
     def joint_shear(self) -> Array:
         """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
         return values_of("k_s", self.k_s, self.joints)
+
+    @cached_property
+    def bonds(self) -> tuple[Bond | None, ...]:
+        """The bond of each joint, None where it is dry."""
+        return bonds_of(self.bond, self.joints, self.joint_shear)
 
     @cached_property
     def lines(self) -> Lines:
@@ -345,6 +374,8 @@ class Masonry:
         unit: tuple[float, float],
         thickness: float = 1.0,
         density: float = 2000.0,
+        *,
+        halves: Bond | None = None,
         **options: Any,
     ) -> Self:
         """A wall of units in running bond on the ground, which moves in the plane of its face.
@@ -355,12 +386,17 @@ class Masonry:
             unit: length and height of a unit [m], 0.01 to 100.
             thickness: of the wall, out of the plane [m], 1e-3 to 1000.
             density: mass density [kg/m3], 100 to 30000.
+            halves: the bond of a potential crack in the middle of each whole unit, which divides it in two, or None.
+                The halves of `unit_2_0` are `unit_2_0a` and `unit_2_0b`, by which functions of the joint know them.
             options: further arguments of `Masonry`.
 
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        return cls(bonded_wall(length, height, unit, thickness, density), **options)
+        require_kind("halves", halves, Bond, type(None))
+        if halves is not None:
+            options["bond"] = Halved(options.get("bond"), halves)
+        return cls(bonded_wall(length, height, unit, thickness, density, halves is not None), **options)
 
     @classmethod
     def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:

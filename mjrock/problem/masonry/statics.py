@@ -127,6 +127,27 @@ def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = 
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
+def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[csc_array, Array, Array]:
+    """What bonds hold beyond the cones: pulls, and forces along the faces either way.
+
+    In space the forces along a face fill a square about the circle of the cohesion.
+
+    Returns:
+        Generalised forces of unit forces, moments over the size of the block, shape (unknowns, n m), their limits [N],
+        shape (n m,), and their directions, shape (n, m, d). None has a column where no joint has a bond.
+    """
+    lines, ways = masonry.lines, across or masonry.lines.across
+    directions = np.stack([-lines.normal, *(sign * way for way in ways for sign in (1.0, -1.0))])
+    if not any(masonry.bonds):
+        return csc_array((len(masonry.free) * (6 if masonry.in_space else 3), 0)), np.zeros(0), directions[:0]
+    strengths = np.array([(0.0, 0.0) if bond is None else (bond.tension, bond.cohesion) for bond in masonry.bonds])
+    area = lines.k / masonry.joint_stiffness[lines.joint]
+    pull, along = (area[:, None] * strengths[lines.joint]).T
+    columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T
+    limits = np.concatenate([pull, *[along] * (2 * len(ways))])
+    return csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions
+
+
 def edges_of(across: tuple[Array, ...]) -> Array:
     """Directions along the faces of the edges of the cones of lines, both ways in the plane, shape (edges, m, d)."""
     count = 2 if len(across) == 1 else EDGES
@@ -150,10 +171,13 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
             edges.append(cones(masonry, cone))
             cost.append(np.full(edges[-1].shape[1], price))
     missing = eye_array(len(weight))
-    columns = hstack([*edges, missing, -missing])
-    prices = np.concatenate([*cost, np.ones(2 * len(weight))])
+    pulls, limits, _ = bonded(masonry)
+    columns = hstack([*edges, missing, -missing, pulls])
+    prices = np.concatenate([*cost, np.ones(2 * len(weight)), np.zeros(len(limits))])
+    highest = np.append(np.full(len(prices) - len(limits), np.inf), limits / total)
+    bounds = np.column_stack([np.zeros_like(highest), highest])
     return scipy.optimize.linprog(
-        prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), method=method(masonry)
+        prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), bounds=bounds, method=method(masonry)
     )
 
 

@@ -1,0 +1,132 @@
+"""The bond of a mortared joint: what it holds in tension, along the face and in crushing, and what breaking takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...quantities import Array, keep, require_kind, require_within, shown
+from .joints import Joint
+from .joints_in_space import SpaceJoint
+
+STRONGEST, TOUGHEST = 1e12, 1e15
+"""Largest strength [Pa] and largest fracture energy [J/m2]. The largest ones stand for joints that never break."""
+
+
+@dataclass(frozen=True)
+class Bond:
+    """Mortar of a joint that cracks, slips and crushes, beside its stiffness and friction.
+
+    Args:
+        tension: tensile strength f_t [Pa], 0 to 1e12.
+        cohesion: shear strength without pressure c [Pa], 0 to 1e12. One above zero needs a tension above zero.
+        opening_energy: fracture energy of opening G_I [J/m2], above 0 to 1e15. 1 N/mm is 1000 J/m2. A joint whose
+            spring gives back as much, f_t^2 / k_n, breaks at once when it reaches its tension.
+        slip_energy: fracture energy of slip G_II [J/m2], above 0 to 1e15.
+        crushing: compressive strength f_c [Pa], 1e3 to 1e12, or None for a joint that is not crushed.
+        crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`.
+
+    Raises:
+        ValueError: for a value outside its range.
+    """
+
+    tension: float
+    cohesion: float
+    opening_energy: float
+    slip_energy: float
+    crushing: float | None = None
+    crushing_energy: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("tension", "cohesion"):
+            keep(self, **{name: require_within(name, getattr(self, name), 0.0, STRONGEST, "Pa")})
+        for name in ("opening_energy", "slip_energy"):
+            keep(self, **{name: require_within(name, getattr(self, name), 1e-6, TOUGHEST, "J/m2")})
+        if (self.crushing is None) != (self.crushing_energy is None):
+            given = f"crushing = {self.crushing}, crushing_energy = {self.crushing_energy}"
+            raise ValueError(f"{given}: give both of them, or neither")
+        if self.crushing is not None:
+            keep(self, crushing=require_within("crushing", self.crushing, 1e3, STRONGEST, "Pa"))
+            energy = require_within("crushing_energy", self.crushing_energy, 1e-6, TOUGHEST, "J/m2")
+            keep(self, crushing_energy=energy)
+        if self.cohesion > 0 and self.tension == 0:
+            raise ValueError(
+                f"cohesion = {self.cohesion:g} Pa with a tension of 0: cohesion ends where a joint opens; the valid "
+                "range of the tension is then above 0"
+            )
+
+    @property
+    def is_dry(self) -> bool:
+        """Whether the joint has no bond at all."""
+        return self.tension == 0 and self.cohesion == 0 and self.crushing is None
+
+
+@dataclass(frozen=True)
+class Halved:
+    """Bonds of a wall of divided units: `between` them, one or a function of the joint, and `within` them."""
+
+    between: Bond | Callable[[Any], Bond | None] | None
+    within: Bond
+
+    def __call__(self, joint: Joint | SpaceJoint) -> Bond | None:
+        """The bond of a joint."""
+        first, second = joint.name.split("|")
+        if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
+            return self.within
+        return self.between(joint) if callable(self.between) else self.between
+
+
+OfBond = Bond | Callable[[Any], Bond | None] | None
+"""A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
+
+BONDS = {
+    # shear wall J4D of Raijmakers and Vermeltfoort, as two independent micro-models of it have its mortar, after
+    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; its crushing from memory
+    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0, 10.5e6, 5e3),
+    # out-of-plane shake-table wall of the SAFEGO project, 3DEC deck of its authors; G_c = 15 + 0.43 f_c - 0.0036 f_c^2
+    "clay brick, SAFEGO": Bond(0.2e6, 0.3e6, 13.0, 130.0, 20e6, 22.2e3),
+    # calcium silicate bricks tested at EUCENTRE, deck of the group; G_I = 0.025 (2 f_t)^0.7 and G_II = 10 G_I in N/mm
+    "calcium silicate, EUCENTRE": Bond(0.238e6, 0.21e6, 14.9, 149.0, 6.2e6, 17.5e3),
+    # an example of rubble masonry of EPFL
+    "rubble, EPFL": Bond(0.05e6, 0.05e6, 20.0, 5.0),
+}
+"""Named bonds, each with its source above it. Tests of one's own masonry come first, see docs/mortar.md."""
+
+
+def required_bond(bond: Any) -> OfBond:
+    """A bond, a function of the joint, or None."""
+    if not callable(bond):
+        require_kind("bond", bond, Bond, type(None))
+    return bond  # type: ignore[no-any-return]
+
+
+def bonds_of(given: OfBond, joints: Sequence[Joint | SpaceJoint], shear: Array) -> tuple[Bond | None, ...]:
+    """The bond of each joint, None where it is dry.
+
+    Args:
+        given: one for all, or a function of the joint.
+        joints: the joints.
+        shear: k_s of each [N/m3], infinite where it sticks rigidly, shape (joints,).
+
+    Raises:
+        ValueError: for a bond on a joint without k_s.
+    """
+    found: list[Bond | None] = []
+    for joint, k_s in zip(joints, shear.tolist(), strict=True):
+        bond = given
+        if callable(given):
+            try:
+                bond = given(joint)
+            except TypeError as error:
+                raise TypeError(f"bond = {shown(given)} is not called as bond(joint): {error}") from None
+        require_kind(f"bond of {joint.name}", bond, Bond, type(None))
+        if not isinstance(bond, Bond) or bond.is_dry:
+            found.append(None)
+            continue
+        if not np.isfinite(k_s):
+            raise ValueError(f"bond of {joint.name}: k_s = None, and a bond needs a shear stiffness; give k_s in N/m3")
+        found.append(bond)
+    return tuple(found)

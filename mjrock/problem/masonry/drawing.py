@@ -1,0 +1,52 @@
+"""What is odd about blocks as they are drawn: sizes in another unit, and faces that rounded vertices have split."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...quantities import named
+from .joints import Joint
+from .joints_in_space import SpaceJoint
+from .polygon import Polygon
+from .polyhedron import Polyhedron
+
+LARGEST, SMALLEST = 50.0, 2e-3
+"""Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
+ALIKE = 0.99
+"""Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
+
+
+def odd_sizes(blocks: Sequence[Polygon | Polyhedron], names: Sequence[str]) -> str:
+    """What is odd about the sizes of the free blocks, in words, empty where nothing is."""
+    sizes = {name: 2 * block.size for block, name in zip(blocks, names, strict=True) if not block.fixed}
+    least, most = min(sizes, key=sizes.__getitem__), max(sizes, key=sizes.__getitem__)
+    if sizes[most] >= SMALLEST and sizes[least] <= LARGEST:
+        return ""
+    name = least if sizes[least] > LARGEST else most
+    return f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in mm? A file takes scale=0.001"
+
+
+def split_faces(joints: Sequence[Joint | SpaceJoint], names: Sequence[str]) -> str:
+    """What is odd about the joints of blocks in space, in words, empty where nothing is.
+
+    Two convex blocks have one face each that points at the other in one way. Two joints of theirs with nearly the same
+    normal are parts of a face that vertices off its plane have split.
+    """
+    normals = defaultdict(list)
+    for joint in joints:
+        if isinstance(joint, SpaceJoint):
+            normals[joint.below, joint.above].append(joint.normal)
+    odd = []
+    for pair, ways in normals.items():
+        alike = np.array(ways) @ np.transpose(ways) - np.eye(len(ways))
+        if alike.max() > ALIKE:
+            odd.append(f"{names[pair[0]]} and {names[pair[1]]}")
+    if not odd:
+        return ""
+    return (
+        f"{len(odd)} pairs of blocks meet along a face that is split into parts which are nearly parallel, such as "
+        f"{named(odd)}: vertices lie off the planes of their faces; round them, or draw the faces plane"
+    )

@@ -1,0 +1,151 @@
+"""The shear wall J4D of Raijmakers and Vermeltfoort: mortar that cracks, slips and crushes, and units that split.
+
+The wall is 990 x 1000 x 100 mm, 16 courses of four and a half bricks between two steel beams. It is pressed to 0.30 MPa
+and then sheared by a beam on top that neither turns nor rises. Each brick is two halves with a potential crack between.
+Mortar and bricks are those of the micro-models of Lourenco and Rots (1997), see docs/mortar.md. The blocks are rigid,
+so that the stiffness of the joints holds that of the bricks.
+Prints the force on the beam beside that of the test, and what lines of a joint, rate, damping and bricks that do not
+split change. Draws the curve beside the cracks.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import mjrock as mr
+from mjrock import plotting
+from mjrock.quantities import Array
+from scripts.shared import cli
+
+WIDTH, COURSES, HALF, COURSE, THICK = 0.99, 16, 0.11, 1.0 / 16, 0.1
+PRESSURE, TOP = 0.30e6, 4e-3
+MEASURED = {0.2: 18, 0.4: 34, 0.7: 48, 1.0: 57, 1.4: 54, 1.8: 48, 2.2: 42, 2.6: 38, 3.0: 35}
+"""Force of the test [kN] by the displacement of the beam [mm], digitised by others, +-8 kN."""
+MORTAR = mr.BONDS["cement mortar, wall J4D"]
+SPLITS = mr.Bond(2e6, 2.8e6, 80.0, 500.0)
+K_N, K_S = {"mortar": 62.7e9, "brick": 4e11}, {"mortar": 27.5e9, "brick": 2e11}
+
+
+class Setting(NamedTuple):
+    """What is varied: lines of a joint, rate of the beam [m/s], damping ratio at 1 kHz, and whether bricks split."""
+
+    points: int = 3
+    rate: float = 20e-3
+    xi: float = 0.02
+    splits: bool = True
+
+
+def rectangle(left: float, low: float, width: float, height: float, name: str, fixed: bool = False) -> mr.Polygon:
+    """A block of the wall, or a beam."""
+    corners = [(left, low), (left + width, low), (left + width, low + height), (left, low + height)]
+    return mr.Polygon(corners, density=1900.0, length=THICK, fixed=fixed, name=name)
+
+
+def blocks_of(courses: int) -> list[mr.Polygon]:
+    """Half bricks between two beams. The name of a half begins with its course and its brick."""
+    blocks = [rectangle(-0.2, -0.2, WIDTH + 0.4, 0.2, "base", fixed=True)]
+    for i in range(courses):
+        for j in range(9):
+            brick = (j + i % 2) // 2
+            blocks.append(rectangle(j * HALF, i * COURSE, HALF, COURSE, f"c{i}_{brick}_{j}"))
+    return [*blocks, rectangle(-0.2, courses * COURSE, WIDTH + 0.4, 0.2, "top", fixed=True)]
+
+
+def kind_of(joint: mr.Joint) -> str:
+    """Whether a joint lies within a brick."""
+    first, second = (name.split("_")[:2] for name in joint.name.split("|"))
+    return "brick" if first == second and len(first) == 2 else "mortar"
+
+
+def wall_of(setting: Setting, courses: int = COURSES) -> mr.Masonry:
+    """The wall between its beams."""
+    bonds = {"mortar": MORTAR, "brick": SPLITS if setting.splits else mr.Bond(1e9, 1e9, 1e9, 1e9)}
+    return mr.Masonry(
+        blocks_of(courses),
+        k_n=lambda joint: K_N[kind_of(joint)],
+        k_s=lambda joint: K_S[kind_of(joint)],
+        friction=lambda joint: {"mortar": 0.75, "brick": 1.0}[kind_of(joint)],
+        xi=setting.xi,
+        frequency=2 * np.pi * 1000,
+        points=setting.points,
+        bond=lambda joint: bonds[kind_of(joint)],
+    )
+
+
+def loading(rate: float, courses: int, top: float) -> tuple[Array, Array, Array]:
+    """Times [s] and displacements of the beam [m]: down with a smooth start, then sideways."""
+    down, share = PRESSURE / K_N["mortar"] * (courses + 1), np.linspace(0, 1, 400)
+    eased = np.where(share < 0.1, share**2 / 0.2, share - 0.05) / 0.95
+    pressed = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0, 1, 50))
+    t = np.concatenate([0.05 * np.linspace(0, 1, 50), 0.07 + top / rate * share])
+    return t, np.concatenate([0 * pressed, top * eased]), -down * np.append(pressed, np.ones(400))
+
+
+def sheared(setting: Setting, courses: int = COURSES, top: float = TOP) -> tuple[mr.MasonryResponse, Array, Array]:
+    """The answer, the displacement of the beam [m] and the force that it takes [N] at the samples."""
+    t, dx, dz = loading(setting.rate, courses, top)
+    case = mr.MasonryCase(wall_of(setting, courses), float(t[-1]), supports={"top": (t, dx, dz)}, settled=False)
+    answer = mr.solve_explicit(case, forces=True, ledger=True)
+    moved = np.interp(answer.t, t, dx)
+    force = np.convolve(np.pad(answer.reactions["top"][:, 0], 7, mode="edge"), np.ones(15) / 15, "valid")
+    return answer, moved, force
+
+
+SETTINGS = {
+    "3 lines a joint": Setting(),
+    "5 lines": Setting(points=5),
+    "9 lines": Setting(points=9),
+    "5 lines, 10 mm/s": Setting(points=5, rate=10e-3),
+    "5 lines, damping 0.005": Setting(points=5, xi=0.005),
+    "5 lines, damping 0.1": Setting(points=5, xi=0.1),
+    "5 lines, bricks that do not split": Setting(points=5, splits=False),
+}
+DRAWN = "5 lines"
+
+
+def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
+    """The curve beside the test, and the cracks at the end: lines as thick as the joint has lost of its bond."""
+    masonry = answer.case.masonry
+    figure = Figure(figsize=(11, 4.6), layout="constrained")
+    curve, cracks = figure.subplots(1, 2)
+    begun = answer.t > 0.07
+    curve.plot(1e3 * moved[begun], 1e-3 * force[begun], color="#12406b", label="explicit steps")
+    curve.errorbar(list(MEASURED), list(MEASURED.values()), 8, fmt="o", color="0.3", capsize=2, label="test J4D")
+    curve.set(xlabel="displacement of the beam [mm]", ylabel="force [kN]", ylim=(0, None))
+    curve.legend(frameon=False)
+    plotting.blocks(cracks, masonry, answer.pose[-1], joints=False, limits=[(-0.1, WIDTH + 0.1), (-0.05, 1.05)])
+    for joint, damage in zip(masonry.joints, answer.forces.damage[-1].tolist(), strict=True):
+        (x0, z0), (x1, z1) = joint.start, joint.end
+        cracks.plot([x0, x1], [z0, z1], color="#c0392b", linewidth=4 * damage, solid_capstyle="butt", zorder=5)
+    cracks.set(xlabel="x [m]", ylabel="z [m]", title="what joints have lost of their bond, at rest")
+    return figure
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run the study."""
+    args = cli.parser(__doc__, Path("out/shear_wall").as_posix()).parse_args(argv)
+    out = cli.folder(args.out)
+    settings = {DRAWN: SETTINGS[DRAWN]} if args.quick else SETTINGS
+    rows: list[list[object]] = [["test", *map(float, MEASURED.values()), 57.0, "", ""]]
+    for name, setting in settings.items():
+        answer, moved, force = sheared(setting, 2, 2e-4) if args.quick else sheared(setting)
+        assert answer.ledger is not None
+        begun = answer.t > 0.07
+        at = np.interp(1e-3 * np.array(list(MEASURED)), moved[begun], 1e-3 * force[begun])
+        gap = np.abs(answer.ledger.residual).max() / answer.ledger.largest
+        seconds = answer.stats["stepping_processor_time"]
+        rows.append([name, *at.round(1).tolist(), round(1e-3 * force.max(), 1), round(seconds, 1), f"{gap:.0e}"])
+        if name == DRAWN:
+            plotting.save(drawn(answer, moved, force), out / "shear_wall.png")
+    header = ["force [kN] at", *(f"{u:g} mm" for u in MEASURED), "peak", "processor [s]", "gap of the ledger"]
+    cli.report(out / "shear_wall", cli.table(header, rows), header, rows)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))

@@ -1,0 +1,165 @@
+"""Masonry with bonds: at rest, by explicit steps, in limit analysis, and what refuses it."""
+
+import math
+
+import numpy as np
+import pytest
+from bonded import MORTAR, joint
+
+import mjrock as mr
+
+HUGE = mr.Bond(1e9, 1e9, 1e12, 1e12)
+
+
+def cantilever(count, bond=MORTAR, **more):
+    """Blocks of 0.2 x 0.3 x 0.2 m glued to each other and to a wall beside them."""
+    blocks = [mr.Polygon([(-0.3, 0), (0, 0), (0, 0.3), (-0.3, 0.3)], length=0.2, fixed=True, name="wall")]
+    for i in range(count):
+        corners = [(0.2 * i, 0), (0.2 * i + 0.2, 0), (0.2 * i + 0.2, 0.3), (0.2 * i, 0.3)]
+        blocks.append(mr.Polygon(corners, length=0.2, name=f"b{i}"))
+    return mr.Masonry(blocks, **{"k_n": 6e10, "k_s": 3e10, "points": 3, "bond": bond} | more)
+
+
+def shaken(masonry, duration=0.5, size=4.0, **options):
+    t = np.arange(0.0, duration, 0.005)
+    motion = mr.GroundMotion(size * np.sin(2 * np.pi * 3 * t), 0.005)
+    return mr.solve_explicit(mr.MasonryCase(masonry, duration, motion), **options)
+
+
+def column(bond, count=3, **more):
+    """A column of cubes of 0.4 m on the ground."""
+    blocks = [mr.Polygon([(-1, -0.5), (1, -0.5), (1, 0), (-1, 0)], fixed=True, name="ground")]
+    for i in range(count):
+        blocks.append(
+            mr.Polygon(
+                [(-0.2, 0.4 * i), (0.2, 0.4 * i), (0.2, 0.4 * i + 0.4), (-0.2, 0.4 * i + 0.4)], length=0.4, name=f"b{i}"
+            )
+        )
+    return mr.Masonry(blocks, **{"k_n": 2e9, "k_s": 1e9, "points": 3, "bond": bond} | more)
+
+
+def test_bonded_blocks_hang_at_rest_on_their_bonds():
+    masonry = cantilever(4)
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.02), ledger=True, forces=True)
+    weight = 4 * 0.2 * 0.3 * 0.2 * 2000 * mr.GRAVITY
+    assert np.abs(answer.pose - answer.pose[0]).max() < 1e-9
+    assert answer.reactions["wall"][0] == pytest.approx([0.0, weight], abs=1e-6 * weight)
+    assert (answer.forces.damage == 0).all()
+    assert not answer.cracked
+
+
+def test_what_needs_more_than_its_strength_at_rest_is_refused_by_name():
+    with pytest.raises(ValueError, match=r"at rest the bonds of wall\|b0, .* would need 1.34 times their strength"):
+        mr.solve_explicit(mr.MasonryCase(cantilever(8), 0.1))
+    with pytest.raises(ValueError, match="b0 would fall under the weight"):
+        mr.solve_explicit(mr.MasonryCase(cantilever(1, None), 0.1))
+
+
+def test_limit_analysis_holds_tension_and_cohesion():
+    """A column whose bed joint holds its tension over all of its width."""
+    bond = mr.Bond(0.01e6, 0.05e6, 10.0, 50.0)
+    one = column(bond, 1, points=2)
+    weight, width = 0.4**3 * 2000 * mr.GRAVITY, 0.4
+    pull = bond.tension * 0.4 * width
+    dry = mr.collapse_multiplier(column(None, 1, points=2)).multiplier
+    assert dry == pytest.approx(0.7)
+    sliding = 0.7 + bond.cohesion * 0.4 * width / weight
+    turning = 0.5 * width * (weight + pull) / (weight * 0.2)  # half of the pull acts at either end
+    found = mr.collapse_multiplier(one)
+    assert found.multiplier == pytest.approx(min(sliding, turning), rel=1e-6)
+    with pytest.raises(ValueError, match="collapse_multiplier without dilatancy takes joints that push only"):
+        mr.collapse_multiplier(one, associated=False)
+
+
+def test_bonds_without_strength_are_dry_bit_for_bit():
+    dry, none = (shaken(column(bond)) for bond in (None, mr.Bond(0.0, 0.0, 1.0, 1.0)))
+    assert np.array_equal(dry.pose, none.pose)
+
+
+def test_bonds_of_next_to_no_strength_move_as_dry_ones():
+    dry, weak = (shaken(column(bond)) for bond in (None, mr.Bond(1.0, 1.0, 1e-6, 1e-6)))
+    assert weak.pose == pytest.approx(dry.pose, abs=0.01 * np.abs(dry.pose).max())
+    assert weak.pose[:150] == pytest.approx(dry.pose[:150], abs=1e-4 * np.abs(dry.pose).max())
+
+
+def test_a_block_on_bonds_that_never_break_vibrates_as_on_linear_springs():
+    masonry = joint(HUGE)
+    answer = mr.solve_explicit(
+        mr.MasonryCase(masonry, 0.02, velocity=[[0.0, 0.05, 0.0]]), output_step=1e-7, timestep=1e-7
+    )
+    mass, z = 0.1 * 0.2 * 0.1 * 2000, answer.pose[:, 0, 1] - answer.pose[0, 0, 1]
+    stiffness = 62.7e9 * 0.02
+    rising = np.flatnonzero((z[:-1] < 0) & (z[1:] >= 0))
+    crossed = answer.t[rising] + 1e-7 * z[rising] / (z[rising] - z[rising + 1])
+    period = (crossed[-1] - crossed[0]) / (len(crossed) - 1)
+    assert 2 * math.pi / period == pytest.approx(math.sqrt(stiffness / mass), rel=1e-6)
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_the_ledger_of_masonry_that_cracks_closes_and_names_what_bonds_took(space):
+    if space:
+        blocks = [mr.Polyhedron.box((2, 2, 0.5), (0, 0, -0.25), fixed=True, name="ground")]
+        blocks += [mr.Polyhedron.box((0.4, 0.4, 0.4), (0, 0, 0.2 + 0.4 * i), name=f"b{i}") for i in range(3)]
+        masonry = mr.Masonry(blocks, k_n=2e9, k_s=1e9, points=3, bond=mr.Bond(0.03e6, 0.05e6, 2.0, 10.0))
+    else:
+        masonry = column(mr.Bond(0.03e6, 0.05e6, 2.0, 10.0))
+    answer = shaken(masonry, 1.0, 8.0, ledger=True, forces=True)
+    assert np.abs(answer.ledger.residual).max() < 1e-3 * answer.ledger.largest
+    took = answer.ledger.bonds
+    assert list(took) == ["tension", "slip", "crushing"]
+    assert took["tension"][-1] == pytest.approx(2.0 * 0.16 * len(answer.cracked), rel=0.35)
+    assert (np.diff(answer.forces.damage, axis=0) >= -1e-12).all()
+    times = list(answer.cracked.values())
+    assert times == sorted(times)
+    assert "ground|b0" in answer.cracked
+    crack = answer.cracked["ground|b0"]
+    damage = answer.forces.damage[:, masonry.joints.index(next(j for j in masonry.joints if j.name == "ground|b0"))]
+    assert damage[answer.t < crack - 2e-3].min() < 0.5 < damage[answer.t > crack + 2e-3].min()
+
+
+def test_a_run_carries_on_with_its_bonds():
+    masonry = column(mr.Bond(0.03e6, 0.05e6, 2.0, 10.0))
+    t = np.arange(0.0, 0.6, 0.005)
+    motion = mr.GroundMotion(8.0 * np.sin(2 * np.pi * 3 * t), 0.005)
+    h = 2e-5
+    whole = mr.solve_explicit(mr.MasonryCase(masonry, 0.4, motion), timestep=h)
+    first = mr.solve_explicit(mr.MasonryCase(masonry, 0.2, motion), timestep=h)
+    late = mr.GroundMotion(motion.accel[40:], 0.005)
+    second = mr.solve_explicit(mr.MasonryCase(masonry, 0.2, late), timestep=h, start=first.end)
+    assert first.opening.max() > 1e-3
+    assert second.pose[-1] == pytest.approx(whole.pose[-1], abs=1e-9)
+
+
+def test_mujoco_rocking_theory_and_a_missing_k_s_are_said_by_name():
+    masonry = cantilever(2)
+    case = mr.MasonryCase(masonry, 0.1)
+    for call in (
+        lambda: mr.simulate(case),
+        lambda: mr.masonry_mjcf(case, 1e-4),
+        lambda: mr.rigid_impact(masonry, [[0, 0, 1], [0, 0, 1]]),
+    ):
+        with pytest.raises(ValueError, match=r"bond of wall\|b0, b0\|b1: .* solve_explicit takes bonds"):
+            call()
+    with pytest.raises(ValueError, match=r"bond of wall\|b0: k_s = None, and a bond needs a shear stiffness"):
+        cantilever(2, k_s=None)
+
+
+def test_bonds_are_given_for_some_joints():
+    masonry = cantilever(2, lambda joint: MORTAR if "wall" in joint.name else None)
+    assert masonry.bonds == (MORTAR, None)
+    with pytest.raises(ValueError, match="b1 would fall"):
+        mr.solve_explicit(mr.MasonryCase(masonry, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "message"),
+    [
+        ((-1.0, 0.0, 1.0, 1.0), "tension = -1 Pa"),
+        ((0.0, 1.0, 1.0, 1.0), "cohesion = 1 Pa with a tension of 0"),
+        ((1.0, 1.0, 0.0, 1.0), "opening_energy = 0 J/m2"),
+        ((1.0, 1.0, 1.0, 1.0, 1e6), "give both of them, or neither"),
+    ],
+)
+def test_a_bond_out_of_range_is_refused(numbers, message):
+    with pytest.raises(ValueError, match=message):
+        mr.Bond(*numbers)
