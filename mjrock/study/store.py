@@ -17,8 +17,6 @@ from .values import checksum, plain, table_text
 if TYPE_CHECKING:
     import pandas
     from filelock import BaseFileLock
-if TYPE_CHECKING:
-    from filelock import BaseFileLock
 
 APPLICATION = 0x6D6A726B
 """SQLite's application_id of a campaign, "mjrk"."""

@@ -54,7 +54,7 @@ def test_blocks_that_left_joints_and_lie_still_have_come_to_rest(left, outcome):
     pose = np.tile(SCENE.at_rest, (len(t), 1, 1))
     velocity = np.zeros_like(pose)
     velocity[t < 2.0 - 1.5 * STILL] = 1.0
-    beside = BesidePoses(np.full(len(SCENE.contacts.joint), 0.3), left)
+    beside = BesidePoses(np.full(len(SCENE.contacts.joint), 0.3), left, {})
     motion = SampledMotion(pose, velocity, np.full(len(t), -1e6))
     reading = masonry_reading(CASE, SCENE, t, motion, beside)
     assert reading.outcome is mr.Outcome[outcome]
@@ -72,6 +72,6 @@ def test_a_block_beside_ground_that_has_sunk_as_far_has_not_fallen():
     pose[:, 1, 0] += 2.0
     for below, fallen in ((0.2, {}), (0.3, {"right": 2.0})):  # half its height is 0.25 m
         pose[-1, 1, 1] = SCENE.at_rest[1, 1] - sunk[-1] - below
-        beside = BesidePoses(np.zeros(len(SCENE.contacts.joint)), True)
+        beside = BesidePoses(np.zeros(len(SCENE.contacts.joint)), True, {})
         reading = masonry_reading(case, SCENE, t, SampledMotion(pose, 0 * pose, np.zeros(len(t))), beside)
         assert dict(reading.joints.fallen) == fallen
