@@ -28,7 +28,7 @@ def free_body(mass, inertia, spin):
         momentum=inertia @ spin,
     )
     none = {"ties": kind.link, "dampers": kind.link, "forces": kind.link, "actuators": kind.link}
-    none |= {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
+    none |= {"lines": kind.line, "edges": kind.edge, "ways": kind.way, "bonds": kind.bond}
     tables = {name: rows(of, 0) for name, of in none.items()}
     return System(
         axes=SPACE.axes, bodies=body, ground=Ground.of(None), supports=moving((), 3), drives=moving((), 1), **tables

@@ -10,7 +10,6 @@ from functools import lru_cache
 import numpy as np
 
 from ..problem.damping.contacts import Contacts
-from ..problem.masonry.actuator import Actuator
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.case import Case
@@ -117,7 +116,7 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     scene, at_rest, drawn = standing(masonry, case.passive, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
-    system = driven_by(system, scene, masonry, case.each(Actuator))
+    system = driven_by(system, scene, masonry, tuple(case.actuators.values()))
     limit, system = longest_step(system), bonded(system, masonry, scene.contacts.joint)
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)

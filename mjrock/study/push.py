@@ -124,7 +124,7 @@ def push(
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
     turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
-    given = (effects,) if isinstance(effects, Effect) else tuple(effects)
+    given = tuple(effects) if isinstance(effects, Sequence) else (effects,)
     options = {"mass_damping": mass_damping, "local_damping": local_damping}
     if isinstance(driver, Actuator):
         load: Load = Driven(masonry, given, options, start, _damped(driver, masonry), turns)

@@ -257,7 +257,8 @@ def rocking_loop(law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom) 
             new_omega = 0.0
         hit, fell = side * new_theta <= 0, side * new_theta >= ON_ITS_FACE
         if hit or fell:
-            h = root(UPRIGHT if hit else LYING, toe, ties, push, theta, omega, h)
+            at_once = hit and theta == 0.0 and side * omega < 0  # released against its stop
+            h = 0.0 if at_once else root(UPRIGHT if hit else LYING, toe, ties, push, theta, omega, h)
             _, new_omega, _, k3 = nystroem(toe, ties, push, theta, omega, h)
             new_theta = 0.0 if hit else side * ON_ITS_FACE
         elif turned and side * omega > 0:

@@ -181,6 +181,21 @@ CALLS = OF_NUMBERS | {
     "through_building": (
         MOTION.through_building, {"period": [0.3], "damping": 0.05, "participation": [1.2], "height": [0.5]},
     ),
+    "Bond": (
+        mr.Bond,
+        {
+            "tension": 2e5, "cohesion": 3e5, "opening_energy": 18.0, "slip_energy": 125.0, "crushing": 1e7,
+            "crushing_energy": 5e3,
+        },
+    ),
+    "Actuator": (
+        mr.Actuator,
+        {
+            "block": 1, "at": (0.3, 4.0), "direction": 1, "displacement": ([0.0, 1.0], [0.0, 0.01]), "stiffness": 1e7,
+            "damping": 0.0, "guided": None,
+        },
+    ),
+    "push": (mr.push, {"masonry": COLUMN, "driver": 1, "to": -0.01, "inertia": 0.01}),
     "records_in": (mr.records_in, {"folder": ".", "pattern": "*.none"}),
     "mechanism_check": (mr.mechanism_check, {"case": SHORT, "demand": MOTION, "confidence_factor": 1.35}),
     "pushover": (mr.pushover, {"case": SHORT, "contacts": CONTACTS, "rotations": [0.01, 0.05], "points": 30}),
@@ -392,7 +407,7 @@ def test_every_public_entry_is_tried():
         "MechanismCheck", "RockingSpectrum", "Fragility", "PairedRatio",
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
-        "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum",
+        "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

@@ -20,9 +20,15 @@ def test_a_joint_pushes_and_never_pulls(gap, rate, force):
 
 def test_arrays_and_numbers_have_one_law():
     gaps = np.array([-0.1, 0.1, -0.2])
-    force, energy = resting(np.full(3, LAW.k), gaps)
+    force, energy = resting(np.full(3, LAW.k), gaps, np.zeros(3, dtype=bool))
     np.testing.assert_allclose(force, [normal_force(LAW, gap, 0.0) for gap in gaps])
     np.testing.assert_allclose(energy, [stored(LAW, gap) for gap in gaps])
+
+
+def test_a_bonded_contact_at_rest_is_a_spring_both_ways():
+    force, energy = resting(np.full(2, LAW.k), np.array([0.1, -0.1]), np.array([True, True]))
+    np.testing.assert_allclose(force, [-10.0, 10.0])
+    np.testing.assert_allclose(energy, [0.5, 0.5])
 
 
 def test_the_force_is_the_slope_of_what_is_stored():
