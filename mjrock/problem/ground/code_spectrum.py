@@ -187,12 +187,12 @@ def code_spectrum(
         Implausible: for an a_g below 0.35 m/s2, which is probably in g.
     """
     codes = "NTC 2018", *SITE_EC8
-    if code not in codes:
+    if not isinstance(code, str) or code not in codes:
         raise ValueError(f"code = {spelt(code)} is not one of {', '.join(codes)}")
     ag, xi = require_within("ag", ag, 0.05, 10.0, "m/s2"), require_within("damping", damping, 0.005, 0.5)
-    if soil not in SITE_NTC:
+    if not isinstance(soil, str) or soil not in SITE_NTC:
         raise ValueError(f"soil = {spelt(soil)} is not one of {', '.join(SITE_NTC)}")
-    if topography not in TOPOGRAPHY_NTC:
+    if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
         raise ValueError(f"topography = {spelt(topography)} is not one of {', '.join(TOPOGRAPHY_NTC)}")
     if ag < FAINT:
         warnings.warn(f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; is it in m/s2?", Implausible, stacklevel=2)
