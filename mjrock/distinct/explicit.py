@@ -61,8 +61,8 @@ def solve_explicit(
             explicit steps of the same structure carries on to rounding, histories of supports from wherever they have
             ended. It does not go with ties that yield.
         mass_damping: rate at which every velocity decays [1/s], 0 to 1e4, for slow motions.
-        local_damping: share of the unbalanced force along each axis of a body that acts against its velocity [-], 0 to
-            0.9, for slow motions of masonry with k_s. `ledger.dashpots["motion"]` has what both take.
+        local_damping: share of the unbalanced force along each axis of a body that acts against its velocity, for slow
+            motions of masonry with k_s [-], 0 to 0.9. The account "motion" of the dashpots has what both take.
 
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, for a step that is not stable,

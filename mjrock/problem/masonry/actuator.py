@@ -69,7 +69,7 @@ class Actuator(Effect):
         at = require_reals("at of the actuator", self.at, "x, z or x, y, z")
         at = require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,))
         require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST, FARTHEST, "m")
-        if self.guided not in GUIDES:
+        if not isinstance(self.guided, str | None) or self.guided not in GUIDES:
             names = "None, 'upright' and 'translation'"
             raise ValueError(f"guided of the actuator = {shown(self.guided)} is not known; the valid ones are {names}")
         if not isinstance(self.block, str):

@@ -162,6 +162,11 @@ class Front(NamedTuple):
         return np.asarray(self.long(z) - sum(gone, np.zeros(np.shape(z))))
 
     @property
+    def is_curved(self) -> bool:
+        """Whether its length changes otherwise than by steps."""
+        return self.gable is not None or any(opening.round for opening in self.openings)
+
+    @property
     def corners(self) -> set[float]:
         """Heights at which its length has a corner [m]."""
         return {self.eaves, *(z for opening in self.openings for z in (opening.sill, opening.head))}
@@ -197,16 +202,42 @@ def moments(profile: Profile, front: Front) -> Moments:
     the middle of the base.
     """
     inner = -0.5 * profile[0][1]
-    total = np.zeros(5)
+    total = [0.0] * 5
     for (low, t_low), (high, t_high) in pairwise(profile):
         cuts = {low, high} | {z for z in front.corners if low < z < high}
         for z0, z1 in pairwise(sorted(cuts)):
-            # z = sin of an angle between the ends, which makes the chords of a circle smooth there
-            angle = 0.5 * math.pi * NODES
-            z = 0.5 * (z0 + z1) + 0.5 * (z1 - z0) * np.sin(angle)
-            weight = WEIGHTS * 0.25 * math.pi * (z1 - z0) * np.cos(angle) * front.left(z)
-            t = t_low + (t_high - t_low) * (z - low) / (high - low)
-            outer = inner + t
-            terms = (t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2)
-            total += [float(weight @ term) for term in terms]
-    return Moments(*total.tolist())
+            t0, t1 = (t_low + (t_high - t_low) * (z - low) / (high - low) for z in (z0, z1))
+            rule = _gauss if front.is_curved else _simpson
+            for i, value in enumerate(rule(front, inner, (z0, t0), (z1, t1))):
+                total[i] += value
+    return Moments(*total)
+
+
+def _simpson(front: Front, inner: float, low: tuple[float, float], high: tuple[float, float]) -> list[float]:
+    """Volume and moments of a slab of one length between two heights with their thicknesses from x = inner outwards
+    [m]: polynomials of at most the third degree, which Simpson's rule integrates exactly."""
+    (z0, t0), (z1, t1) = low, high
+    area, x, z, xx, zz = 0.0, 0.0, 0.0, 0.0, 0.0
+    for weight, at, t in ((1, z0, t0), (4, 0.5 * (z0 + z1), 0.5 * (t0 + t1)), (1, z1, t1)):
+        share = weight * (z1 - z0) / 6
+        outer = inner + t
+        area += share * t
+        x += share * 0.5 * (outer**2 - inner**2)
+        z += share * t * at
+        xx += share * (outer**3 - inner**3) / 3
+        zz += share * t * at**2
+    left = float(front.left(np.array(0.5 * (z0 + z1))))
+    return [left * value for value in (area, x, z, xx, zz)]
+
+
+def _gauss(front: Front, inner: float, low: tuple[float, float], high: tuple[float, float]) -> list[float]:
+    """The same of a slab whose length changes. The height is the sine of an angle between the ends, which makes chords
+    of a circle smooth there."""
+    (z0, t0), (z1, t1) = low, high
+    angle = 0.5 * math.pi * NODES
+    share = 0.5 * (1 + np.sin(angle))
+    z, t = z0 + (z1 - z0) * share, t0 + (t1 - t0) * share
+    weight = WEIGHTS * 0.25 * math.pi * (z1 - z0) * np.cos(angle) * front.left(z)
+    outer = inner + t
+    terms = t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2
+    return [float(weight @ term) for term in terms]

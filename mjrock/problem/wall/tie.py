@@ -94,15 +94,10 @@ class Tie(Anchored):
     ) -> Tie:
         """Ties of round steel bars with anchor plates on a wall, from what is known of them.
 
-        The stiffness is E A / L. The strength is the least of three [N]:
-
-            bar       f_y A
-            punching  f_v0 2 t (a + b + 2 t), a prism of masonry whose sides run outwards at 45 degrees from the plate,
-                      cut at half the thickness t
-            bearing   f_m a b
-
-        `strengths_of_bar` has all three. `ultimate` is not known from these: give it for bars that
-        break or pull through.
+        The stiffness is E A / L. The strength is the least of three [N]: that of the bar, f_y A; that against punching,
+        f_v0 2 t (a + b + 2 t), of a prism of masonry whose sides run outwards at 45 degrees from the plate, cut at half
+        the thickness t; and that of the masonry under the plate, f_m a b. `strengths_of_bar` has all three. `ultimate`
+        is not known from these: give it for bars that break or pull through.
 
         Args:
             height: where they hold the wall [m].
