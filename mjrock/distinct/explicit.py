@@ -70,8 +70,7 @@ def solve_explicit(
         RuntimeError: if more energy appears than was there and was put in.
 
     Warns:
-        UserWarning: of steps that would take more than some ten seconds, and how long, or if a tie without an
-            `ultimate` was drawn out by more than a bar or an anchor follows.
+        UserWarning: of steps that would take more than some ten seconds, or of a tie drawn out too far.
         Implausible: of a given timestep that is far below what the contacts need.
     """
     watch = Stopwatch()
