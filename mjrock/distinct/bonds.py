@@ -50,7 +50,7 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
         return system
     lines = system.lines
     bonds = rows(kinds(len(system.axes)).bond, len(lines), left=1.0, bears=np.inf)
-    area = lines["k"] / masonry.joint_stiffness[joint]
+    area = masonry.areas_of(lines["k"], joint)
     for i, bond in enumerate(masonry.bonds):
         if bond is None:
             continue

@@ -20,7 +20,7 @@ from ..quantities import GRAVITY, Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import ContactPlaces, Poses, in_pairs, places_of, take_over
-from .limit import Side, shares_within, sums_of_yields, ways_of
+from .limit import Side, shares_within, sums_of_yields, ways_of, yields_of
 from .looking import Wear, held, nearest, wears
 from .pair_law import SHARED, PairLaw, are_among, pair_number
 from .rows import POINT, Rows, joined, rows
@@ -104,6 +104,7 @@ class Encounters:
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
         self.kind, self.start, self.roots = system.lines.dtype, self.poses(system), roots_of_masses(system.bodies)
+        self.yields = yields_of(self.roots, len(system.axes))
         self.limits, free, slip, gap = self._limits(), self.free, np.zeros(len(left)), np.zeros(len(left))
         self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
         self.met = self._nothing_met()
@@ -267,7 +268,7 @@ class Encounters:
         blocks = found.face, found.other
         arms = [found.place - poses.drawn[block] - poses.moved[block] for block in blocks]
         bodies = self.body[found.face], self.body[found.other]
-        sums = sums_of_yields(bodies, arms, law, self.roots, h / STABLE)
+        sums = sums_of_yields(bodies, arms, law, self.yields, h / STABLE)
         asked = (sums > 4) & (sums > self.met.proved)
         self.met.proved = np.where(asked, PROVED * sums, FADING * self.met.proved)
         pairs = np.stack(bodies)

@@ -85,8 +85,18 @@ class Side(NamedTuple):
     ways: tuple[Array, ...]
 
 
+def yields_of(roots: Array, d: int) -> tuple[Array, Array]:
+    """Inverse mass [1/kg] and largest inverse inertia [1/(kg m2)] of each body in d dimensions, shape (bodies,) each,
+    from the roots that `shares_within` takes."""
+    return roots[:, 0, 0] ** 2, np.linalg.norm(roots[:, d:, d:], ord=2, axis=(1, 2)) ** 2
+
+
 def sums_of_yields(
-    bodies: tuple[Integers, Integers], arms: Sequence[Array], law: dict[str, Array], roots: Array, step: float
+    bodies: tuple[Integers, Integers],
+    arms: Sequence[Array],
+    law: dict[str, Array],
+    yields: tuple[Array, Array],
+    step: float,
 ) -> Array:
     """A quick bound of the highest eigenvalue that `shares_within` holds at 4, never too low, shape (bodies,).
 
@@ -95,18 +105,18 @@ def sums_of_yields(
     Args:
         bodies: the two of each place, negative for a fixed block, shape (n,) each.
         arms: from their centroids to the places [m], shape (n, d) each.
-        law, roots, step: as `shares_within` takes them.
+        law, step: as `shares_within` takes them.
+        yields: of the bodies, see `yields_of`.
     """
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
     weight = np.maximum(step**2 * law["k"] + 2 * step * law["c"], across)
-    d = arms[0].shape[1]
-    linear, spun = roots[:, 0, 0] ** 2, np.linalg.norm(roots[:, d:, d:], ord=2, axis=(1, 2)) ** 2
+    linear, spun = yields
     for_unit = [
         np.where(body >= 0, linear[body] + np.sum(arm**2, axis=1) * spun[body], 0.0)
         for body, arm in zip(bodies, arms, strict=True)
     ]
     pairs, added = np.concatenate(bodies), np.tile(weight * (for_unit[0] + for_unit[1]), 2)
-    return np.asarray(np.bincount(pairs[pairs >= 0], added[pairs >= 0], len(roots)))
+    return np.asarray(np.bincount(pairs[pairs >= 0], added[pairs >= 0], len(linear)))
 
 
 def shares_within(sides: tuple[Side, Side], law: dict[str, Array], roots: Array, step: float) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry.poses import rotations
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import laden
-from ..problem.masonry.joints_in_space import SpaceJoint
+from ..problem.masonry.joint_forces import axes_of
 from ..problem.masonry.lines import free_numbers
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_size
@@ -56,13 +56,11 @@ class JointFrames(NamedTuple):
         masonry = case.masonry
         number, fixed = free_numbers(masonry.blocks), np.array([block.fixed for block in masonry.blocks])
         below, above = np.array([(joint.below, joint.above) for joint in masonry.joints]).T
-        along = [j.axes if isinstance(j, SpaceJoint) else j.along[None] for j in masonry.joints]
-        axes = np.array([[j.normal, *ways] for j, ways in zip(masonry.joints, along, strict=True)])
         of_fixed = np.where(fixed, np.cumsum(fixed) - 1, -1)
         return cls(
             tuple(joint.name for joint in masonry.joints),
             np.array([joint.middle for joint in masonry.joints]),
-            axes,
+            axes_of(masonry),
             number[below],
             number[above],
             of_fixed[below],

@@ -77,7 +77,7 @@ def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
     contacts = scene.contacts
     push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
     crushing = np.array([np.inf if bond is None or bond.crushing is None else bond.crushing for bond in masonry.bonds])
-    area = contacts.k / masonry.joint_stiffness[contacts.joint]
+    area = masonry.areas_of(contacts.k, contacts.joint)
     share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / area / crushing[contacts.joint])
     torn = np.unique(contacts.joint[share > 1])
     if len(torn):
@@ -90,7 +90,7 @@ def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
 def strength(masonry: Masonry, lines: Lines, name: str) -> Array:
     """A strength of the bond of each contact line [N], zero where there is none."""
     held = np.array([0.0 if bond is None else getattr(bond, name) for bond in masonry.bonds])
-    return np.asarray(held[lines.joint] * lines.k / masonry.joint_stiffness[lines.joint])
+    return np.asarray(held[lines.joint] * masonry.areas_of(lines.k, lines.joint))
 
 
 def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:

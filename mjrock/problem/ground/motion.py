@@ -400,7 +400,7 @@ class GroundMotion:
 
         def parse(lines: list[str]) -> ReadRecord:
             header.update(esm_header(lines))
-            return parse_esm(lines)
+            return parse_esm(lines, header)
 
         return cls._from_file(path, parse, header)
 

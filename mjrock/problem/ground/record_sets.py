@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import require_kind, require_path, require_row, require_text, shown
+from ...quantities import require_kind, require_path, require_text, shown
 from .code_spectrum import CodeSpectrum, FloorSpectrum
 from .motion import GroundMotion
-from .spectrum import scaled_to_spectrum
+from .spectrum import factor_to_spectrum
 
 COMPONENTS = ("ENZ", "XYZ", "12Z", "123", "LTV", "XYV")
 """Letters that tell the components of a record apart in the names of its files: two horizontal ones, the vertical."""
@@ -93,8 +93,6 @@ def scaled_together(
         raise TypeError(f"motions = {shown(motions)} is not a sequence of at least one GroundMotion")
     for i, motion in enumerate(motions):
         require_kind(f"motions[{i}]", motion, GroundMotion)
-    horizontal = motions[:2]
-    alone = [scaled_to_spectrum(motion, periods, target, damping) for motion in horizontal]
-    factors = [made.peak / motion.peak for made, motion in zip(alone, horizontal, strict=True)]
-    factor = float(np.exp(np.log(require_row("factors", factors, "factor")).mean()))
+    factors = [factor_to_spectrum(motion, periods, target, damping) for motion in motions[:2]]
+    factor = float(np.exp(np.log(factors).mean()))
     return tuple(motion.scaled(factor) for motion in motions)

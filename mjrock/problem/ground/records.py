@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 
@@ -104,9 +104,8 @@ def esm_header(lines: Sequence[str]) -> dict[str, str]:
     return {field[1].upper(): field[2] for field in fields if field is not None}
 
 
-def parse_esm(lines: Sequence[str]) -> ReadRecord:
-    """The record of an ESM or ITACA file: header lines with unit, step and number of samples, then one value a line."""
-    head = esm_header(lines)
+def parse_esm(lines: Sequence[str], head: Mapping[str, str]) -> ReadRecord:
+    """The record of an ESM or ITACA file with this header: its unit, step and number of samples, and a value a line."""
     for name in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"):
         if not head.get(name):
             raise ValueError(f"the header has no {name}; an ESM or ITACA file of accelerations states it")

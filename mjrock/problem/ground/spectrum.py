@@ -110,6 +110,14 @@ def scaled_to_spectrum(
     Raises:
         TypeError, ValueError: for a value outside its range, shapes that differ, or a motion at rest.
     """
+    factor = factor_to_spectrum(motion, periods, target, damping)  # refuses what is no motion
+    return motion.scaled(factor)
+
+
+def factor_to_spectrum(
+    motion: GroundMotion, periods: ArrayLike, target: ArrayLike | CodeSpectrum | FloorSpectrum, damping: float
+) -> float:
+    """The factor of `scaled_to_spectrum` [-]."""
     spectrum = response_spectrum(motion, periods, damping)
     if isinstance(target, CodeSpectrum | FloorSpectrum):
         target = target(spectrum.period, damping)
@@ -120,4 +128,4 @@ def scaled_to_spectrum(
         raise ValueError(f"target has {len(asked)} values and periods {len(spectrum.period)}; they have to be pairs")
     if motion.peak == 0:
         raise ValueError("motion is at rest: no factor gives it a spectrum")
-    return motion.scaled(float(np.exp(np.log(asked / spectrum.Sa).mean())))
+    return float(np.exp(np.log(asked / spectrum.Sa).mean()))

@@ -41,8 +41,7 @@ def split_faces(joints: Sequence[Joint | SpaceJoint], names: Sequence[str]) -> s
             normals[joint.below, joint.above].append(joint.normal)
     odd = []
     for pair, ways in normals.items():
-        alike = np.array(ways) @ np.transpose(ways) - np.eye(len(ways))
-        if alike.max() > ALIKE:
+        if len(ways) > 1 and (np.array(ways) @ np.transpose(ways) - np.eye(len(ways))).max() > ALIKE:
             odd.append(f"{names[pair[0]]} and {names[pair[1]]}")
     if not odd:
         return ""

@@ -28,12 +28,17 @@ class JointForces:
     eccentricity: Array
 
 
+def axes_of(masonry: Masonry) -> Array:
+    """Of each joint the normal and the directions along it, as unit vectors, shape (joints, d, d)."""
+    return np.array([[j.normal, *(j.axes if isinstance(j, SpaceJoint) else j.along[None])] for j in masonry.joints])
+
+
 def joint_forces(masonry: Masonry, forces: Array) -> JointForces:
     """The forces of joints from those of their contact lines on the block `Lines.body` [N], shape (m, d)."""
     lines, joints = masonry.lines, masonry.joints
     above = np.array([joint.above for joint in joints])[lines.joint]
     forces = np.where(above == lines.body, 1.0, -1.0)[:, None] * forces
-    axes = np.array([[j.normal, *(j.axes if isinstance(j, SpaceJoint) else j.along[None])] for j in joints])
+    axes = axes_of(masonry)
     parts = np.einsum("mad,md->ma", axes[lines.joint], forces)
     arms = np.einsum(
         "mad,md->ma", axes[lines.joint], lines.at - np.array([joint.middle for joint in joints])[lines.joint]

@@ -19,6 +19,7 @@ from ...files import write_text
 from ...quantities import (
     Array,
     Implausible,
+    Integers,
     frozen,
     keep,
     named,
@@ -234,6 +235,10 @@ class Masonry:
     def joint_stiffness(self) -> Array:
         """k_n of each joint [N/m3], shape (joints,)."""
         return values_of("k_n", self.k_n, self.joints)
+
+    def areas_of(self, k: Array, joint: Integers) -> Array:
+        """What part of its joint each contact line stands for [m2], from its k [N/m] and the number of its joint."""
+        return np.asarray(k / self.joint_stiffness[joint])
 
     @cached_property
     def joint_friction(self) -> Array:

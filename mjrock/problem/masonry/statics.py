@@ -141,7 +141,7 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
     if not any(masonry.bonds):
         return csc_array((len(masonry.free) * (6 if masonry.in_space else 3), 0)), np.zeros(0), directions[:0]
     strengths = np.array([(0.0, 0.0) if bond is None else (bond.tension, bond.cohesion) for bond in masonry.bonds])
-    area = lines.k / masonry.joint_stiffness[lines.joint]
+    area = masonry.areas_of(lines.k, lines.joint)
     pull, along = (area[:, None] * strengths[lines.joint]).T
     columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T
     limits = np.concatenate([pull, *[along] * (2 * len(ways))])
