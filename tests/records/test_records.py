@@ -173,6 +173,29 @@ def test_one_column_needs_its_step(tmp_path):
         mr.GroundMotion.from_csv(written(tmp_path / "b.csv", "0,1\n1,2\n"), "m/s2", dt=0.01)
 
 
+def test_a_motion_is_written_as_it_is_read(tmp_path):
+    made = mr.GroundMotion.synthetic(peak=3.0, duration=5.0, seed=1)
+    path = made.to_esm(tmp_path / "IT.AMT..HNE.ASC", NETWORK="IT", STATION_CODE="AMT", STREAM="HNE")
+    assert len(path.read_text().splitlines()) == 64 + len(made.accel)
+    again = mr.GroundMotion.from_esm(path)
+    np.testing.assert_allclose(again.accel, made.accel, rtol=1e-15)
+    assert (again.dt, again.name, again.header["UNITS"]) == (made.dt, "IT AMT HNE", "cm/s^2")
+    with_its_header = mr.GroundMotion.from_esm(written(tmp_path / "b.asc", esm() + body("esm")))
+    copy = mr.GroundMotion.from_esm(with_its_header.to_esm(tmp_path / "c.asc", STREAM="HGN"))
+    assert copy.header["EVENT_NAME"] == "CENTRAL_ITALY"
+    assert copy.header["STREAM"] == "HGN"
+    np.testing.assert_allclose(copy.accel, with_its_header.accel, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "field",
+    [{"NETWORK": "I\nT"}, {"NETWORK": "I\rT"}, {"network": "IT"}, {"A B": "IT"}, {f"A{i}": "" for i in range(70)}],
+)
+def test_a_header_that_no_file_can_have(tmp_path, field):
+    with pytest.raises(ValueError, match="at most 58 fields of one line"):
+        mr.GroundMotion.sine(1.0, 1.0).to_esm(tmp_path / "a.asc", **field)
+
+
 class TestEsm:
     """Files of the European and the Italian data base."""
 

@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from ...files import write_text
 from ...quantities import (
     GRAVITY,
     MOST_SAMPLES,
@@ -22,6 +23,7 @@ from ...quantities import (
     keep,
     require_flag,
     require_kind,
+    require_path,
     require_reals,
     require_size,
     require_whole,
@@ -35,6 +37,7 @@ from .records import (
     ReadRecord,
     checked,
     esm_header,
+    esm_text,
     parse_at2,
     parse_columns,
     parse_esm,
@@ -403,6 +406,22 @@ class GroundMotion:
             return parse_esm(lines, header)
 
         return cls._from_file(path, parse, header)
+
+    def to_esm(self, path: str | PathLike[str], **header: str) -> Path:
+        """Write the motion as a file of the ESM data base, which `from_esm` and other programs read.
+
+        Args:
+            path: the file.
+            header: further fields, such as STATION_CODE="AMT" or STREAM="HNE", beside those of `header`. Unit, step and
+                number of samples are those of the motion.
+
+        Raises:
+            OSError: if the file cannot be written.
+            ValueError: for a field that a file of ESM cannot have.
+        """
+        for name, value in header.items():
+            require_kind(name, value, str)
+        return write_text(require_path("path", path), esm_text(self.accel, self.dt, {**self.header, **header}))
 
     @classmethod
     def from_csv(

@@ -123,6 +123,31 @@ def parse_esm(lines: Sequence[str], head: Mapping[str, str]) -> ReadRecord:
     return ESM_UNITS[unit] * values, dt
 
 
+def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
+    """An ESM file of accelerations [m/s2] every dt seconds, which states its own unit, step, and number of samples.
+
+    A ValueError says where the header has a field that such a file cannot have.
+    """
+    stated = {
+        "SAMPLING_INTERVAL_S": repr(dt),
+        "NDATA": str(len(accel)),
+        "DURATION_S": f"{dt * (len(accel) - 1):.6f}",
+        "UNITS": "cm/s^2",
+        "PGA_CM/S^2": f"{accel[np.abs(accel).argmax()] / ESM_UNITS['cm/s^2']:.6f}",
+        "DATA_TYPE": "ACCELERATION",
+    }
+    fields = {**header, **stated}
+    spare = [name for name in (f"USER{i}" for i in range(1, ESM_LINES + 1)) if name not in fields]
+    fields |= dict.fromkeys(spare[: max(ESM_LINES - len(fields), 0)], "")
+    lines = [f"{name}: {value}" for name, value in fields.items()]
+    fit = all(ESM_FIELD.fullmatch(line) and not BREAK.search(line) for line in lines)
+    if len(lines) != ESM_LINES or not fit or any(name != name.upper() for name in fields):
+        raise ValueError(
+            f"header = {_short(str(dict(header)))}: at most 58 fields of one line, named as in an ESM file"
+        )
+    return "\n".join([*lines, *(repr(value) for value in (accel / ESM_UNITS["cm/s^2"]).tolist())]) + "\n"
+
+
 def parse_at2(lines: Sequence[str]) -> ReadRecord:
     """The record of a PEER NGA file: four header lines, the last with NPTS and DT, then values in g."""
     if len(lines) < 4 or not AT2_UNIT.fullmatch(lines[2]):
