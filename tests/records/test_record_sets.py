@@ -22,6 +22,21 @@ def test_components_of_a_record_go_together(tmp_path):
     assert [motion.header["STREAM"] for motion in found["IT.NRC..HN?.ASC"]] == ["HNE", "HNN"]
 
 
+def test_numbers_tell_stations_apart_before_they_tell_components(tmp_path):
+    for i in "123":
+        for letter in "EN" if i < "3" else "E":
+            name = f"IT.T120{i}..HN{letter}.ASC"
+            written(tmp_path / name, esm(STATION_CODE=f"T120{i}") + body("esm"))
+    both = ["IT.T1201..HN?.ASC", "IT.T1202..HN?.ASC"]
+    assert list(mr.records_in(tmp_path)) == [*both, "IT.T1203..HNE.ASC"]
+    assert {len(members) for members in mr.records_in(tmp_path, pattern="*E.ASC").values()} == {1}
+    for i in "12z":
+        written(tmp_path / f"IT.B..HN{i.upper()}.ASC", esm() + body("esm"))
+        written(tmp_path / f"it.b..hn{i}.asc", esm() + body("esm"))
+    found = mr.records_in(tmp_path)
+    assert len(found["IT.B..HN?.ASC"]) == len(found["it.b..hn?.asc"]) == 3
+
+
 def test_other_formats_and_single_files(tmp_path):
     for name in ("000199xa.txt", "000199ya.txt", "alone.txt", "notes.md"):
         written(tmp_path / name, "0\n1\n-2\n1\n0\n")

@@ -15,8 +15,9 @@ from .code_spectrum import CodeSpectrum, FloorSpectrum
 from .motion import GroundMotion
 from .spectrum import factor_to_spectrum
 
-COMPONENTS = ("ENZ", "XYZ", "12Z", "123", "LTV", "XYV")
-"""Letters that tell the components of a record apart in the names of its files: two horizontal ones, the vertical."""
+COMPONENTS = ("ENZ", "XYZ", "LTV", "XYV"), ("12Z", "123")
+"""Letters that tell the components of a record apart in the names of its files: two horizontal ones, the vertical. The
+numbers come second, as they tell stations apart too."""
 
 
 def records_in(
@@ -26,7 +27,7 @@ def records_in(
 
     The names of the files of one record differ in one letter alone, E, N and Z, X, Y and Z, or 1, 2 and 3. The two
     horizontal components come first, the vertical one last where there is one. A file that stands alone is a record of
-    one component.
+    one component, and so is one whose header names another station.
 
     Args:
         folder: where the files are.
@@ -46,29 +47,45 @@ def records_in(
     names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
     if not names:
         raise ValueError(f"{folder} has no file that fits the pattern {shown(pattern)}")
-    return {key: tuple(read(files[name]) for name in members) for key, members in _grouped(names).items()}
+    records: dict[str, tuple[GroundMotion, ...]] = {}
+    for key, members in _grouped(names).items():
+        motions = tuple(read(files[name]) for name in members)
+        if len({motion.header.get("STATION_CODE") for motion in motions}) == 1:
+            records[key] = motions
+        else:
+            records |= {name: (motion,) for name, motion in zip(members, motions, strict=True)}
+    return records
 
 
 def _grouped(names: Sequence[str]) -> dict[str, list[str]]:
     """Names that differ in the letter of the component, by the name with ? in its place."""
+    groups: dict[str, list[str]] = {}
+    left = list(names)
+    for kinds in COMPONENTS:
+        found = _together(left, kinds)
+        for name in left:
+            keys = [key for key, members in found.items() if name in members]
+            if len(keys) > 1:
+                raise ValueError(
+                    f"{name} goes with other files in more than one way: {', '.join(keys)}; give a pattern"
+                )
+        groups |= found
+        left = [name for name in left if not any(name in members for members in found.values())]
+    return dict(sorted((groups | {name: [name] for name in left}).items()))
+
+
+def _together(names: Sequence[str], kinds: Sequence[str]) -> dict[str, list[str]]:
+    """Names that differ in one of these sets of letters, at one place, by the name with ? there."""
     found: dict[str, list[str]] = {}
+    sets = [cased for letters in kinds for cased in (letters, letters.lower())]
     for name in names:
         for i, letter in enumerate(name):
-            for letters in COMPONENTS:
-                if letter.upper() in letters:
-                    fits = [
-                        name[:i] + one + name[i + 1 :] for one in (letters if letter.isupper() else letters.lower())
-                    ]
-                    members = [other for other in fits if other in names]
-                    if len(members) > 1 and members[0] == name:
-                        found.setdefault(f"{name[:i]}?{name[i + 1 :]}", members)
-    for name in names:
-        keys = [key for key, members in found.items() if name in members]
-        if len(keys) > 1:
-            raise ValueError(f"{name} goes with other files in more than one way: {', '.join(keys)}; give a pattern")
-        if not keys:
-            found[name] = [name]
-    return dict(sorted(found.items()))
+            key = f"{name[:i]}?{name[i + 1 :]}"
+            for letters in sets:
+                members = [other for other in (key.replace("?", one, 1) for one in letters) if other in names]
+                if letter in letters and len(members) > len(found.get(key, "1")):
+                    found[key] = members
+    return found
 
 
 def scaled_together(
