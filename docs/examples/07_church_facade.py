@@ -3,8 +3,8 @@ A church façade: from records to a report
 =========================================
 
 A church façade of 12 m has a portal, a rose window and a gable. The roof pushes it outwards, and two steel bars are
-to hold it. Does it pass the check of the Italian code? At which acceleration does it overturn, and what do the bars
-add? What is asked of its upper part, which starts to rock on the floor of the choir?
+planned to hold it. Does it pass the check of the Italian code? At which acceleration does it overturn, and what do the
+bars add? What is asked of its upper part, which may rock on the floor of the choir?
 """
 
 # %%
@@ -50,20 +50,22 @@ print(f"{wall.mass / 1e3:.0f} t, centroid at {wall.centroid_height:.2f} m, alpha
 print(k)
 
 # %%
-# The roof, and two bars of 22 mm with plates of 0.3 m. Steel, plate and masonry say what they bear: the least of the
-# three governs.
+# The roof, and two bars of 22 mm with plates of 0.3 m. The least strength of steel, plate and masonry governs. How far
+# the bars can be drawn out before they break is known least: 30 mm, or 100 mm.
 roof = mr.Thrust(height=9.0, force=10e3)  # m, N
 masonry = {"thickness": 0.8, "shear_strength": 30e3, "compressive_strength": 1.5e6}  # m, Pa
-bars = mr.Tie.of_bar(8.0, 0.022, 235e6, 6.0, plate=0.3, number=2, slack=0.003, ultimate=0.03, **masonry)
-variants = {"as it is": (roof,), "with bars": (roof, bars)}
+variants = {"as it is": (roof,)}
+for ultimate in (0.03, 0.10):  # m
+    bars = mr.Tie.of_bar(8.0, 0.022, 235e6, 6.0, plate=0.3, number=2, slack=0.003, ultimate=ultimate, **masonry)
+    variants[f"bars, {1e3 * ultimate:.0f} mm"] = (roof, bars)
 cases = {name: mr.Case(wall, 0.0, 18.0, side_stop=stop, effects=effects) for name, effects in variants.items()}
 print(f"the bars yield at {bars.strength / 1e3:.0f} kN")
-figure = plotting.sketch(cases["with bars"])
+figure = plotting.sketch(cases["bars, 100 mm"])
 
 # %%
 # The check of the code, step by step, with the clause of each. A ratio above one passes.
 checks = {name: mr.mechanism_check(case, spectrum) for name, case in cases.items()}
-print(checks["with bars"].table())
+print(checks["bars, 100 mm"].table())
 
 # %%
 # The push-over curves that the check stands on.
@@ -71,21 +73,25 @@ curves = {name: mr.pushover(case) for name, case in cases.items()}
 figure = plotting.single(lambda ax: plotting.pushover(ax, curves))
 
 # %%
-# The part above the choir floor at 5 m may rock on its own. It feels the motion of the floor: the building of 9 m sways
-# with its first period, 0.05 H^0.75 = 0.26 s, and its mode is a straight line. `at_height` gives the spectrum there, and
-# `through_building` the motion itself.
+# The part above the choir floor at 5 m may rock on its own, and it feels the motion of that floor. The building of 9 m
+# sways with the period 0.05 H^0.75 = 0.26 s, and its shape is a straight line. `at_height` gives the spectrum on the
+# floor, and `through_building` the motion itself.
 upper = mr.Block.from_size(
     0.8, 7.0, 9.0, 1900.0, openings=[mr.Opening(2.0, 2.0, sill=1.0, round=True)], gable=mr.Gable(height=3.0)
 )
 floor = {"period": 0.05 * 9.0**0.75, "participation": 1.2, "height": 5.0 / 9.0}
-e_upper = mr.Restitution.from_geometry(upper, stop_top=3.5)
-above = {"side_stop": mr.SideStop(top=3.5), "effects": mr.Thrust(height=4.0, force=10e3)}
+e_upper = mr.Restitution.from_geometry(upper, stop_top=4.0)
+above = {"side_stop": mr.SideStop(top=4.0), "effects": mr.Thrust(height=4.0, force=10e3)}
 check_upper = mr.mechanism_check(mr.Case(upper, 0.0, 18.0, **above), spectrum.at_height(**floor))
-print(f"linear {check_upper.linear_ratio:.2f}", {name: f"{s.ratio:.2f}" for name, s in check_upper.states.items()})
+print("upper part, capacity over demand: linear", f"{check_upper.linear_ratio:.2f}")
+for name, state in check_upper.states.items():
+    print(f"{name} {state.ratio:.2f}")
 for motion in across:
     shaken = mr.Case(upper, 0.0, 18.0, motion=motion.through_building(**floor), **above)
     answer = mr.solve_analytical(shaken, e_upper)
-    print(f"{motion.name}: floor {shaken.motion.peak:.1f} m/s2, {answer.outcome.value}, {answer.peak_over_alpha:.2f} alpha")
+    print(
+        f"{motion.name}: floor {shaken.motion.peak:.1f} m/s2, {answer.outcome.value}, {answer.peak_over_alpha:.2f} alpha"
+    )
 
 # %%
 # The seven records in both polarities: a wall that opens to one side takes a record and its mirror image as two
@@ -107,6 +113,7 @@ figure = plotting.history(answers[0], labels=labels[:1])
 # The fragility: `Capacity` scales each record until the wall overturns, and `campaign` keeps the answers in a file.
 # Both polarities of a record count as one record.
 def build(variant, record, polarity):
+    """The capacity of a variant under one polarity of a record."""
     motion = across[record].polarities[polarity]
     case = mr.Case(wall, 0.0, 18.0, side_stop=stop, motion=motion, effects=variants[variant])
     return mr.Capacity(mr.Analysis(case, "MuJoCo", e=e, contacts=contacts), tolerance=0.02, below=0)
@@ -120,4 +127,29 @@ stations = [row["record"] for row in rows[:14]]
 fits = {name: mr.fit_capacities(found, groups=stations) for name, found in capacities.items()}
 for name, fit in fits.items():
     print(f"{name}:", fit.table(), sep="\n")
-print("gain by the bars:", mr.paired_ratio(capacities["with bars"], capacities["as it is"], groups=stations))
+for name in list(variants)[1:]:
+    print(f"{name}, capacity over that as it is:")
+    print(mr.paired_ratio(capacities[name], capacities["as it is"], groups=stations))
+
+# %%
+# Bars that break after 30 mm add little, as they are gone before the large rotations. Bars that can be drawn out by
+# 100 mm add more. The report is one page with the sketch, the inputs and their sources, histories, tables, the code
+# check and the fragility. It opens in any browser and prints to PDF. The film shows the wall as it is.
+report = mr.report(
+    cases["bars, 100 mm"],
+    answers,
+    folder / "facade.html",
+    title="Church façade, out of plane",
+    labels=labels,
+    e=e,
+    contacts=contacts,
+    basis={"density": "three cores", "k_base": "Table C8.5.I for rubble, and a joint of 30 mm with E = 800 MPa"},
+    sections={
+        "Code check": [part for name, check in checks.items() for part in (name, check)],
+        "Code check of the upper part, on the floor": check_upper,
+        "Fragility": [part for name, fit in fits.items() for part in (name, fit)],
+    },
+    notes="Is the façade safe at a_g = 0.25 g on soil C, and what do the two bars add?",
+)
+film = plotting.animate(answers[0], folder / "facade.gif", fps=10, dpi=60)
+print([f"{path.name}: {path.stat().st_size / 1e6:.1f} MB" for path in (report, film)])
