@@ -89,9 +89,8 @@ for name, state in check_upper.states.items():
 for motion in across:
     shaken = mr.Case(upper, 0.0, 18.0, motion=motion.through_building(**floor), **above)
     answer = mr.solve_analytical(shaken, e_upper)
-    print(
-        f"{motion.name}: floor {shaken.motion.peak:.1f} m/s2, {answer.outcome.value}, {answer.peak_over_alpha:.2f} alpha"
-    )
+    said = f"{answer.outcome.value}, peak {answer.peak_over_alpha:.2f} alpha"
+    print(f"{motion.name}: peak of the floor {shaken.motion.peak:.1f} m/s2, {said}")
 
 # %%
 # The seven records in both polarities: a wall that opens to one side takes a record and its mirror image as two
