@@ -189,7 +189,7 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
     for response, name in zip(responses, names, strict=True):
         if response.outcome is Outcome.TIME_ENDED:
             share = abs(float(response.theta[-1])) / float(response.case.wall.alpha)
-            said.append(f"{name}: the wall was still moving when the time ended, at {share:.3g} alpha.")
+            said.append(f"{name}: the wall still moves at the end of the run, at {share:.3g} alpha.")
         for tie, drawn in response.plastic.items():
             effect = response.case.links[tie]
             if overdrawn(effect, drawn):

@@ -46,11 +46,11 @@ def describe(outcome: Outcome, case: Case, t_end: float, theta_end: float) -> st
     share = abs(theta_end) / case.wall.alpha
     match outcome:
         case Outcome.AT_REST:
-            return f"The wall came to rest; last looked at {t_end:.4g} s."
+            return f"The wall is at rest at the end of the run ({t_end:.4g} s)."
         case Outcome.OVERTURNED:
             return f"The wall overturned; it was followed until {t_end:.4g} s, when its rotation was {share:.3g} alpha."
         case Outcome.TIME_ENDED:
-            return f"The wall was still rocking when the asked {t_end:.4g} s ended, at {share:.3g} alpha."
+            return f"The wall still rocks at the end of the run ({t_end:.4g} s), at {share:.3g} alpha."
 
 
 def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, everywhere: bool) -> tuple[Outcome, str]:
@@ -60,5 +60,5 @@ def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, ev
         first = f"{len(fallen)} blocks fell, the first at {next(iter(fallen.values())):.4g} s: {named(list(fallen))}."
         return Outcome.OVERTURNED, f"{first} The motion was followed for {t_end:.4g} s{left_out}."
     if quiet:
-        return Outcome.AT_REST, f"The masonry came to rest; last looked at {t_end:.4g} s."
-    return Outcome.TIME_ENDED, f"The masonry was still moving when the asked {t_end:.4g} s ended."
+        return Outcome.AT_REST, f"The masonry is at rest at the end of the run ({t_end:.4g} s)."
+    return Outcome.TIME_ENDED, f"The masonry still moves at the end of the run ({t_end:.4g} s)."

@@ -75,22 +75,29 @@ def test_numbers_are_compared_to_their_last_digit():
     assert not alike("at rest, peak 0.25", "overturned, peak 0.25")
 
 
-def test_the_first_lines_of_the_readme_run(tmp_path, monkeypatch):
+def test_the_readme_is_short_its_six_lines_run_and_its_doors_open(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert len(readme.splitlines()) < 150
-    (lines,) = re.findall(r"## Ten lines\n.*?```python\n(.*?)```", readme, re.DOTALL)
-    assert sum(1 for line in lines.splitlines() if line and not line.startswith("import")) <= 10
-    printed = run(ROOT / "README.md", {}, 2)
-    assert "restitution [-]" in printed[0][0]
-    assert len(printed[1][0].split()) == 4
+    assert len(readme.splitlines()) <= 90
+    ((code, _),) = blocks(ROOT / "README.md")
+    assert sum(1 for line in code.splitlines() if line and not line.startswith("import")) == 6
+    ((printed, _),) = run(ROOT / "README.md", {})
+    assert "restitution [-]" in printed
+    start = readme[: readme.index("## Try it")]
+    assert all(word in start for word in ("dry", "cracked", "mortared"))
+    for door, page in (("Check a façade", "docs/examples/07_church_facade.py"), ("Model blocks", "docs/masonry.md")):
+        assert page in readme[readme.index(f"**{door}.**") :].split("\n\n")[0]
+    named = {name for row in re.findall(r"^\|.*\|(.*)\|$", readme, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)}
+    assert len(named) > 20
+    assert named <= set(mr.__all__)
 
 
-@pytest.mark.slow
-def test_all_lines_of_the_readme_run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    run(ROOT / "README.md", {})
-    assert all((tmp_path / name).stat().st_size for name in ("rock.gif", "rock.png", "rock.csv"))
+def test_what_the_readme_names_is_what_a_script_prints():
+    """The only count in its text is that of the picture, and the script that draws it prints it."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    (count,) = re.findall(r"façade of (\d+) blocks", readme)
+    assert f"{count} blocks" in (DOCS / "figures" / "facade_in_space.txt").read_text(encoding="utf-8")
+    assert not re.search(r"\d(?:\.\d+)? ?%|\d+ times", readme)
 
 
 def test_the_first_lines_of_the_page_on_damping_run(wall, e):

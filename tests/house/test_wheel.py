@@ -19,6 +19,14 @@ ROOT = Path(__file__).parents[2]
 OFFLINE = ("No matching distribution", "Could not find a version", "Connection", "Temporary failure")
 CHECKS = """
 
+mr.plotting.animate(answer, "rock.gif", speed=0.5)
+mr.plotting.save(mr.plotting.history(answer), "rock.png")
+
+
+def build(scale):
+    return mr.Analysis(mr.Case(wall, scale * wall.alpha, 1.0), "analytical", e=e)
+
+
 if __name__ == "__main__":
     import sys
     from pathlib import Path
@@ -28,6 +36,7 @@ if __name__ == "__main__":
     from mjrock.study.fragility import fit_fragility
 
     installed = Path(mr.__file__).resolve()
+    mr.campaign(mr.Grid(build, scale=[0.2, 0.4]), "walls.sqlite")
     assert installed.is_relative_to(Path(sys.prefix).resolve()), installed
     assert mr.__version__ == {version!r}, mr.__version__
     assert {{law.name for law in (mr.CALIBRATED, mr.CALIBRATED_BED)}} == {{"CALIBRATED", "CALIBRATED_BED"}}
