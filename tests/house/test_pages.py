@@ -87,7 +87,9 @@ def test_the_readme_is_short_its_six_lines_run_and_its_doors_open(tmp_path, monk
     assert all(word in start for word in ("dry", "cracked", "mortared"))
     for door, page in (("Check a façade", "docs/examples/07_church_facade.py"), ("Model blocks", "docs/masonry.md")):
         assert page in readme[readme.index(f"**{door}.**") :].split("\n\n")[0]
-    named = {name for row in re.findall(r"^\|.*\|(.*)\|$", readme, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)}
+    named = {
+        name for row in re.findall(r"^\|.*\|(.*)\|$", readme, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)
+    }
     assert len(named) > 20
     assert named <= set(mr.__all__)
 

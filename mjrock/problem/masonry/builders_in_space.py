@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
-from typing import Any
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown
+from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
 from ..wall.section import Opening
-from .builders import BEYOND, DEEP, MOST_BLOCKS, required_faces, required_unit
+from .builders import BEYOND, DEEP, MOST_BLOCKS, SMALLEST_PIECE, required_faces, required_unit
 from .polyhedron import Polyhedron
 
 WHOLE = 1e-6
-"""How far a length may be from a whole number of units, over the unit [-]."""
+"""How far edges that are to coincide may lie apart, over the unit [-]."""
 
 
 def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
@@ -25,16 +27,6 @@ def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
     beyond, deep = np.maximum(BEYOND * (high[2] - low[2]), 0.5 * wide), DEEP * float(wide.max())
     middle = 0.5 * (low + high)[:2]
     return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
-
-
-def whole_units(name: str, extent: float, unit: float, most: int) -> int:
-    """How many units an extent has; a ValueError says unless it is a whole number of them, from 1 to `most`."""
-    count = require_real(name, extent) / unit
-    if not 0 < count < most + 1 or not abs(count - round(count)) <= WHOLE or not 1 <= round(count) <= most:
-        raise ValueError(
-            f"{name} = {extent:g} m is not a whole number of units of {unit:g} m; the valid range is 1 to {most} units"
-        )
-    return round(count)
 
 
 def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:
@@ -80,96 +72,186 @@ def dome_of(radius: float, thickness: float, lunes: int, hoops: int, oculus: flo
     return blocks
 
 
-def facade_of(
+ROUNDED = 1 - 1e-9
+"""Factor on the least size of a wall, so that rounding does not refuse it [-]."""
+RETURNS = {"both": (True, True), "left": (True, False), "right": (False, True), "none": (False, False)}
+"""Whether there is a return wall at the left, where y is negative, and at the right end of a facade."""
+Rectangle = tuple[float, float, float, float]
+"""Part of the face of a wall: from y to y, and from z to z [m]."""
+
+
+class Walls(NamedTuple):
+    """Measures of a facade and of the return walls behind it, with units that are made to fit [m].
+
+    Args:
+        length, depth, thickness: of the facade, of the return walls from the face of the facade, and of both.
+        unit, behind: length of a unit of the facade and of the return walls.
+        high: height of a course.
+        courses, gable: how many courses the walls have, and the facade above them.
+        sides: whether there is a return wall at the left and at the right.
+    """
+
+    length: float
+    depth: float
+    thickness: float
+    unit: float
+    behind: float
+    high: float
+    courses: int
+    gable: int
+    sides: tuple[bool, bool]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Length of the corners at the left and at the right, where a return wall and the facade take turns [m]."""
+        return self.thickness * self.sides[0], self.thickness * self.sides[1]
+
+    def span(self, course: int) -> tuple[float, float]:
+        """Where a course of the facade begins and ends [m]. In every second course the return walls come through."""
+        shorter = course % 2 if course < self.courses else course - self.courses + self.courses % 2
+        left, right = (end + 0.5 * (shorter - 1) * self.unit if shorter else 0.0 for end in self.ends)
+        return left - 0.5 * self.length, 0.5 * self.length - right
+
+    def heads(self, course: int) -> list[float]:
+        """Where the head joints of a course of the facade are [m]: half a unit beside those below."""
+        first = self.ends[0] - 0.5 * self.length + (1.0 if course % 2 else 0.5) * self.unit
+        return np.arange(first, 0.5 * self.length, self.unit).tolist()
+
+    def behind_ends(self, course: int) -> list[float]:
+        """Where the blocks of a course of a return wall end, from the face of the facade inwards [m]."""
+        first = self.thickness + (0.5 if course % 2 else 1.0) * self.behind
+        heads = np.arange(first, self.depth - WHOLE * self.behind, self.behind).tolist()
+        return [0.0 if course % 2 else self.thickness, *heads, self.depth]
+
+
+def walls_of(
     length: float,
     height: float,
     depth: float,
     unit: tuple[float, float],
-    openings: Sequence[tuple[float, Opening]],
+    *,
+    thickness: float | None,
+    returns: str,
     gable: int,
-    density: float,
-) -> list[Polyhedron]:
-    """The ground, and a facade and two return walls on it, see `Masonry.facade`."""
+) -> Walls:
+    """Measures of a facade, checked, see `Masonry.facade`."""
     long, high = required_unit(unit)
-    t = 0.5 * long
-    units = whole_units("length", length, long, 1000)
-    courses, deep = whole_units("height", height, high, 1000), whole_units("depth", depth, long, 1000)
-    if units < 2:
-        raise ValueError(f"length = {length:g} m is one unit; the valid range begins at 2 units")
-    gable = require_whole("gable", gable, 0, units - courses % 2)
-    if (courses + gable) * units + 2 * courses * deep >= MOST_BLOCKS:
+    if not isinstance(returns, str) or returns not in RETURNS:
+        raise ValueError(f"returns = {spelt(returns)} is not one of {', '.join(RETURNS)}")
+    sides = RETURNS[returns]
+    t = 0.5 * long if thickness is None else require_within("thickness", thickness, 1e-2, 10.0, "m")
+    corners = t * sum(sides)
+    length = require_within("length", length, (corners + long) * ROUNDED, 1e3, "m")
+    height = require_within("height", height, high * ROUNDED, 1e3, "m")
+    depth = require_within("depth", depth, (t + 0.5 * long) * ROUNDED, 1e3, "m") if any(sides) else t
+    units, courses = round((length - corners) / long), round(height / high)
+    halves = max(round(2 * (depth - t) / long), 1)
+    gable = require_whole("gable", gable, 0, units + 1 - courses % 2)
+    if (courses + gable) * (units + 1) + courses * (halves // 2 + 1) * sum(sides) >= MOST_BLOCKS:
         raise ValueError(f"length, height and depth need more units than {MOST_BLOCKS}; give larger units")
-    holes = _holes(openings, units, courses + gable, (long, high))
-    left = -0.5 * units * long
+    fitted, behind = (length - corners) / units, 2 * (depth - t) / halves
+    return Walls(length, depth, t, fitted, behind, height / courses, courses, gable, sides)
 
-    def laid(name: str, x: tuple[float, float], cells: tuple[float, float], course: int) -> Polyhedron:
-        low = np.array([x[0], left + t * cells[0], course * high])
-        top = np.array([x[1], left + t * cells[1], (course + 1) * high])
-        return Polyhedron(np.array(np.meshgrid(*np.stack([low, top], axis=1))).reshape(3, -1).T, density, name=name)
 
-    blocks = [ground_below((-deep * long, left, 0.0), (0.0, -left, (courses + gable) * high))]
-    for course in range(courses + gable):
-        bond = course % 2
-        first = bond if course < courses else course - courses + courses % 2
-        for start, end in _laid_cells(first, 2 * units - first, bond, course, holes):
-            blocks.append(laid(f"facade_{course}_{start}", (-t, 0.0), (start, end), course))
-        if course < courses:
-            joints = [0, *range(2, 2 * deep + 1, 2)] if bond else [1, *range(2, 2 * deep + 1, 2)]
-            for side, cells in (("left", (0, 1)), ("right", (2 * units - 1, 2 * units))):
-                for i in range(len(joints) - 1):
-                    x = (-t * joints[i + 1], -t * joints[i])
-                    blocks.append(laid(f"{side}_{course}_{i}", x, cells, course))
+def facade_of(
+    walls: Walls, openings: Sequence[tuple[float, Opening]], density: float, ground: Polyhedron | None
+) -> list[Polyhedron]:
+    """The ground, and a facade and its return walls on it, see `Masonry.facade`."""
+    holes, lintels = _holes(openings, walls)
+    half, top = 0.5 * walls.length, (walls.courses + walls.gable) * walls.high
+    if ground is None:
+        ground = ground_below((-walls.depth, -half, 0.0), (0.0, half, top))
+    blocks, names = [ground], Counter[str]()
+
+    def lay(name: str, x: tuple[float, float], face: Rectangle) -> None:
+        low, high = (x[0], face[0], face[2]), (x[1], face[1], face[3])
+        corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+        names[name] += 1
+        again = "" if names[name] == 1 else chr(ord("a") + names[name] - 1)
+        blocks.append(Polyhedron(corners, density, name=name + again))
+
+    for course in range(walls.courses + walls.gable):
+        z = course * walls.high, (course + 1) * walls.high
+        over = [face for face in lintels if z[0] * (1 - WHOLE) <= face[2] < z[1] * (1 - WHOLE)]
+        for face in sorted([*over, *_pieces(walls, course, [*holes, *lintels])]):
+            lay(f"facade_{course}_{int((face[0] + half) / (0.5 * walls.unit) + 0.01)}", (-walls.thickness, 0.0), face)
+        if course < walls.courses:
+            for side, y in (("left", (-half, walls.thickness - half)), ("right", (half - walls.thickness, half))):
+                if walls.sides[side == "right"]:
+                    for i, (front, back) in enumerate(pairwise(walls.behind_ends(course))):
+                        lay(f"{side}_{course}_{i}", (-back, -front), (*y, *z))
     return blocks
 
 
-def _holes(
-    openings: Sequence[tuple[float, Opening]], units: int, courses: int, unit: tuple[float, float]
-) -> list[tuple[int, int, int, int]]:
-    """First and last half unit of each opening, and first course and the one above its last, half-open ranges."""
+def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[list[Rectangle], list[Rectangle]]:
+    """The openings, and the lintels over them: up to a bed joint, half a course high or more."""
     if not isinstance(openings, Sequence) or isinstance(openings, str):
         raise TypeError(f"openings = {shown(openings)} is not a sequence of (y, Opening)")
-    t, high = 0.5 * unit[0], unit[1]
-    holes: list[tuple[int, int, int, int]] = []
+    holes: list[Rectangle] = []
+    lintels: list[Rectangle] = []
     for i, pair in enumerate(openings):
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"openings[{i}] = {shown(pair)} is not (y, Opening)")
         y, opening = require_real(f"openings[{i}], y", pair[0]), pair[1]
         require_kind(f"openings[{i}]", opening, Opening)
-        edges = [(y - 0.5 * opening.width) / t + units, (y + 0.5 * opening.width) / t + units]
-        edges += [opening.sill / high, opening.head / high]
-        for name, edge in zip(("left edge", "right edge", "sill", "head"), edges, strict=True):
-            if not abs(edge - round(edge)) <= WHOLE:
-                raise ValueError(
-                    f"openings[{i}]: the {name} lies {edge:.3f} half units or courses from the corner; the valid ones "
-                    f"are whole numbers, of half units of {t:g} m and of courses of {high:g} m"
-                )
-        hole = tuple(map(round, edges))
-        if not (hole[0] >= 2 and hole[1] <= 2 * units - 2 and hole[3] < courses):
-            raise ValueError(
-                f"openings[{i}] leaves less than a unit beside it or no course above it; the valid range is y from "
-                f"{-(units - 2) * t:g} to {(units - 2) * t:g} m and z up to {(courses - 1) * high:g} m"
-            )
-        for k, (a, b, c, d) in enumerate(holes):
-            if hole[0] - 1 < b + 1 and a - 1 < hole[1] + 1 and hole[2] < d + 1 and c < hole[3] + 1:
+        if opening.round:
+            raise ValueError(f"openings[{i}] is round, and blocks are convex: give the rectangle that is left open")
+        left, right = y - 0.5 * opening.width, y + 0.5 * opening.width
+        top = walls.high * math.ceil(opening.head / walls.high + 0.5 - WHOLE)
+        bearing = 0.5 * walls.unit
+        _require_inside(i, (left - bearing, right + bearing, opening.sill, top), walls)
+        for k, (hole, lintel) in enumerate(zip(holes, lintels, strict=True)):
+            near = WHOLE * walls.unit
+            beside = left - bearing > lintel[1] - near or right + bearing < lintel[0] + near
+            if not beside and opening.sill < lintel[3] - near and hole[2] < top - near:
                 raise ValueError(f"openings[{i}] and openings[{k}], or the lintels over them, overlap")
-        holes.append(hole)  # type: ignore[arg-type]
-    return holes
+        holes.append((left, right, opening.sill, opening.head))
+        lintels.append((left - bearing, right + bearing, opening.head, top))
+    return holes, lintels
 
 
-def _laid_cells(
-    first: int, last: int, bond: int, course: int, holes: Sequence[tuple[int, int, int, int]]
-) -> list[tuple[int, int]]:
-    """Blocks of a course of a facade, from half unit to half unit: units, pieces beside openings, and lintels."""
-    owner: dict[int, Any] = {cell: (cell - bond) // 2 for cell in range(first, last)}
-    for i, (start, end, sill, head) in enumerate(holes):
-        if sill <= course <= head and not (first < start and end < last):
-            raise ValueError(f"openings[{i}] or its lintel does not lie within the gable; the valid range is within it")
-        if sill <= course < head:
-            for cell in range(start, end):
-                del owner[cell]
-        elif course == head:
-            owner |= dict.fromkeys(range(start - 1, end + 1), ("lintel", i))
-    cells = sorted(owner)
-    starts = [cell for cell in cells if owner.get(cell - 1) != owner[cell]]
-    ends = [cell + 1 for cell in cells if owner.get(cell + 1) != owner[cell]]
-    return list(zip(starts, ends, strict=True))
+def _require_inside(i: int, taken: Rectangle, walls: Walls) -> None:
+    """A ValueError says where an opening with its lintel does not lie within the courses that it cuts."""
+    left, right, sill, top = taken
+    near = WHOLE * walls.unit
+    if top > (walls.courses + walls.gable) * walls.high + near:
+        raise ValueError(f"openings[{i}] has no course above it for its lintel, which ends at {top:g} m")
+    for course in range(int(sill / walls.high + WHOLE), round(top / walls.high)):
+        first, last = walls.span(course)
+        if left < first - near or right > last + near:
+            raise ValueError(
+                f"openings[{i}] with its lintel reaches from y = {left:g} to {right:g} m; the valid range in course "
+                f"{course} is {first:g} to {last:g} m"
+            )
+
+
+def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Rectangle]:
+    """Units of a course of the facade, cut where openings and lintels are."""
+    (first, last), low, high = walls.span(course), course * walls.high, (course + 1) * walls.high
+    near, least = WHOLE * walls.unit, SMALLEST_PIECE * (1 - WHOLE)
+    cutting = [hole for hole in holes if hole[2] < high - near and hole[3] > low + near]
+    edges = [edge for hole in cutting for edge in hole[:2] if first + near < edge < last - near]
+    cuts = sorted({first, *edges, last})
+    cuts = [cut for i, cut in enumerate(cuts) if i == 0 or cut > cuts[i - 1] + near]
+    whole: list[Rectangle] = []
+    for left, right in pairwise(cuts):
+        middle, start = 0.5 * (left + right), low
+        above = sorted((hole[2:] for hole in cutting if hole[0] < middle < hole[1]), key=lambda z: z[0])
+        for sill, head in [*above, (high, high)]:
+            if sill > start + near:
+                grown = [k for k, part in enumerate(whole) if part[1:] == (left, start, sill)]
+                part = (whole.pop(grown[0])[0] if grown else left, right, start, sill)
+                whole.append(part)
+            start = max(start, head)
+    pieces = []
+    for left, right, start, end in whole:
+        if right - left < least * walls.unit or end - start < least * walls.high:
+            raise ValueError(
+                f"openings leave a piece of {right - left:.3g} x {end - start:.3g} m at y = {left:g} m in course "
+                f"{course}; the valid range begins at {SMALLEST_PIECE} of a unit, {walls.unit:.4g} x {walls.high:.4g} m"
+            )
+        inner = [
+            head for head in walls.heads(course) if left + least * walls.unit <= head <= right - least * walls.unit
+        ]
+        pieces += [(one, other, start, end) for one, other in pairwise([left, *inner, right])]
+    return pieces

@@ -39,7 +39,7 @@ from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
-from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below
+from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
 from .drawing import odd_sizes, split_faces
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
@@ -472,33 +472,42 @@ class Masonry:
         depth: float,
         unit: tuple[float, float],
         *,
+        thickness: float | None = None,
+        returns: str = "both",
         openings: Sequence[tuple[float, Opening]] = (),
         gable: int = 0,
+        ground: Polyhedron | None = None,
         density: float = 2000.0,
         **options: Any,
     ) -> Self:
-        """A facade and two return walls behind it, on the ground.
+        """A facade and return walls behind it, on the ground.
 
-        All walls are in running bond and half a unit thick, so that units of the facade and of the return walls take
-        turns at the corners. The face of the facade is x = 0, and the middle of its length is y = 0. Blocks are named
-        `facade_`, `left_` and `right_` with the course and a number in it.
+        All walls are one unit thick and in running bond, by half a unit. In every second course the return walls come
+        through to the face of the facade as headers. Units are made to fit: their length and height are the nearest to
+        those asked for that divide the walls. The face of the facade is x = 0, and the middle of its length is y = 0.
+        Blocks are named `facade_`, `left_` and `right_` with the course and a number in it.
 
         Args:
-            length: of the facade, a whole number of units, at least 2 [m].
-            height: of the walls, a whole number of units [m].
-            depth: of the return walls with the thickness of the facade, a whole number of units [m].
+            length: of the facade with its corners [m].
+            height: of the walls [m].
+            depth: of the return walls with the thickness of the facade [m].
             unit: length and height of a unit [m], 0.01 to 100.
-            openings: pairs of the y of the middle of an opening [m] and the `Opening`. Its edges lie on half units and
-                on courses. A lintel over it bears on half a unit on either side.
+            thickness: of all walls [m], 0.01 to 10; None is half the length of a unit.
+            returns: where return walls are: "both" ends, "left" where y is negative, "right" or "none".
+            openings: pairs of the y of the middle of an opening [m] and the `Opening`. They cut units. A lintel of half
+                a course or more lies over each, up to a bed joint, and bears on half a unit on either side.
             gable: courses above the walls, each of which is a unit shorter than the one below, 0 to as many as there
-                are. The first is as long as the facade, or a unit shorter over an odd number of courses.
+                are. The first is as long as the facade, or shorter by the corners over an odd number of courses.
+            ground: a fixed block with its upper face at z = 0; None is ground that reaches two heights beyond.
             density: mass density [kg/m3], 100 to 30000.
             options: further arguments of `Masonry`.
 
         Raises:
             ValueError: for a value outside its range, an opening that does not fit, or as `Masonry` does.
         """
-        return cls(facade_of(length, height, depth, unit, openings, gable, density), **options)
+        require_kind("ground", ground, Polyhedron, type(None))
+        walls = walls_of(length, height, depth, unit, thickness=thickness, returns=returns, gable=gable)
+        return cls(facade_of(walls, openings, density, ground), **options)
 
     @classmethod
     def from_obj(
