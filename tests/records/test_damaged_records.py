@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from everyday import slow
 from record_files import AT2, FORMATS, HEADS, NUMBERS, READ, SAMPLES, body, written
 
 
@@ -145,3 +146,85 @@ def test_a_unit_off_by_a_thousand_warns(tmp_path, ending):
         UserWarning, match=r"(a|IT AMT HGE EMSC.*) peaks at [\d.]+ m/s2 = [\d.]+ g; accelerations are in m/s2"
     ):
         READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + "\n".join(lines)))
+
+
+WORDS = [
+    "nan",
+    "-inf",
+    "1e999",
+    "1D-02",
+    "NPTS",
+    ":",
+    "=",
+    "\t",
+    ",",
+    ";",
+    "#",
+    "0x1",
+    "\u0661",
+    "\x1a",
+    "\x0b",
+    "9" * 400,
+]
+UNITS = ["m/s2", "g", "CM/S^2", "", "0", "-1", "6.5", "1e-9", "VELOCITY"]
+
+
+def changed(rng, text):
+    """A file with one to four damages: bytes, words, lines, its header, its end."""
+    for _ in range(int(rng.integers(1, 5))):
+        lines = text.split("\n")
+        i, j = (int(k) for k in rng.integers(len(lines), size=2))
+        words = lines[i].split(" ")
+        kind = int(rng.integers(9))
+        if kind == 0:
+            k = int(rng.integers(len(text) + 1))
+            text = text[:k] + chr(int(rng.integers(1, 0x250))) + text[k + int(rng.integers(3)) :]
+        elif kind == 1:
+            text = text[: int(rng.integers(len(text) + 1))]
+        elif kind == 2:
+            words[int(rng.integers(len(words)))] = str(rng.choice(WORDS))
+        elif kind == 3:
+            words[-1] = str(rng.choice(UNITS))
+        elif kind == 4:
+            lines[i], lines[j] = lines[j], lines[i]
+        elif kind == 5:
+            del lines[i]
+        elif kind == 6:
+            lines.insert(j, lines[i])
+        elif kind == 7:
+            text = text.replace("\n", str(rng.choice(["\r", "\r\n", " ", "\n\n"])), int(rng.integers(1, 9)))
+        else:
+            text += body(str(rng.choice(list(READ))))
+        if kind in (2, 3):
+            lines[i] = " ".join(words)
+        if kind in (2, 3, 4, 5, 6):
+            text = "\n".join(lines)
+    return text
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("count", [40, slow(1000)])
+@FORMATS
+def test_any_damage_is_read_or_named(tmp_path, ending, count):
+    """A damaged file gives finite accelerations, or a ValueError that begins with its name."""
+    rng = np.random.default_rng(5)
+    path, refused = tmp_path / f"a.{ending}", 0
+    for _ in range(count):
+        content = changed(rng, HEADS[ending] + body(ending)).encode(str(rng.choice(["utf-8", "latin-1"])), "replace")
+        if rng.random() < 0.2:
+            k = int(rng.integers(len(content) + 1))
+            content = content[:k] + rng.bytes(3) + content[k:]
+        written(path, content)
+        motion, said = None, ""
+        try:
+            motion = READ[ending](path)
+        except ValueError as error:
+            said = str(error)
+        if motion is None:
+            assert said.startswith(f"{path}: "), content
+            assert said.isprintable(), content
+            refused += 1
+        else:
+            assert np.isfinite(motion.accel).all()
+            assert len(motion.accel) >= 2
+    assert 0.3 * count < refused < count
