@@ -155,9 +155,33 @@ def plausible(rng):
     thickness = rng.uniform(0.3, 1.2)
     height = thickness * rng.uniform(5, 15)
     length, density = rng.uniform(1, 12), rng.uniform(1300, 2600)
-    wall = mr.Block.from_size(thickness, height, length, density, inset=rng.choice([0.0, 0.02]))
+    gable = (
+        mr.Gable(rng.uniform(0.1, 0.3) * height, top=rng.choice([0.0, 0.3 * length])) if rng.random() < 0.3 else None
+    )
+    openings = (
+        [mr.Opening(rng.uniform(0.2, 0.4) * length, rng.uniform(0.2, 0.4) * height)] if rng.random() < 0.4 else []
+    )
+    if rng.random() < 0.3:
+        wide = rng.uniform(0.15, 0.3) * min(length, height)
+        openings.append(mr.Opening(wide, wide, sill=rng.uniform(0.42, 0.5) * height, round=True))
+    options = {"inset": rng.choice([0.0, 0.02]), "openings": openings, "gable": gable}
+    wall = mr.Block.from_size(thickness, height, length, density, **options)
     effects = []
-    if rng.random() < 0.5:
+    if rng.random() < 0.3:
+        bar = (
+            rng.uniform(0.4, 1.0) * height,
+            rng.uniform(0.012, 0.036),
+            rng.choice([235e6, 355e6, 450e6]),
+            rng.uniform(1, 12),
+        )
+        masonry = {"shear_strength": rng.uniform(20e3, 100e3), "compressive_strength": rng.uniform(1e6, 5e6)}
+        chosen = {
+            "number": int(rng.integers(1, 4)),
+            "ultimate": rng.choice([0.02, 0.1]),
+            "slack": rng.choice([0.0, 0.005]),
+        }
+        effects.append(mr.Tie.of_bar(*bar, plate=rng.uniform(0.15, 0.4), thickness=thickness, **masonry, **chosen))
+    elif rng.random() < 0.5:
         section, reach = np.pi / 4 * rng.uniform(0.012, 0.036) ** 2, rng.uniform(1, 12)
         effects.append(
             mr.Tie(
@@ -186,7 +210,7 @@ def plausible(rng):
 
 @pytest.mark.slow
 def test_two_thousand_plausible_cases_raise_no_false_alarm():
-    """Peaks of 0.1 to 0.8 g, walls of 0.3 to 1.2 m and a slenderness of 5 to 15; at most 1 % warn.
+    """Peaks of 0.1 to 0.8 g, walls of 0.3 to 1.2 m and a slenderness of 5 to 15; less than 0.5 % warn.
 
     A tie as low as 0.4 of the height is warned of rightly where the part above it is the weaker: that is not an alarm.
     """
@@ -207,4 +231,4 @@ def test_two_thousand_plausible_cases_raise_no_false_alarm():
         low += [asked for text in said if text.startswith("the highest tie holds at ")]
     print(f"{len(alarms)} alarms in {made} cases, and {len(low)} whose tie is too low")
     assert all(asked.each(mr.Tie)[0].height < 1.2 * asked.wall.h for asked in low)
-    assert len(alarms) <= 0.01 * made, alarms[:5]
+    assert len(alarms) < 0.005 * made, alarms[:5]
