@@ -91,6 +91,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
         apart = dot(normal, across)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], apart)
+        line.widest = max(line.widest, apart)
     left = False
     for pair in range(len(slip)):
         left = left or max(slip[pair], gap[pair]) > wear.left[pair]
