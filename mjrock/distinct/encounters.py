@@ -199,25 +199,27 @@ class Encounters:
         worn, stays = of_gone[:count], ~of_gone[count:]
         if len(system.bonds):
             released(joints, system.bonds, worn)
-        before, new = held(system, of_gone), rows(self.kind, len(number), group=self.group, margin=np.inf)
+        pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
+        which = which[np.argsort(pair[which], kind="stable")]
+        slack, size = np.append(np.zeros(count), met.slack), len(number)
+        gone = Lines(lines[which], slack[which], np.empty(len(which)))
+        new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
+        before = held(system, which, gone.depth)
         for name, column in self._law(found, number, poses, system, h).items():
-            new[name] = column
-        pair = np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays])
-        order = np.argsort(pair, kind="stable")
-        gone = Lines(lines[of_gone][order], np.append(np.zeros(int(worn.sum())), met.slack[~stays])[order])
-        pairs, fresh = Pairs.of(number, pair[order]), Lines(new, np.zeros(len(number)))
-        hand_over(fresh, found, gone, pairs, self.blocks._replace(poses=poses), system.axes)
+            new.rows[name] = column
+        blocks = self.blocks._replace(poses=poses)
+        hand_over(new, found, gone, Pairs.of(number, pair[which]), blocks, system.axes)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
         joints["margin"][worn] = np.inf  # no step looks at such a line again
-        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], fresh.slack)
+        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.found = np.append(met.found[stays], self._moves_of(number))
-        lines = joined(joints, others[stays], np.asarray(new))
+        lines = joined(joints, others[stays], np.asarray(new.rows))
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
-        system, of_new = system._replace(lines=lines, ways=ways), np.arange(len(lines)) >= len(lines) - len(number)
-        books.ends[1] += before - held(system, of_new)
+        system = system._replace(lines=lines, ways=ways)
+        books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:

@@ -1,7 +1,7 @@
 """Handover: lines at places that were found, which take the place of those of their pair that are gone.
 
-A new line starts with the force of the line of its pair that was nearest to it, so that a find puts no energy in, and
-takes over the friction of those to which it is the nearest one.
+The new lines of a pair start with no more force and energy than those before them had, so that a find puts no energy
+in, and each takes over the friction of those to which it is the nearest one.
 """
 
 from __future__ import annotations
@@ -59,10 +59,11 @@ class Blocks(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Lines beyond the joints, and what presses nothing of the overlap of each [m], shape (n,)."""
+    """Lines of pairs, what presses nothing of the overlap of each [m], and what does [m], shape (n,) each."""
 
     rows: Rows
     slack: Array
+    depth: Array
 
 
 class Pairs(NamedTuple):
@@ -177,21 +178,36 @@ def nearest(
 
 
 @jitable
-def slack_of(
-    i: int, k: float, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
+def pressed_at(
+    i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
 ) -> float:
-    """What presses nothing of the overlap of place i, of stiffness k [m], see `hand_over`."""
+    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`."""
     overlap: float = max(-found.gap[i], 0.0)
     face, other = found.face[i], found.other[i]
     if overlap == 0 or ends[0] == ends[1]:
-        return overlap
+        return 0.0
     j, off = nearest(gone.rows, ends, vector(found.place, i, axes), face + other, blocks, axes)
     there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
     alike = sense * there.sense * dot(vector(found.normal, i, axes), there.normal)
     if off >= BESIDE * min(blocks.sizes[face], blocks.sizes[other]) or alike <= ALIKE:
-        return overlap
-    overlap -= (overlap - min(overlap, gone.slack[j])) * min(gone.rows[j].k / max(k, 1e-300), 1.0)
-    return overlap
+        return 0.0
+    pressed: float = max(overlap - gone.slack[j], 0.0)
+    return pressed
+
+
+@jitable
+def press(new: Lines, places: tuple[int, int], gone: Lines, ends: tuple[int, int]) -> None:
+    """Let the places of a pair press no more in all, and hold no more energy, than the lines that are gone."""
+    force = energy = had = held = 0.0
+    for j in range(ends[0], ends[1]):
+        had += gone.rows[j].k * gone.depth[j]
+        held += gone.rows[j].k * gone.depth[j] ** 2
+    for i in range(places[0], places[1]):
+        force += new.rows[i].k * new.depth[i]
+        energy += new.rows[i].k * new.depth[i] ** 2
+    share = min(1.0, had / force, math.sqrt(held / energy)) if force > 0 else 0.0
+    for i in range(places[0], places[1]):
+        new.depth[i] *= share
 
 
 @jitable
@@ -255,12 +271,12 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
     """Write the lines of places, and let them take over what the lines of their pair had that are gone.
 
     What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
-    as long as it has it. So what a look has missed, or what touched at rest without a joint, puts no energy in. Where a
-    place is stiffer than the line before it, it starts with the same force. Each line that is gone gives all that it
-    has along its face to the nearest new one, so that the forces of a pair stay.
+    as long as it has it. So what a look has missed, or what touched at rest without a joint, puts no energy in. The
+    places of a pair press no more in all than the lines before them, and hold no more energy. Each line that is gone
+    gives all that it has along its face to the nearest new one, so that the forces of a pair stay.
 
     Args:
-        new: rows with the law of each place, and room for the slack.
+        new: rows with the law of each place, and room for what presses of its overlap and what does not.
         found: the places, those of a pair together.
         gone: the lines that are gone, in the order of their pairs.
         pairs: which of both belong together.
@@ -271,7 +287,10 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
         both = found.face[begin] + found.other[begin]
         for i in range(begin, end):
-            new.slack[i] = slack_of(i, new.rows[i].k, found, gone, ends, blocks, axes)
+            new.depth[i] = pressed_at(i, found, gone, ends, blocks, axes)
+        press(new, (begin, end), gone, ends)
+        for i in range(begin, end):
+            new.slack[i] = max(-found.gap[i], 0.0) - new.depth[i]
             write_line(new.rows[i], i, new.slack[i], found, blocks, axes)
         for j in range(ends[0], ends[1]):
             old = gone.rows[j]
@@ -280,7 +299,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
                 i, _ = nearest(new.rows, (begin, end), there.at, both, blocks, axes)
                 give(old, new.rows[i], there, place_of(new.rows[i], both, blocks, axes), blocks.poses, axes)
         for i in range(begin, end):
-            line, pressed = new.rows[i], max(-found.gap[i] - new.slack[i], 0.0)
+            line = new.rows[i]
             if line.k_s < math.inf:
-                most = shear_limit(line, line.k * pressed) / line.k_s
+                most = shear_limit(line, line.k * new.depth[i]) / line.k_s
                 put(line.grip, shortened(spin_components(line.grip, axes), most))

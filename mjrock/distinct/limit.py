@@ -91,66 +91,48 @@ class Sides(NamedTuple):
 
 
 @inlined
-def product(a: Vector, matrix: Array, b: Vector) -> float:
-    """a M b."""
-    total = 0.0
-    for i in range(len(a)):
-        for j in range(len(b)):
-            total += a[i] * matrix[i, j] * b[j]
-    return total
-
-
-@inlined
-def add_spring(sides: Sides, p: int, way: Vector, k: float, inverse: Array, stiffness: Array) -> None:
-    """Add a spring of stiffness k at place p along a way to the stiffness of both bodies. It counts in each of them,
-    stiffer by what both yield over what this one does."""
-    first, second = sides.bodies[0, p], sides.bodies[1, p]
-    rate, other = way + moment(vector(sides.arms[0], p, way), way), way + moment(vector(sides.arms[1], p, way), way)
-    own = product(rate, inverse[first], rate) if first >= 0 else 0.0
-    of_other = product(other, inverse[second], other) if second >= 0 else 0.0
-    if own > 0:
-        add_square(stiffness[first], k * (own + of_other) / own, rate)
-    if of_other > 0:
-        add_square(stiffness[second], k * (own + of_other) / of_other, other)
-
-
-@inlined
-def add_square(matrix: Array, factor: float, a: Vector) -> None:
-    """Add factor a a^T to a matrix."""
-    for i in range(len(a)):
-        for j in range(len(a)):
-            matrix[i, j] += factor * a[i] * a[j]
+def add_spring(sides: Sides, p: int, way: Vector, k: float, shares: Array, stiffness: Array) -> None:
+    """Add a spring of stiffness k at place p along a way to the stiffness of both bodies, over their shares of it."""
+    for side in range(2):
+        body = sides.bodies[side, p]
+        if body >= 0:
+            rate, k_here = way + moment(vector(sides.arms[side], p, way), way), k / shares[side, p]
+            for i in range(len(rate)):
+                for j in range(len(rate)):
+                    stiffness[body, i, j] += k_here * rate[i] * rate[j]
 
 
 @compiled
 def add_springs(
-    sides: Sides, along: Array, across: Array, inverse: Array, stiffness: Array, axes: tuple[int, ...]
+    sides: Sides, along: Array, across: Array, shares: Array, stiffness: Array, axes: tuple[int, ...]
 ) -> None:
     """Add springs at places to the stiffness of their bodies, in the axes of the world, shape (bodies, nv, nv).
 
     Args:
         sides: the two blocks of each place.
         along, across: stiffness along the normal and along the face of each place, shape (n,).
-        inverse: of the masses of each body, shape (bodies, nv, nv).
-        stiffness: of each body, likewise.
+        shares: of each spring that its two bodies take, shape (2, n).
+        stiffness: of each body, shape (bodies, nv, nv).
         axes: of the system.
     """
     for p in range(len(along)):
         normal = vector(sides.normals, p, axes)
-        add_spring(sides, p, normal, along[p], inverse, stiffness)
+        add_spring(sides, p, normal, along[p], shares, stiffness)
         if across[p] > 0:
             if len(axes) == 2:
-                add_spring(sides, p, tangent(normal), across[p], inverse, stiffness)
+                add_spring(sides, p, tangent(normal), across[p], shares, stiffness)
             else:
                 for way in tangents(normal):
-                    add_spring(sides, p, way, across[p], inverse, stiffness)
+                    add_spring(sides, p, way, across[p], shares, stiffness)
 
 
 def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: float) -> Array:
     """Share of its stiffness and damping with which each place leaves a step stable, at most 1, shape (n,).
 
-    Each body is bounded alone. The trace of a power of a matrix bounds its highest eigenvalue, here by an eighth more
-    than it is at most.
+    Each body is bounded alone. For this a spring between two bodies is taken as two, one on each body with the other
+    one held, which together are never softer: (a - b)^2 <= a^2 / s + b^2 / (1 - s) for any share s. The shares go as
+    what all springs of each body are over its masses, so that a heavy body on many light ones is not softened for them.
+    The trace of a power of a matrix bounds its highest eigenvalue.
 
     Args:
         sides: the two blocks of each place.
@@ -158,16 +140,26 @@ def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: flo
         inverse: of the masses of each body in the axes of the world, shape (bodies, nv, nv).
         step: that is to be stable [s].
     """
+    along = step**2 * law["k"] + 2 * step * law["c"]
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
-    stiffness, axes = np.zeros_like(inverse), tuple(range(sides.normals.shape[1]))
-    add_springs(sides, step**2 * law["k"] + 2 * step * law["c"], across, inverse, stiffness, axes)
-    rates, share = inverse @ stiffness, np.ones(len(inverse) + 1)  # the last one is that of fixed blocks
-    doubtful = np.flatnonzero(np.trace(rates, axis1=1, axis2=2) > 4)
-    power = rates[doubtful]
+
+    def rates(shares: Array) -> Array:
+        stiffness, axes = np.zeros_like(inverse), tuple(range(sides.normals.shape[1]))
+        add_springs(sides, along, across, shares, stiffness, axes)
+        return np.asarray(inverse @ stiffness)
+
+    loads = np.append(_traces(rates(np.ones(sides.bodies.shape))), 0.0)[sides.bodies]  # zero for fixed blocks
+    split = rates(np.where(loads > 0, loads / np.maximum(loads.sum(axis=0), 1e-300), 1.0))
+    doubtful, share = np.flatnonzero(_traces(split) > 4), np.ones(len(inverse) + 1)
+    power = split[doubtful]
     for _ in range(SQUARED):
         power = power @ power
-    share[doubtful] = 4 / np.maximum(np.trace(power, axis1=1, axis2=2) ** (0.5**SQUARED), 4.0)
+    share[doubtful] = 4 / np.maximum(_traces(power) ** (0.5**SQUARED), 4.0)
     return np.asarray(share[sides.bodies].min(axis=0))
+
+
+def _traces(matrices: Array) -> Array:
+    return np.asarray(np.trace(matrices, axis1=1, axis2=2))
 
 
 def link_rates(links: Rows, bodies: int) -> csr_array:
