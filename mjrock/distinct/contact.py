@@ -178,7 +178,7 @@ def press_lines(
     for p in range(len(lines)):
         line = lines[p]
         if line.k == 0 and line.margin == math.inf:
-            continue  # its bond is intact, see `bonds`
+            continue  # its bond is intact, see `bonds`, or it is handed over, see `encounters`
         meet = meeting(system, line, axes)
         if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, 0.0 if meet.past else meet.gap)

@@ -19,13 +19,14 @@ from ..problem.masonry.masonry import Masonry
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
-from .handover import ContactPlaces, Poses, in_pairs, places_of, take_over
-from .limit import Side, shares_within, sums_of_yields, ways_of, yields_of
-from .looking import Wear, held, nearest, wears
-from .pair_law import SHARED, PairLaw, are_among, pair_number
-from .rows import POINT, Rows, joined, rows
+from .handover import Blocks, Lines, Pairs, hand_over
+from .limit import Sides, shares_within
+from .looking import Wear, held, wears
+from .pair_law import SHARED, PairLaw, pair_number
+from .rows import joined, rows
+from .solids import Poses
 from .system import Books, System
-from .turning import quaternions, roots_of_masses, rotations
+from .turning import inverse_masses, rotations
 
 LOOK, SOONEST = 5e-3, 5e-4
 """Longest and shortest time between two looks [s]."""
@@ -37,19 +38,12 @@ STAYED = 2e-4
 """Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
 SURE = 2.0
 """Way within which places are kept until the next look, over that which speeds alone make [-]."""
-BESIDE = 0.2
-"""Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
-ALIKE = 0.7
-"""Cosine of the angle between the normals of two places that are the same [-]."""
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
 without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
 STABLE = 0.5
 """Longest step over the longest one with which the places of a block alone are stable [-]. Intact joints, and places of
 blocks that have not moved, act on it besides."""
-PROVED, FADING = 1.2, 0.97
-"""What the sum of `limit.sums_of_yields` of a body may grow by until its places are looked at again, and share of that
-which is left at the next look [-]."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
 TOWARDS = 0.4
@@ -68,7 +62,6 @@ class Met:
         poses: where each block was when it was last taken to have moved.
         moves: how often it has, shape (blocks,).
         found: moves of both blocks when each line was found, shape (lines,).
-        proved: sum of `limit.sums_of_yields` up to which the places of each body are known to be stable, (bodies,).
     """
 
     watched: Flags
@@ -78,7 +71,6 @@ class Met:
     poses: Poses
     moves: Integers
     found: Integers
-    proved: Array
 
 
 class Encounters:
@@ -93,19 +85,19 @@ class Encounters:
     def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
         blocks = masonry.blocks
         self.count, self.group = len(blocks), len(masonry.joints)
-        self.body, self.free = free_numbers(blocks), np.array(masonry.free)
-        self.names, self.support = masonry.names, np.full(len(blocks), -1)
-        self.drawn = np.array(masonry.centroids, dtype=float)
-        self.sizes = np.array([block.size for block in blocks])
-        self.finder = Finder(blocks, self.drawn)
+        self.names, self.sizes, self.free = masonry.names, np.array([block.size for block in blocks]), masonry.free
+        body, drawn = free_numbers(blocks), np.array(masonry.centroids, dtype=float)
+        still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
+        fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
+        self.blocks = Blocks(still, self.sizes, np.array(self.free), body, fixed, np.full(self.count, -1))
+        self.finder = Finder(blocks, drawn)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
-        self.kind, self.start, self.roots = system.lines.dtype, self.poses(system), roots_of_masses(system.bodies)
-        self.yields = yields_of(self.roots, len(system.axes))
-        self.limits, free, slip, gap = self._limits(), self.free, np.zeros(len(left)), np.zeros(len(left))
+        self.kind, self.start = system.lines.dtype, self.poses(system)
+        self.limits, free, slip, gap = self._limits(), self.blocks.free, np.zeros(len(left)), np.zeros(len(left))
         self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
         self.met = self._nothing_met()
 
@@ -115,15 +107,15 @@ class Encounters:
         Args:
             supports: names of the fixed blocks that move, in the order of the supports.
         """
-        fresh = copy(self)
-        fresh.support = np.array([supports.index(name) if name in supports else -1 for name in self.names])
+        fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
+        fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
         fresh.met = self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:
         none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(nobody, intact, none, np.zeros(0), self.start, unmoved, none, np.zeros(len(self.free)))
+        return Met(nobody, intact, none, np.zeros(0), self.start, unmoved, none)
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
@@ -141,20 +133,19 @@ class Encounters:
 
     def poses(self, system: System) -> Poses:
         """Where all blocks are."""
-        moved, turn = np.zeros_like(self.drawn), np.tile([1.0, 0.0, 0.0, 0.0], (self.count, 1))
-        d, moves = moved.shape[1], self.support >= 0
-        change = np.zeros((self.count, d, d))
-        moved[self.free] = system.bodies["place"]
-        turn[self.free], change[self.free] = quaternions(system.bodies), rotations(system.bodies)
-        moved[moves] = system.supports.moved[self.support[moves]]
-        return Poses(self.drawn, moved, turn, change)
+        blocks, still, d = self.blocks, self.blocks.poses, len(system.axes)
+        moved, change, moves = np.zeros((self.count, d)), np.zeros((self.count, d, d)), blocks.support >= 0
+        moved[blocks.free], change[blocks.free] = system.bodies["place"], rotations(system.bodies)
+        moved[moves] = system.supports.moved[blocks.support[moves]]
+        return Poses(still.drawn, moved, change)
 
     def _velocities(self, system: System) -> tuple[Array, Array]:
         """Velocity of each block, and the largest of a corner about its centroid [m/s], (blocks, d) and (blocks,)."""
-        velocity, about, moves = np.zeros_like(self.drawn), np.zeros(self.count), self.support >= 0
-        velocity[self.free] = system.bodies["velocity"]
-        velocity[moves] = system.supports.moving[self.support[moves]]
-        about[self.free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[self.free]
+        free, support = self.blocks.free, self.blocks.support
+        velocity, about, moves = np.zeros((self.count, len(system.axes))), np.zeros(self.count), support >= 0
+        velocity[free] = system.bodies["velocity"]
+        velocity[moves] = system.supports.moving[support[moves]]
+        about[free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[free]
         return velocity, about
 
     def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, float]:
@@ -208,116 +199,41 @@ class Encounters:
         worn, stays = of_gone[:count], ~of_gone[count:]
         if len(system.bonds):
             released(joints, system.bonds, worn)
-        before, gone = held(system, of_gone), lines[of_gone]
-        old = places_of(gone, np.append(self.law.jointed[self.wear.pairs[worn]], met.pair[~stays]), poses, self.free)
-        gone_slack = np.append(np.zeros(int(worn.sum())), met.slack[~stays])
-        law = self._stable(self.law.of_places(number, found.share, found.area, self.count), found, poses, h)
-        slack = self._slack(found, number, old, gone_slack, gone["k"], law["k"])
-        new = self._lines(found, law, slack, poses)
-        pressed = np.maximum(-found.gap - slack, 0.0)
-        take_over(new, places_of(new, number, poses, self.free), pressed, gone, old, poses)
+        pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
+        which = which[np.argsort(pair[which], kind="stable")]
+        slack, size = np.append(np.zeros(count), met.slack), len(number)
+        gone = Lines(lines[which], slack[which], np.empty(len(which)))
+        new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
+        before = held(system, which, gone.depth)
+        for name, column in self._law(found, number, poses, system, h).items():
+            new.rows[name] = column
+        blocks = self.blocks._replace(poses=poses)
+        hand_over(new, found, gone, Pairs.of(number, pair[which]), blocks, system.axes)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
-        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], slack)
+        joints["margin"][worn] = np.inf  # no step looks at such a line again
+        met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.found = np.append(met.found[stays], self._moves_of(number))
-        lines = joined(joints, others[stays], new)
+        lines = joined(joints, others[stays], np.asarray(new.rows))
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
-        system, of_new = system._replace(lines=lines, ways=ways), np.arange(len(lines)) >= len(lines) - len(number)
-        books.ends[1] += before - held(system, of_new)
+        system = system._replace(lines=lines, ways=ways)
+        books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
         """Moves of both blocks of pairs."""
         return np.asarray(self.met.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
-    def _lines(self, found: Found, law: dict[str, Array], slack: Array, poses: Poses) -> Rows:
-        """New lines at places that were found."""
-        face, normal, block = found.face, found.normal, found.other
-        point = self.body[block] < 0
-        face, block = np.where(point, block, face), np.where(point, face, block)
-        normal = np.where(point[:, None], -1.0, 1.0) * normal
-        half = 0.5 * found.gap[:, None] * normal
-        held, at_centroid = self.body[face] < 0, poses.drawn + poses.moved
-        at = poses.turned_back(block, found.place + half - at_centroid[block])
-        origin = found.place - half - slack[:, None] * normal
-        origin = np.where(
-            held[:, None], origin - poses.moved[face], poses.turned_back(face, origin - at_centroid[face])
-        )
-        rest = np.where(held[:, None], 0.0, self.drawn[face])
-        lines = rows(
-            self.kind,
-            len(found.gap),
-            body=self.body[block],
-            face=np.where(point, POINT, self.body[face]),
-            support=self.support[face],
-            group=self.group,
-            fixed=np.where(held, np.cumsum(self.body < 0)[face] - 1, -1),
-            at=at,
-            origin=origin,
-            between=self.drawn[block] + at - rest - origin,
-            normal=np.where((held & ~point)[:, None], normal, poses.turned_back(np.where(point, block, face), normal)),
-            margin=np.inf,
-            **law,
-        )
-        return np.asarray(lines)
-
-    def _stable(self, law: dict[str, Array], found: Found, poses: Poses, h: float) -> dict[str, Array]:
+    def _law(self, found: Found, number: Integers, poses: Poses, system: System, h: float) -> dict[str, Array]:
         """The law of places, softened where a step of h [s] asks for it."""
-        blocks = found.face, found.other
-        arms = [found.place - poses.drawn[block] - poses.moved[block] for block in blocks]
-        bodies = self.body[found.face], self.body[found.other]
-        sums = sums_of_yields(bodies, arms, law, self.yields, h / STABLE)
-        asked = (sums > 4) & (sums > self.met.proved)
-        self.met.proved = np.where(asked, PROVED * sums, FADING * self.met.proved)
-        pairs = np.stack(bodies)
-        doubtful = np.asarray(((pairs >= 0) & asked[pairs]).any(axis=0))
-        if not doubtful.any():
-            return law
-        ways = ways_of(found.normal[doubtful])
-        first, second = (
-            Side(
-                body[doubtful],
-                poses.turned_back(block[doubtful], arm[doubtful]),
-                tuple(poses.turned_back(block[doubtful], way) for way in ways),
-            )
-            for body, block, arm in zip(bodies, blocks, arms, strict=True)
-        )
-        share = np.ones(len(doubtful))
-        of_some = {name: law[name][doubtful] for name in SHARED}
-        share[doubtful] = shares_within((first, second), of_some, self.roots, h / STABLE)
-        self.met.proved[pairs[(pairs >= 0) & (share < 1)]] = 0.0
+        law = self.law.of_places(number, found.share, found.area, self.count)
+        blocks = np.array([found.face, found.other])
+        arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
+        sides = Sides(self.blocks.body[blocks], arms, found.normal)
+        share = shares_within(sides, law, inverse_masses(system.bodies, poses.change[self.blocks.free]), h / STABLE)
         return law | {name: share * law[name] for name in SHARED}
-
-    def _slack(
-        self, found: Found, pair: Integers, old: ContactPlaces, slack: Array, stiffness: Array, stiffer: Array
-    ) -> Array:
-        """What presses nothing of the overlap of each place [m], shape (n,).
-
-        It is the overlap of a place that no line was near, as long as it has it. So what a look has missed, or what
-        touched at rest without a joint, puts no energy in. Where a place is stiffer than the line before it, it starts
-        with the same force.
-
-        Args:
-            found, pair: the places, and the numbers of their pairs, shape (n,).
-            old, slack: lines that are gone, where they are, and what presses nothing of their overlap [m].
-            stiffness, stiffer: of the lines that are gone, and of the places [N/m].
-        """
-        overlap = np.maximum(-found.gap, 0.0)
-        pairs, order, first = in_pairs(old.pair)
-        known = np.flatnonzero(are_among(pair, pairs) & (overlap > 0))
-        chosen = np.empty(len(known), dtype=np.int64)
-        nearest(np.searchsorted(pairs, pair[known]), found.place[known], first, old.at[order], chosen)
-        there = order[chosen]
-        size = np.minimum(self.sizes[found.face[known]], self.sizes[found.other[known]])
-        beside = np.linalg.norm(old.at[there] - found.place[known], axis=1) < BESIDE * size
-        sense = np.where(found.other[known] > found.face[known], 1.0, -1.0)[:, None]
-        beside &= np.sum(sense * found.normal[known] * (old.sense * old.normal)[there], axis=1) > ALIKE
-        known, there = known[beside], there[beside]
-        pressed = overlap[known] - np.minimum(overlap[known], slack[there])
-        overlap[known] -= pressed * np.minimum(stiffness[there] / np.maximum(stiffer[known], 1e-300), 1.0)
-        return overlap
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

@@ -21,8 +21,7 @@ from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..quantities import Array, Flags, Integers
 from .clipping import clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
-from .handover import Poses
-from .solids import Solids, solids_of
+from .solids import Poses, Solids, solids_of
 
 EDGES = 0.8
 """Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""

@@ -1,150 +1,305 @@
-"""Handover: lines of a pair of blocks that take the place of others, with their friction."""
+"""Handover: lines at places that were found, which take the place of those of their pair that are gone.
+
+The new lines of a pair start with no more force and energy than those before them had, so that a find puts no energy
+in, and each takes over the friction of those to which it is the nearest one.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from ..quantities import Array, Flags, Integers
-from .looking import nearest
-from .pair_law import are_among
-from .rows import POINT, Rows
+from ..compiled import compiled, inlined, jitable
+from ..geometry.vectors import (
+    Vector,
+    components,
+    dot,
+    increase,
+    minus,
+    plus,
+    put,
+    scaled,
+    spin_components,
+    tangent,
+    vector,
+)
+from ..problem.masonry.joint_law import shear_limit
+from ..quantities import Array, Integers
+from .finder import Found
+from .friction import shortened
+from .rows import POINT, Row, Rows
+from .solids import Poses
+
+BESIDE = 0.2
+"""Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
+ALIKE = 0.7
+"""Cosine of the angle between the normals of two places that are the same [-]."""
 
 
-class Poses(NamedTuple):
-    """Where all blocks are.
-
-    Args:
-        drawn: the centroids as drawn [m], shape (blocks, d).
-        moved: their displacements from there [m], shape (blocks, d).
-        turn: quaternions, shape (blocks, 4).
-        change: rotations less 1, shape (blocks, d, d).
-    """
-
-    drawn: Array
-    moved: Array
-    turn: Array
-    change: Array
-
-    def far(self, other: Poses, sizes: Array) -> Array:
-        """How far a corner of each block may be from where it is in other poses [m], shape (blocks,)."""
-        way = np.linalg.norm(self.moved - other.moved, axis=1)
-        return np.asarray(way + np.linalg.norm(self.change - other.change, axis=(1, 2)) * sizes)
-
-    def turned(self, block: Integers, a: Array) -> Array:
-        """Vectors of blocks in the axes of the world, shape (n, d)."""
-        return np.asarray(a + np.einsum("nij,nj->ni", self.change[block], a))
-
-    def turned_back(self, block: Integers, a: Array) -> Array:
-        """Vectors of the world in the axes of blocks, shape (n, d)."""
-        return np.asarray(a + np.einsum("nji,nj->ni", self.change[block], a))
-
-
-class ContactPlaces(NamedTuple):
-    """Lines where they are.
+class Blocks(NamedTuple):
+    """All blocks, and the numbers by which they go.
 
     Args:
-        pair: number of the pair of blocks of each line, shape (n,).
-        body, face: blocks of their points and of their faces, shape (n,).
-        held: whether the face is that of a fixed block, shape (n,). Its vectors are those of the world.
-        at: the points [m], shape (n, d).
-        normal: out of the faces, shape (n, d).
-    """
-
-    pair: Integers
-    body: Integers
-    face: Integers
-    held: Flags
-    at: Array
-    normal: Array
-
-    @property
-    def sense(self) -> Array:
-        """1 where the point is on the second block of the pair, -1 where it is on the first, shape (n, 1)."""
-        return np.where(self.body > self.face, 1.0, -1.0)[:, None]
-
-
-def places_of(lines: Rows, pair: Integers, poses: Poses, free: Integers) -> ContactPlaces:
-    """Where lines are.
-
-    Args:
-        lines: the lines.
-        pair: number of the pair of blocks of each, shape (n,).
-        poses: of all blocks.
+        poses: where they are.
+        sizes: the largest distance of a corner from the centroid of each [m], shape (blocks,).
         free: the block of each body, shape (bodies,).
+        body: the body of each block, negative for a fixed one, shape (blocks,).
+        fixed: number of each fixed block among these, -1 for a body, shape (blocks,).
+        support: the support that moves each block, -1 for none, shape (blocks,).
     """
-    body, held, point = free[lines["body"]], lines["face"] < 0, (lines["face"] == POINT)[:, None]
-    face = np.sum(np.divmod(pair, len(poses.moved)), axis=0) - body
-    arm, origin = (poses.turned(block, lines[name]) for block, name in ((body, "at"), (face, "origin")))
-    way = arm - lines["at"] + poses.moved[body]
-    of_face = np.where(held[:, None], 0.0, origin - lines["origin"]) + poses.moved[face]
-    turns = np.where(point[:, 0], body, face)
-    normal = np.where(held[:, None] & ~point, lines["normal"], poses.turned(turns, lines["normal"]))
-    at = poses.drawn[body] + poses.moved[body] + arm - np.where(point, lines["between"] + way - of_face, 0.0)
-    return ContactPlaces(pair, body, face, held, at, normal)
+
+    poses: Poses
+    sizes: Array
+    free: Integers
+    body: Integers
+    fixed: Integers
+    support: Integers
 
 
-def in_pairs(pair: Integers) -> tuple[Integers, Integers, Integers]:
-    """Numbers of the pairs of lines, an order of the lines by pair, and where each pair begins and ends in it."""
-    order = np.argsort(pair, kind="stable")
-    pairs, first = np.unique(pair[order], return_index=True)
-    return pairs, order, np.append(first, len(order))
+class Lines(NamedTuple):
+    """Lines of pairs, what presses nothing of the overlap of each [m], and what does [m], shape (n,) each."""
+
+    rows: Rows
+    slack: Array
+    depth: Array
 
 
-def take_over(lines: Rows, new: ContactPlaces, overlap: Array, gone: Rows, old: ContactPlaces, poses: Poses) -> None:
-    """Let lines take over the friction, and the push of the last step, of those of their pair that are gone.
-
-    Each line that is gone gives all that it has to the nearest one, so that the forces of a pair stay.
+class Pairs(NamedTuple):
+    """Which places and which lines that are gone belong to the same two blocks.
 
     Args:
-        lines, new: the lines, and where they are.
-        overlap: what presses of each line [m], shape (n,). Springs along the face hold no more than friction allows.
-        gone, old: those that are gone, and where they are.
-        poses: of all blocks.
+        first: where the places of each pair begin, and where those of the last end, shape (pairs + 1,).
+        low, high: where the lines of each pair that are gone begin and end, shape (pairs,) each.
     """
-    pairs, order, first = in_pairs(new.pair)
-    source = np.flatnonzero(are_among(old.pair, pairs) & ((gone["push"] != 0) | (gone["depth"] > 0)))
-    chosen = np.empty(len(source), dtype=np.int64)
-    nearest(np.searchsorted(pairs, old.pair[source]), old.at[source], first, new.at[order], chosen)
-    target = order[chosen]
-    for name in ("push", "pressed"):
-        np.add.at(lines[name], target, gone[name][source])
-    np.maximum.at(lines["depth"], target, gone["depth"][source])
-    lines["rate"][target] = gone["rate"][source]
-    before, after = _some(old, source), _some(new, target)
-    for name in ("grip", "dragged"):
-        turns = name == "grip"
-        along = _in_world(gone[name][source], before, poses, turns=turns)
-        along = _of_line(after.sense * before.sense * along, after, poses, turns=turns)
-        if turns:  # what springs are stretched by is kept, and of rigid friction the force
-            sprung = np.isfinite(lines["k_s"][target])
-            along[sprung] *= (gone["k_s"][source][sprung] / lines["k_s"][target][sprung])[:, None]
-        np.add.at(lines[name], target, along)
-    sprung = np.flatnonzero(np.isfinite(lines["k_s"]))
-    most = lines["friction"][sprung] * lines["k"][sprung] * overlap[sprung] / lines["k_s"][sprung]
-    stretch = np.linalg.norm(lines["grip"][sprung], axis=1)
-    lines["grip"][sprung] *= np.minimum(most / np.maximum(stretch, 1e-300), 1.0)[:, None]
+
+    first: Integers
+    low: Integers
+    high: Integers
+
+    @classmethod
+    def of(cls, places: Integers, gone: Integers) -> Pairs:
+        """From the number of the pair of each place, where those of a pair stand together, and of each line that is
+        gone, where they increase."""
+        first = np.concatenate([[0], np.flatnonzero(np.diff(places)) + 1, [len(places)]])
+        pairs = places[first[:-1]] if len(places) else places
+        return cls(first, *(np.searchsorted(gone, pairs, side) for side in ("left", "right")))
 
 
-def _some(places: ContactPlaces, which: Integers) -> ContactPlaces:
-    return ContactPlaces._make(part[which] for part in places)
+@inlined
+def turned(poses: Poses, block: int, a: Vector) -> Vector:
+    """A vector of a block in the axes of the world."""
+    change = poses.change[block]
+    if len(a) == 2:
+        return (
+            a[0] + change[0, 0] * a[0] + change[0, 1] * a[1],
+            a[1] + change[1, 0] * a[0] + change[1, 1] * a[1],
+        )
+    return (
+        a[0] + change[0, 0] * a[0] + change[0, 1] * a[1] + change[0, 2] * a[2],
+        a[1] + change[1, 0] * a[0] + change[1, 1] * a[1] + change[1, 2] * a[2],
+        a[2] + change[2, 0] * a[0] + change[2, 1] * a[1] + change[2, 2] * a[2],
+    )
 
 
-def _in_world(along: Array, places: ContactPlaces, poses: Poses, *, turns: bool) -> Array:
-    """Vectors of the world from what lines keep along their faces, in the axes of the face if it `turns` with it."""
-    if along.shape[1] == 1:
-        return np.asarray(along * _tangents(places))
-    return np.where(places.held[:, None] | (not turns), along, poses.turned(places.face, along))
+@inlined
+def turned_back(poses: Poses, block: int, a: Vector) -> Vector:
+    """A vector of the world in the axes of a block."""
+    change = poses.change[block]
+    if len(a) == 2:
+        return (
+            a[0] + change[0, 0] * a[0] + change[1, 0] * a[1],
+            a[1] + change[0, 1] * a[0] + change[1, 1] * a[1],
+        )
+    return (
+        a[0] + change[0, 0] * a[0] + change[1, 0] * a[1] + change[2, 0] * a[2],
+        a[1] + change[0, 1] * a[0] + change[1, 1] * a[1] + change[2, 1] * a[2],
+        a[2] + change[0, 2] * a[0] + change[1, 2] * a[1] + change[2, 2] * a[2],
+    )
 
 
-def _of_line(along: Array, places: ContactPlaces, poses: Poses, *, turns: bool) -> Array:
-    """What lines keep of vectors of the world, see `_in_world`."""
-    if along.shape[1] == 2:
-        return np.asarray(np.sum(along * _tangents(places), axis=1, keepdims=True))
-    return np.where(places.held[:, None] | (not turns), along, poses.turned_back(places.face, along))
+@inlined
+def centroid(poses: Poses, block: int, axes: Vector) -> Vector:
+    """Where the centroid of a block is [m]."""
+    return plus(vector(poses.drawn, block, axes), vector(poses.moved, block, axes))
 
 
-def _tangents(places: ContactPlaces) -> Array:
-    """Directions along the faces of the plane, see `geometry.vectors.tangent`."""
-    return np.column_stack([places.normal[:, 1], -places.normal[:, 0]])
+class Place(NamedTuple):
+    """Where a line is.
+
+    Args:
+        at: its point [m].
+        normal: out of the face.
+        face: the block of the face.
+        sense: 1 where the point is on the block of the pair with the higher number, otherwise -1.
+    """
+
+    at: Vector
+    normal: Vector
+    face: int
+    sense: float
+
+
+@inlined
+def place_of(line: Row, both: int, blocks: Blocks, axes: tuple[int, ...]) -> Place:
+    """Where a line is, of a pair of blocks whose numbers have some sum."""
+    poses, block = blocks.poses, blocks.free[line.body]
+    face, normal, own = both - block, components(line.normal, axes), components(line.at, axes)
+    arm = turned(poses, block, own)
+    at = plus(centroid(poses, block, axes), arm)
+    if line.face == POINT:
+        way = minus(plus(minus(arm, own), vector(poses.moved, block, axes)), vector(poses.moved, face, axes))
+        at, normal = minus(at, plus(components(line.between, axes), way)), turned(poses, block, normal)
+    elif line.face >= 0:
+        normal = turned(poses, face, normal)
+    return Place(at, normal, face, 1.0 if block > face else -1.0)
+
+
+@jitable
+def nearest(
+    lines: Rows, ends: tuple[int, int], at: Vector, both: int, blocks: Blocks, axes: tuple[int, ...]
+) -> tuple[int, float]:
+    """Which of the lines of a pair is nearest to a place, -1 where there is none, and its distance [m].
+
+    Args:
+        lines, ends: lines, and where those of the pair begin and end.
+        at: the place [m].
+        both: sum of the numbers of the two blocks.
+        blocks: all blocks.
+        axes: of the system.
+    """
+    best, least = -1, math.inf
+    for j in range(ends[0], ends[1]):
+        off = minus(place_of(lines[j], both, blocks, axes).at, at)
+        if dot(off, off) < least:
+            best, least = j, dot(off, off)
+    return best, math.sqrt(least)
+
+
+@jitable
+def pressed_at(
+    i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
+) -> float:
+    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`."""
+    overlap: float = max(-found.gap[i], 0.0)
+    face, other = found.face[i], found.other[i]
+    if overlap == 0 or ends[0] == ends[1]:
+        return 0.0
+    j, off = nearest(gone.rows, ends, vector(found.place, i, axes), face + other, blocks, axes)
+    there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
+    alike = sense * there.sense * dot(vector(found.normal, i, axes), there.normal)
+    if off >= BESIDE * min(blocks.sizes[face], blocks.sizes[other]) or alike <= ALIKE:
+        return 0.0
+    pressed: float = max(overlap - gone.slack[j], 0.0)
+    return pressed
+
+
+@jitable
+def press(new: Lines, places: tuple[int, int], gone: Lines, ends: tuple[int, int]) -> None:
+    """Let the places of a pair press no more in all, and hold no more energy, than the lines that are gone."""
+    force = energy = had = held = 0.0
+    for j in range(ends[0], ends[1]):
+        had += gone.rows[j].k * gone.depth[j]
+        held += gone.rows[j].k * gone.depth[j] ** 2
+    for i in range(places[0], places[1]):
+        force += new.rows[i].k * new.depth[i]
+        energy += new.rows[i].k * new.depth[i] ** 2
+    share = min(1.0, had / force, math.sqrt(held / energy)) if force > 0 else 0.0
+    for i in range(places[0], places[1]):
+        new.depth[i] *= share
+
+
+@jitable
+def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks, axes: tuple[int, ...]) -> None:
+    """Write where the point and the face of place i are, in the axes of their blocks.
+
+    A fixed block carries no point but where its corner meets the face of a body.
+    """
+    poses, face, block, normal = blocks.poses, found.face[i], found.other[i], vector(found.normal, i, axes)
+    point = blocks.body[block] < 0
+    if point:
+        face, block, normal = block, face, scaled(-1.0, normal)
+    held, half, place = blocks.body[face] < 0, scaled(0.5 * found.gap[i], normal), vector(found.place, i, axes)
+    at = turned_back(poses, block, minus(plus(place, half), centroid(poses, block, axes)))
+    origin = minus(minus(place, half), scaled(slack, normal))
+    between = plus(vector(poses.drawn, block, axes), at)
+    if held:
+        origin = minus(origin, vector(poses.moved, face, axes))
+    else:
+        origin = turned_back(poses, face, minus(origin, centroid(poses, face, axes)))
+        between = minus(between, vector(poses.drawn, face, axes))
+    if point or not held:
+        normal = turned_back(poses, block if point else face, normal)
+    line.body, line.face = blocks.body[block], POINT if point else blocks.body[face]
+    line.support, line.fixed = blocks.support[face], blocks.fixed[face]
+    put(line.at, at)
+    put(line.origin, origin)
+    put(line.between, minus(between, origin))
+    put(line.normal, normal)
+
+
+@inlined
+def along_new(along: Vector, old: Place, new: Place) -> Vector:
+    """What a line keeps along its face, along that of another one. In the plane it is a number along the tangent."""
+    sense = old.sense * new.sense
+    if len(along) == 1:
+        return (sense * along[0] * dot(tangent(old.normal), tangent(new.normal)),)
+    return scaled(sense, along)
+
+
+@jitable
+def give(gone: Row, line: Row, old: Place, new: Place, poses: Poses, axes: tuple[int, ...]) -> None:
+    """Let a line take over the friction of one that is gone, and its push of the last step.
+
+    Of a spring along the face the force is kept, as that of rigid friction is.
+    """
+    line.push, line.pressed = line.push + gone.push, line.pressed + gone.pressed
+    line.depth, line.rate = max(line.depth, gone.depth), gone.rate
+    grip = spin_components(gone.grip, axes)
+    if len(axes) == 3 and gone.face >= 0:
+        grip = turned(poses, old.face, grip)
+    grip = along_new(grip, old, new)
+    if len(axes) == 3 and line.face >= 0:
+        grip = turned_back(poses, new.face, grip)
+    increase(line.grip, scaled(gone.k_s / line.k_s if line.k_s < math.inf else 1.0, grip))
+    increase(line.dragged, along_new(spin_components(gone.dragged, axes), old, new))
+
+
+@compiled
+def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks, axes: tuple[int, ...]) -> None:
+    """Write the lines of places, and let them take over what the lines of their pair had that are gone.
+
+    What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
+    as long as it has it. So what a look has missed, or what touched at rest without a joint, puts no energy in. The
+    places of a pair press no more in all than the lines before them, and hold no more energy. Each line that is gone
+    gives all that it has along its face to the nearest new one, so that the forces of a pair stay.
+
+    Args:
+        new: rows with the law of each place, and room for what presses of its overlap and what does not.
+        found: the places, those of a pair together.
+        gone: the lines that are gone, in the order of their pairs.
+        pairs: which of both belong together.
+        blocks: all blocks.
+        axes: of the system.
+    """
+    for p in range(len(pairs.low)):
+        begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
+        both = found.face[begin] + found.other[begin]
+        for i in range(begin, end):
+            new.depth[i] = pressed_at(i, found, gone, ends, blocks, axes)
+        press(new, (begin, end), gone, ends)
+        for i in range(begin, end):
+            new.slack[i] = max(-found.gap[i], 0.0) - new.depth[i]
+            write_line(new.rows[i], i, new.slack[i], found, blocks, axes)
+        for j in range(ends[0], ends[1]):
+            old = gone.rows[j]
+            if old.push != 0 or old.depth > 0:
+                there = place_of(old, both, blocks, axes)
+                i, _ = nearest(new.rows, (begin, end), there.at, both, blocks, axes)
+                give(old, new.rows[i], there, place_of(new.rows[i], both, blocks, axes), blocks.poses, axes)
+        for i in range(begin, end):
+            line = new.rows[i]
+            if line.k_s < math.inf:
+                most = shear_limit(line, line.k * new.depth[i]) / line.k_s
+                put(line.grip, shortened(spin_components(line.grip, axes), most))

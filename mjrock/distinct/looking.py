@@ -10,7 +10,7 @@ import numpy as np
 from ..compiled import compiled, jitable
 from ..geometry.vectors import components, dot, minus, plus, spin_components, vector
 from ..problem.masonry.joint_law import stored
-from ..quantities import Array, Flags, Integers
+from ..quantities import Array, Integers
 from .contact import meeting
 from .rows import Rows
 from .system import System
@@ -91,6 +91,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
         apart = dot(normal, across)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], apart)
+        line.widest = max(line.widest, apart)
     left = False
     for pair in range(len(slip)):
         left = left or max(slip[pair], gap[pair]) > wear.left[pair]
@@ -98,38 +99,19 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
 
 
 @compiled
-def held(system: System, which: Flags) -> float:
-    """Energy in the springs along the normal of some of the lines [J]. What shear springs lose, friction takes."""
-    return held_by_lines(system, which, system.axes)
+def held(system: System, which: Integers, depth: Array) -> float:
+    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]. What shear
+    springs lose, friction takes."""
+    return held_by_lines(system, which, depth, system.axes)
 
 
 @jitable
-def held_by_lines(system: System, which: Flags, axes: tuple[int, ...]) -> float:
+def held_by_lines(system: System, which: Integers, depth: Array, axes: tuple[int, ...]) -> float:
     """`held`, in the plane or in space."""
     energy = 0.0
-    for p in range(len(which)):
-        if which[p]:
-            line = system.lines[p]
-            energy += stored(line, meeting(system, line, axes).gap)
+    for i in range(len(which)):
+        line = system.lines[which[i]]
+        gap = meeting(system, line, axes).gap
+        depth[i] = max(-gap, 0.0)
+        energy += stored(line, gap)
     return energy
-
-
-@compiled
-def nearest(pair: Integers, place: Array, first: Integers, other: Array, chosen: Integers) -> None:
-    """Write which of other places of its pair is nearest to each place.
-
-    Args:
-        pair: position of the pair of each place in `first`, shape (places,).
-        place: where they are [m], shape (places, d).
-        first: where the others of each pair begin, and where those of the last end.
-        other: where those are, one pair after the other [m].
-        chosen: room for the answer, shape (places,).
-    """
-    for i in range(len(pair)):
-        chosen[i], least = -1, math.inf
-        for j in range(first[pair[i]], first[pair[i] + 1]):
-            square = 0.0
-            for axis in range(place.shape[1]):
-                square += (place[i, axis] - other[j, axis]) ** 2
-            if square < least:
-                chosen[i], least = j, square

@@ -11,10 +11,9 @@ from ..geometry.hull import area_vector
 from ..problem.masonry.case import MasonryCase
 from ..quantities import Array
 from .encounters import Encounters
-from .handover import Poses
 from .pair_law import pair_number
 from .setup import Setup
-from .solids import Solids
+from .solids import Poses, Solids
 from .system import System
 from .turning import start_turning
 

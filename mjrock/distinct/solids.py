@@ -75,6 +75,25 @@ class Solids(NamedTuple):
         return self._replace(corners=corners + place[block], normals=normals, ways=ways)
 
 
+class Poses(NamedTuple):
+    """Where all blocks are.
+
+    Args:
+        drawn: the centroids as drawn [m], shape (blocks, d).
+        moved: their displacements from there [m], shape (blocks, d).
+        change: rotations less 1, shape (blocks, d, d).
+    """
+
+    drawn: Array
+    moved: Array
+    change: Array
+
+    def far(self, other: Poses, sizes: Array) -> Array:
+        """How far a corner of each block may be from where it is in other poses [m], shape (blocks,)."""
+        way = np.linalg.norm(self.moved - other.moved, axis=1)
+        return np.asarray(way + np.linalg.norm(self.change - other.change, axis=(1, 2)) * sizes)
+
+
 def _begins(tables: Iterable[Array | Integers]) -> Integers:
     """Where each of some tables begins, one after the other, and where the last one ends."""
     return np.cumsum([0, *map(len, tables)])

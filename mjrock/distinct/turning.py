@@ -257,14 +257,6 @@ def rotations(bodies: Rows) -> Array:
     return np.moveaxis(np.array(matrix), 2, 0)
 
 
-def quaternions(bodies: Rows) -> Array:
-    """Rotation of each body from rest, in the plane about y, shape (n, 4)."""
-    if is_flat(bodies):
-        half, zero = 0.5 * bodies["angle"], np.zeros(len(bodies))
-        return np.column_stack([np.cos(half), zero, np.sin(half), zero])
-    return np.asarray(bodies["quaternion"])
-
-
 def roots_of_masses(bodies: Rows) -> Array:
     """Of each body a matrix whose product with its transpose is the inverse of its masses at rest, (n, nv, nv)."""
     d = bodies["rest"].shape[1]
@@ -274,3 +266,15 @@ def roots_of_masses(bodies: Rows) -> Array:
     turning = bodies["inverse_inertia"].any(axis=(1, 2))  # guides keep the others from it
     roots[turning, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"][turning])
     return roots
+
+
+def inverse_masses(bodies: Rows, change: Array) -> Array:
+    """The inverse of the masses of each body in the axes of the world, turned by rotations less 1, (n, nv, nv)."""
+    d, inverse = change.shape[2], np.asarray(bodies["inverse_inertia"])
+    if d == 3:
+        turn = change + np.eye(3)
+        inverse = turn @ inverse @ np.swapaxes(turn, 1, 2)
+    nv = d + inverse.shape[2]
+    masses = np.zeros((len(inverse), nv, nv))
+    masses[:, range(d), range(d)], masses[:, d:, d:] = bodies["inverse_mass"], inverse
+    return masses

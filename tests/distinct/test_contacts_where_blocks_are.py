@@ -7,7 +7,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.distinct.finder import Finder
-from mjrock.distinct.handover import Poses
+from mjrock.distinct.solids import Poses
 
 BOX = mr.Polyhedron.box
 STILL = (0,) * 6
@@ -27,7 +27,6 @@ def found(blocks, moved, turn):
     poses = Poses(
         drawn,
         np.array([(0.0, 0.0, 0.0), moved]),
-        np.array([(1.0, 0, 0, 0), turn]),
         np.array([0 * np.eye(3), matrix - np.eye(3)]),
     )
     return Finder(blocks, drawn).found(poses, np.full(2, 5e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
