@@ -39,6 +39,14 @@ HELD = "<Contacts, law given, 2 lines a face: base k_n = 5e+08 N/m3, xi = 0.05; 
         (mr.Grid(dict, slenderness=[5, 7], scale=[1, 2, 3]), "<Grid of 6 cases: slenderness (2), scale (3)>"),
         (mr.wall_scene(CASE, CONTACTS), "<Scene of 1 bodies, 4 contacts, 0 links>"),
         (
+            mr.Masonry.running_bond(2.0, 1.5, (0.5, 0.25), k_n=1e10, friction=lambda joint: 0.6),
+            "<Masonry of 27 blocks, 2 x 1.5 m: k_n = 1e+10, friction of the joint, xi = 0.05, points = 2>",
+        ),
+        (
+            mr.Masonry.box((0.4, 0.6, 2.0), k_n=1e9, k_s=4e8),
+            "<Masonry of 1 blocks, 0.4 x 0.6 x 2 m: k_n = 1e+09, k_s = 4e+08, friction = 0.7, xi = 0.05, points = 2>",
+        ),
+        (
             mr.Analysis(CASE, contacts=CONTACTS, options={"accuracy": 1e-4}),
             f"<Analysis by MuJoCo of {CASE!r}, {HELD}, accuracy = 0.0001>",
         ),

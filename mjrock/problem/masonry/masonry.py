@@ -60,7 +60,7 @@ UNDAMPED = 1e-4
 """The same below which it is doubted [-], where xi is a hundred times as much."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Masonry:
     """Rigid convex blocks on compliant joints.
 
@@ -122,6 +122,16 @@ class Masonry:
     law: AnyLaw | str | None = None
     k_s: OfJoint | None = None
     bond: OfBond = field(default=None, kw_only=True, metadata=LATER)
+
+    def __repr__(self) -> str:
+        corners = np.concatenate([self.blocks[i].corners for i in self.free])
+        size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
+        joints = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
+        said = [
+            f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in joints.items() if v is not None
+        ]
+        bonded = "" if self.bond is None else ", mortar"
+        return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
 
     def __post_init__(self) -> None:
         if not isinstance(self.blocks, Sequence) or isinstance(self.blocks, str):
