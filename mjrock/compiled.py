@@ -2,10 +2,9 @@
 
 `compiled` marks a loop for compilation at its first call. The result is stored in the folder that the environment
 variable NUMBA_CACHE_DIR names, or in `__pycache__` beside the module, or in the user's cache folder where the package
-lies on a read-only disk. Where none of them can be written, each process compiles anew. `jitable` marks a small
-function that compiled loops call, and `inlined` one whose call would take longer than its arithmetic; called from
-Python they run as Python. With NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python
-with the same results.
+lies on a read-only disk. Where none of them can be written, each process compiles anew. `inlined` marks a function that
+compiled loops call, which takes the place of its call; called from Python it runs as Python. With NUMBA_DISABLE_JIT=1,
+and on a Python that has no numba, all of them run as plain Python with the same results.
 """
 
 from __future__ import annotations
@@ -38,8 +37,8 @@ IMPORT = re.compile(r"^from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_waiting: list[tuple[Callable[..., Any], dict[str, bool]]] = []
-"""Functions that compiled loops call, and how, until there is a loop: numba takes half a second to import."""
+_waiting: list[Callable[..., Any]] = []
+"""Functions that compiled loops call, until there is a loop: numba takes half a second to import."""
 
 
 def _notice(text: str) -> None:
@@ -71,7 +70,7 @@ def stamp(path: Path) -> str:
     digest = hashlib.sha256()
     for module in sorted(found):
         text = module.read_bytes()
-        if any(mark in text for mark in (b"@compiled", b"@jitable", b"@inlined")):
+        if any(mark in text for mark in (b"@compiled", b"@inlined")):
             digest.update(text)
     return digest.hexdigest()
 
@@ -133,14 +132,12 @@ def _imported_numba() -> Any:
     event.register("numba:compile", _Compilations())
     globals().update(numba=numba, _Cache=_Cache)
     while _waiting:
-        function, how = _waiting.pop(0)
-        _register(numba, function, how)
+        _register(numba, _waiting.pop(0))
     return numba
 
 
-def _register(numba: Any, function: Callable[..., Any], how: dict[str, bool]) -> None:
-    register = numba.extending.register_jitable
-    register(**how)(function) if how else register(function)
+def _register(numba: Any, function: Callable[..., Any]) -> None:
+    numba.extending.register_jitable(forceinline=True)(function)
 
 
 def __getattr__(name: str) -> Any:
@@ -150,23 +147,17 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-def _callable(function: Function, **how: bool) -> Function:
-    """Make a function known to numba, now or with the first loop."""
-    if "numba" in globals():
-        _register(_numba(), function, how)
-    else:
-        _waiting.append((function, how))
-    return function
-
-
-def jitable(function: Function) -> Function:
-    """A function that compiled loops call; called from Python it runs as Python."""
-    return _callable(function)
-
-
 def inlined(function: Function) -> Function:
-    """The same for a function whose call would take longer than its arithmetic."""
-    return _callable(function, forceinline=True)
+    """A function that compiled loops call, which takes the place of its call; called from Python it runs as Python.
+
+    All are: numba compiles a function anew for callers of each kind, and calls of small functions take longer than
+    their arithmetic.
+    """
+    if "numba" in globals():
+        _register(_numba(), function)
+    else:
+        _waiting.append(function)
+    return function
 
 
 def compiled(function: Function) -> Function:

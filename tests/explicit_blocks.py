@@ -7,7 +7,7 @@ Gauss-Seidel). They act halfway into the overlap. Steps are those of the symplec
 
 import numpy as np
 
-from mjrock.compiled import compiled, jitable
+from mjrock.compiled import compiled, inlined
 from mjrock.quantities import GRAVITY
 
 SWEEPS = 20
@@ -16,14 +16,14 @@ SETTLED = 1e-9
 """Change of an impulse in a sweep, over the largest that friction allows, below which the sweeps end [-]."""
 
 
-@jitable
+@inlined
 def turned(x, z, theta):
     """A vector turned by theta, positive where up turns to the right."""
     c, s = np.cos(theta), np.sin(theta)
     return x * c + z * s, z * c - x * s
 
 
-@jitable
+@inlined
 def shaken(accel, dt, t):
     """Acceleration of the ground at a time, linear between samples, none after the last."""
     place = t / dt
@@ -31,7 +31,7 @@ def shaken(accel, dt, t):
     return accel[i] + (place - i) * (accel[i + 1] - accel[i]) if place < len(accel) - 1 else 0.0
 
 
-@jitable
+@inlined
 def pushed(v, rows, p, first, a, b, inverse, impulse):
     """Change the velocities of bodies a and b by an impulse along a row, six numbers of line p of the rows."""
     for j in range(3):

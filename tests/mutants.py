@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-MARKS = b"\n@compiled\n", b"\n@jitable\n", b"\n@inlined\n"
+MARKS = b"\n@compiled\n", b"\n@inlined\n"
 """What stands before a compiled function."""
 OTHERS = (
     "engine/solref.py",

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -94,7 +94,7 @@ def released(lines: Rows, bonds: Rows, which: Flags) -> None:
         bonds[name][which] = 0.0
 
 
-@jitable
+@inlined
 def hold_bonds(system: System, books: Books, h: float, axes: tuple[int, ...]) -> None:
     """Add the forces of all bonds. `h` is the length of the step that led to the pose [s], zero at the start."""
     for p in range(len(system.bonds)):
@@ -105,7 +105,7 @@ def hold_bonds(system: System, books: Books, h: float, axes: tuple[int, ...]) ->
             hold(system, books, line, bond, h, axes)
 
 
-@jitable
+@inlined
 def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
     """Leave the line to itself whose bond has gone, but for its crushing where it has a strength for that."""
     if bond.tension > 0:
@@ -191,7 +191,7 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
         add_force(bodies[line.face], meet.face_arm, scaled(-1.0, force))
 
 
-@jitable
+@inlined
 def bonded_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
     """Energy in the springs of all bonds along normals and along faces [J]."""
     along_normals, along_faces = 0.0, 0.0

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
 from ..quantities import Array
@@ -49,7 +49,7 @@ def length_of(a: Vector) -> float:
     return math.sqrt(dot(a, a))
 
 
-@jitable
+@inlined
 def face_towards(solids: Solids, block: int, way: Vector) -> int:
     """The face of a block whose normal is nearest to a direction."""
     best, largest = -1, -math.inf
@@ -60,7 +60,7 @@ def face_towards(solids: Solids, block: int, way: Vector) -> int:
     return best
 
 
-@jitable
+@inlined
 def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, room: Array) -> int:
     """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left."""
     left = 0
@@ -79,7 +79,7 @@ def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, roo
     return left
 
 
-@jitable
+@inlined
 def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
     """Write the part of a face that lies over another into the first half of the room.
 
@@ -101,7 +101,7 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
     return count
 
 
-@jitable
+@inlined
 def parted(polygon: Array, count: int) -> int:
     """Leave out the corners of a polygon that fall on those before them. Returns how many are left."""
     left = 0
@@ -113,7 +113,7 @@ def parted(polygon: Array, count: int) -> int:
     return left
 
 
-@jitable
+@inlined
 def area_of(polygon: Array, count: int) -> float:
     """Area of a polygon [m2]."""
     first, area = vector(polygon, 0, SPACE.axes), 0.0
@@ -129,7 +129,7 @@ def distance_from(at: Vector, a: Vector, along: Vector) -> float:
     return length_of(spun(along, minus(at, a))) / length_of(along)
 
 
-@jitable
+@inlined
 def write_place(table: Array, count: int, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
     """Write a place of a face, the first block, and of a point on the other one."""
     table[count, 0], table[count, 1], table[count, 8] = blocks[0], blocks[1], gap
@@ -137,7 +137,7 @@ def write_place(table: Array, count: int, blocks: tuple[int, int], at: Vector, n
     put(table[count, 5:8], normal)
 
 
-@jitable
+@inlined
 def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, table: Array, count: int) -> None:
     """Write what a corner of the part of a face that lies over another is: a corner of either, or edges that cross.
 
@@ -184,7 +184,7 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
     write_place(table, count, blocks, at, normal, dot(normal, minus(at, below)))
 
 
-@jitable
+@inlined
 def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
     """Write the places where a block lies over a face of another. Returns how many places there are then.
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -92,7 +92,7 @@ def meeting(system: System, line: Row, axes: tuple[int, ...]) -> Meeting:
     return Meeting(gap, normal, arm, face_arm, False)
 
 
-@jitable
+@inlined
 def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meeting:
     """Where a line is that may have moved past the outline of its face, `across` from its place there at rest [m]."""
     fixed = line.face < 0
@@ -157,7 +157,7 @@ def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
     return lost if meet.gap < 0 else max(lost, 0.0)
 
 
-@jitable
+@inlined
 def press_lines(
     system: System, books: Books, h: float, kick: float, lead: float, axes: tuple[int, ...]
 ) -> tuple[int, int]:
@@ -230,7 +230,7 @@ def press_lines(
     return active, touched
 
 
-@jitable
+@inlined
 def settle_touches(system: System, books: Books, count: int, kick: float, axes: tuple[int, ...]) -> tuple[float, float]:
     """Let the springs of lines that met or left their face do the work of their touch, see `touches`.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import Vector, components, dot, minus, scaled
 from ..problem.masonry.faces_of_joints import faces_of_joints
 from ..problem.masonry.joints_in_space import Face
@@ -82,7 +82,7 @@ def is_beside(edges: Rows, first: int, last: int, place: Vector) -> bool:
     return beside
 
 
-@jitable
+@inlined
 def pulled_inside(edges: Rows, first: int, last: int, place: Vector) -> tuple[Vector, float]:
     """The place of the outline that is nearest to a place on a body [m], and how far beyond this is, over its band."""
     inside, share = place, 0.0

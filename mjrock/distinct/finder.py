@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, spun, vector
 from ..problem.masonry.polygon import Polygon
@@ -143,7 +143,7 @@ class Finder:
         )
 
 
-@jitable
+@inlined
 def among(values: Integers, number: int) -> bool:
     """Whether a number is among increasing values."""
     low, high = 0, len(values)
@@ -178,7 +178,7 @@ def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
     return count
 
 
-@jitable
+@inlined
 def are_apart(near: Near, a: int, b: int) -> bool:
     """Whether two blocks are apart along an axis."""
     apart = False
@@ -187,7 +187,7 @@ def are_apart(near: Near, a: int, b: int) -> bool:
     return apart
 
 
-@jitable
+@inlined
 def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
     """Write the places of a pair that is nearer than it reaches [m]. Returns how many places there are then."""
     a, b = blocks
@@ -209,7 +209,7 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
     return clip(solids, face, blocks, table, count, room)
 
 
-@jitable
+@inlined
 def shallowest(
     solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Array, count: int, room: Array
 ) -> tuple[int, tuple[int, int], float]:
@@ -270,7 +270,7 @@ def farthest(solids: Solids, block: int, way: Vector) -> float:
     return most
 
 
-@jitable
+@inlined
 def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
     """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap.
 
@@ -285,7 +285,7 @@ def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[
     return best, most
 
 
-@jitable
+@inlined
 def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
     """The direction across an edge of each of two blocks along which they are farthest apart, and how far [m]."""
     best: Vector = (0.0, 0.0, 0.0)
@@ -304,7 +304,7 @@ def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
     return best, most
 
 
-@jitable
+@inlined
 def edge_towards(solids: Solids, block: int, way: Vector) -> tuple[Vector, Vector]:
     """The edge of a block that is farthest along a direction: one end [m], and the way to the other."""
     most, end, along = -math.inf, way, way
@@ -317,7 +317,7 @@ def edge_towards(solids: Solids, block: int, way: Vector) -> tuple[Vector, Vecto
     return end, along
 
 
-@jitable
+@inlined
 def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Array, count: int) -> int:
     """Write the place where two edges cross. Returns how many places there are then."""
     if count < len(table):

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -251,7 +251,7 @@ def stop(system: System, line: Row, first: int, limit: float, axes: tuple[int, .
     return changed
 
 
-@jitable
+@inlined
 def stick(system: System, active: Integers, count: int, kick: float, axes: tuple[int, ...]) -> None:
     """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s]."""
     lines, each, largest = system.lines, len(axes) - 1, 0.0
@@ -285,7 +285,7 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[i
         put(line.grip, grip)
 
 
-@jitable
+@inlined
 def note_slips(system: System, active: Integers, count: int, axes: tuple[int, ...]) -> None:
     """Keep the slip of the lines that stick rigidly before the forces act."""
     each = len(axes) - 1
@@ -294,7 +294,7 @@ def note_slips(system: System, active: Integers, count: int, axes: tuple[int, ..
         row.slip = slip_along(system, system.lines[active[i // each]], row, axes)
 
 
-@jitable
+@inlined
 def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> tuple[float, float]:
     """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
     the supports put in through it. Returns the halves of both before the pose [J]."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import Vector, components, increase, moment, plus, scaled, spin_components
 from ..quantities import Array
 from .contact import meeting, where_friction_rubs
@@ -34,7 +34,7 @@ def add_moment(load: Array, factor: float, place: Vector, force: Vector) -> None
     increase(load[len(force) :], scaled(factor, moment(place, force)))
 
 
-@jitable
+@inlined
 def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
     """Keep the forces of the last step at a sample, where there is room for them."""
     loads, held, pulled, ties = samples.loads[row], samples.held[row], samples.pulled[row], len(system.ties)

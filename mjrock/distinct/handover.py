@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -156,7 +156,7 @@ def place_of(line: Row, both: int, blocks: Blocks, axes: tuple[int, ...]) -> Pla
     return Place(at, normal, face, 1.0 if block > face else -1.0)
 
 
-@jitable
+@inlined
 def nearest(
     lines: Rows, ends: tuple[int, int], at: Vector, both: int, blocks: Blocks, axes: tuple[int, ...]
 ) -> tuple[int, float]:
@@ -177,7 +177,7 @@ def nearest(
     return best, math.sqrt(least)
 
 
-@jitable
+@inlined
 def pressed_at(
     i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
 ) -> float:
@@ -195,7 +195,7 @@ def pressed_at(
     return pressed
 
 
-@jitable
+@inlined
 def press(new: Lines, places: tuple[int, int], gone: Lines, ends: tuple[int, int]) -> None:
     """Let the places of a pair press no more in all, and hold no more energy, than the lines that are gone."""
     force = energy = had = held = 0.0
@@ -210,7 +210,7 @@ def press(new: Lines, places: tuple[int, int], gone: Lines, ends: tuple[int, int
         new.depth[i] *= share
 
 
-@jitable
+@inlined
 def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks, axes: tuple[int, ...]) -> None:
     """Write where the point and the face of place i are, in the axes of their blocks.
 
@@ -248,7 +248,7 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
     return scaled(sense, along)
 
 
-@jitable
+@inlined
 def give(gone: Row, line: Row, old: Place, new: Place, poses: Poses, axes: tuple[int, ...]) -> None:
     """Let a line take over the friction of one that is gone, and its push of the last step.
 

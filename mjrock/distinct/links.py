@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import Vector, components, dot, minus, plus, scaled, spin_components, spun, vector
 from .contact import add_force
 from .rows import Row, Rows
@@ -97,7 +97,7 @@ def elongation(tie: Row, length: float) -> float:
     return elastic if tie.push > 0 else max(0.0, elastic)
 
 
-@jitable
+@inlined
 def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int, ...]) -> None:
     """Add the forces of ties, dampers and constant forces at time t, and book what the last step of length h took."""
     bodies = system.bodies
@@ -160,7 +160,7 @@ def drive(system: System, books: Books, i: int, h: float, axes: tuple[int, ...])
     add_force(body, plus(at, change), scaled(force, way))
 
 
-@jitable
+@inlined
 def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
     """Potential energy of constant forces, and energy in the springs of ties and actuators [J]."""
     falls, elastic = 0.0, 0.0
@@ -182,7 +182,7 @@ def linked_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
     return falls, elastic
 
 
-@jitable
+@inlined
 def support_place(supports: Supports, i: int, axis: int, t: float) -> float:
     """Displacement of support i along an axis, linear between its samples and constant beyond them [m]."""
     low, high = supports.first[i], supports.first[i + 1] - 1
@@ -198,7 +198,7 @@ def support_place(supports: Supports, i: int, axis: int, t: float) -> float:
     return place
 
 
-@jitable
+@inlined
 def move_supports(supports: Supports, t: float, h: float) -> None:
     """Bring displacement and mean velocity of the supports up to date, after a step of length h."""
     for i in range(len(supports.moved)):

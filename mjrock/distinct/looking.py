@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined
 from ..geometry.vectors import components, dot, minus, plus, spin_components, vector
 from ..problem.masonry.joint_law import stored
 from ..quantities import Array, Integers
@@ -48,7 +48,7 @@ def wears(system: System, wear: Wear, time: float) -> bool:
     return wears_joints(system, wear, system.axes) or moves_on(system, wear, time, system.axes)
 
 
-@jitable
+@inlined
 def moves_on(system: System, wear: Wear, time: float, axes: tuple[int, ...]) -> bool:
     """Whether a body may move farther than its limit within a time [s]."""
     for b in range(len(system.bodies)):
@@ -69,7 +69,7 @@ def moves_on(system: System, wear: Wear, time: float, axes: tuple[int, ...]) -> 
     return False
 
 
-@jitable
+@inlined
 def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
     """Bring slip, gap and the rotations of bodies up to date. Returns whether a pair has left its joints."""
     pairs, slip, gap = wear.pairs, wear.slip, wear.gap
@@ -105,7 +105,7 @@ def held(system: System, which: Integers, depth: Array) -> float:
     return held_by_lines(system, which, depth, system.axes)
 
 
-@jitable
+@inlined
 def held_by_lines(system: System, which: Integers, depth: Array, axes: tuple[int, ...]) -> float:
     """`held`, in the plane or in space."""
     energy = 0.0

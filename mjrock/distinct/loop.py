@@ -10,7 +10,7 @@ import math
 import sys
 from typing import NamedTuple
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -101,7 +101,7 @@ def upwards(size: float, axes: tuple[int, ...]) -> Vector:
     return 0.0, 0.0, size
 
 
-@jitable
+@inlined
 def start_forces(system: System, books: Books, push: Vector, before: float, axes: tuple[int, ...]) -> None:
     """Start the forces with weight and ground motion, and book the work of the ground in the last step.
 
@@ -124,7 +124,7 @@ def start_forces(system: System, books: Books, push: Vector, before: float, axes
     put(totals.push, push)
 
 
-@jitable
+@inlined
 def kick_bodies(bodies: Rows, kick: float, axes: tuple[int, ...]) -> None:
     """Let forces and moments act for a time [s]."""
     for b in range(len(bodies)):
@@ -133,7 +133,7 @@ def kick_bodies(bodies: Rows, kick: float, axes: tuple[int, ...]) -> None:
         kick_spin(body, kick, axes)
 
 
-@jitable
+@inlined
 def move_bodies(bodies: Rows, h: float, axes: tuple[int, ...]) -> None:
     """Move the bodies by a step."""
     for b in range(len(bodies)):
@@ -142,7 +142,7 @@ def move_bodies(bodies: Rows, h: float, axes: tuple[int, ...]) -> None:
         turn_body(body, h, axes)
 
 
-@jitable
+@inlined
 def keep_pose(system: System, books: Books, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
     """Keep pose and velocities before it, the potential and elastic energy, and the accounts of work.
 
@@ -180,7 +180,7 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
     keep_account(books.bonds, energy.bonds)
 
 
-@jitable
+@inlined
 def keep_energy(samples: Samples, row: int, look: int) -> None:
     """Keep the energy of a sample as that of a look."""
     of, energy = samples.energy[row], samples.looks[look]
@@ -196,7 +196,7 @@ def keep_account(account: Array, kept: Array) -> None:
         kept[i] = account[i]
 
 
-@jitable
+@inlined
 def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes: tuple[int, ...]) -> None:
     """Bring the kept velocities to the time of the pose, and keep the kinetic and the whole potential energy.
 
@@ -224,7 +224,7 @@ def keep_velocity(bodies: Rows, samples: Samples, row: int, before: float, axes:
     samples.energy[row].potential += potential
 
 
-@jitable
+@inlined
 def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
     """Whether a body has gone so far that the run has broken down, or has turned by more than a run follows."""
     for b in range(len(bodies)):
@@ -246,7 +246,7 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tup
     return make_steps(system, books, samples, clock, system.axes)
 
 
-@jitable
+@inlined
 def make_steps(
     system: System, books: Books, samples: Samples, clock: Clock, axes: tuple[int, ...]
 ) -> tuple[int, int, bool]:

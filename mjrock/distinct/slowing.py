@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import components, dot, put, scaled, spin_components
 from ..quantities import Array
 from .system import Books, System
 from .turning import momentum_of
 
 
-@jitable
+@inlined
 def slow_down(system: System, books: Books, share: float, axes: tuple[int, ...]) -> None:
     """Let all velocities decay by exp(-share)."""
     left, taken = math.exp(-share), 0.0
@@ -43,7 +43,7 @@ def opposed(force: Array, velocity: Array, share: float) -> float:
     return power
 
 
-@jitable
+@inlined
 def oppose(system: System, books: Books, share: float, kick: float, axes: tuple[int, ...]) -> None:
     """Take a share of the unbalanced force and moment on each body while they act for a time [s]."""
     taken = 0.0

@@ -12,7 +12,7 @@ all forces have acted, and one more impulse does it. The springs then give back 
 
 from __future__ import annotations
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..problem.masonry.joint_law import normal_force
 from .rows import Row
 
@@ -37,7 +37,7 @@ def time_closed(line: Row, gap: float, rate: float, h: float) -> float:
     return met
 
 
-@jitable
+@inlined
 def touched_forces(line: Row, gap: float, rate: float, h: float) -> tuple[float, float]:
     """Force of the spring and force along the normal [N] of a line that has begun or ceased to press in the last step.
 

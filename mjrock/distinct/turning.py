@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -113,7 +113,7 @@ def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
     return components(body.momentum, axes)
 
 
-@jitable
+@inlined
 def take_turn(body: Row, axes: tuple[int, ...]) -> None:
     """Bring R - 1 and the angular velocity of a body up to date with its pose."""
     turn = body.turn
@@ -175,7 +175,7 @@ def rotated(by: Vector, a: Vector) -> Vector:
     return plus(a, plus(scaled(sine, across), scaled(versine, spun(by, across))))
 
 
-@jitable
+@inlined
 def middle_spin(body: Row, momentum: Vector, h: float) -> Vector:
     """Angular velocity in the middle of a step of length h, in the axes of the body [rad/s], in space."""
     start = in_body(body, momentum)
@@ -185,7 +185,7 @@ def middle_spin(body: Row, momentum: Vector, h: float) -> Vector:
     return spin
 
 
-@jitable
+@inlined
 def turn_body(body: Row, h: float, axes: tuple[int, ...]) -> None:
     """Turn a body by a step of length h."""
     if len(axes) == 2:

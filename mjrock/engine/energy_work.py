@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.frames import take_frames
 from ..geometry.kinematics import Places, gap, meeting, over_face, where_friction_acts
 from ..geometry.poses import moved
@@ -134,7 +134,7 @@ class Drag(NamedTuple):
     sprung: float
 
 
-@jitable
+@inlined
 def cone_force(normal: float, stopping: float, slip_inertia: float, inertia: float, mu: float) -> tuple[float, float]:
     """Normal and tangential force of an elliptic contact, as MuJoCo solves it.
 
@@ -196,7 +196,7 @@ class LedgerRoom(NamedTuple):
         return cls(*frames, *np.empty((3, coordinates)), *np.empty((2, contacts)))
 
 
-@jitable
+@inlined
 def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, room: LedgerRoom) -> None:
     """Write frames and rates of step n of the record."""
     take_frames(record.pose[n], room.frames, axes)
@@ -208,7 +208,7 @@ def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, r
         room.mean[j] = windows.mean[n, j]
 
 
-@jitable
+@inlined
 def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
     """Write dashpot and inertia of the row of every contact in a step, and return impratio [-]."""
     impratio = math.inf
@@ -218,7 +218,7 @@ def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
     return impratio
 
 
-@jitable
+@inlined
 def drag_of(law_k: float, dashpot: float, inertia: float, step: Step, i: int, rate: float, curve: float) -> Drag:
     """Force of the dashpot of contact i, centred or at the end of the step, and what Newmark's beta adds to its spring.
 
@@ -265,7 +265,7 @@ class Pressed(NamedTuple):
     coulomb: bool
 
 
-@jitable
+@inlined
 def pressed_in(
     points: Points, record: Record, step: Step, room: LedgerRoom, impratio: float, n: int, i: int
 ) -> Pressed:

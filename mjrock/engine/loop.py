@@ -4,9 +4,6 @@ A step that fits the motion is made in four moves: predict (which contacts will 
 step, judge (how long the next may be). The rules are in modules of their own: `pace` (how long), `touches` (when),
 `sticking` (where), `sliding` (friction), and `mjrock.scene.ground` (the force of the moving base). The loops call
 `mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
-
-numba compiles a function anew for the loop itself, for `jitable` callers and for `inlined` ones. What is large has
-callers of one kind: those of the engine's accelerations and steps are `inlined`.
 """
 
 from __future__ import annotations
@@ -14,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.frames import take_frames
 from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array
@@ -36,14 +33,14 @@ FAR = 1e9
 """Length up to which a tie that has broken is slack [m]."""
 
 
-@jitable
+@inlined
 def copy_into(values: Array, to: Array) -> None:
     """Copy values into another array."""
     for j in range(len(values)):
         to[j] = values[j]
 
 
-@jitable
+@inlined
 def kinetic(masses: Array, products: Array, v: Array) -> float:
     """Twice the kinetic energy [J], or the same norm of any other rate."""
     total = 0.0
@@ -92,7 +89,7 @@ def acceleration_from_engine(memory: EngineArrays, setting: Setting, state: Prog
     follow_now(setting, state)
 
 
-@jitable
+@inlined
 def follow_now(setting: Setting, state: Progress) -> None:
     """Bring gaps and slack up to date."""
     places, ties = setting.points.places, setting.ties

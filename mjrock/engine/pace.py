@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..geometry.kinematics import Ties
 from ..method import METHOD, Method
 from ..quantities import Array
@@ -102,21 +102,21 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     return min(spring, max(dashpot, spring / 8))
 
 
-@jitable
+@inlined
 def resolves(pace: Pace, h: float) -> int:
     """Which row of `pace.beta` and `pace.ringing` a step of length h takes: 0 where it resolves the contacts, otherwise
     1."""
     return 0 if h * pace.frequency < pace.method.smooth else 1
 
 
-@jitable
+@inlined
 def step_of(pace: Pace, h: float) -> Step:
     """The step of length h."""
     kind = resolves(pace, h)
     return Step(h, pace.beta[kind], pace.ringing[kind])
 
 
-@jitable
+@inlined
 def while_loaded(pace: Pace, reach: Reach, openings: Openings, h: float) -> float:
     """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
 
@@ -130,7 +130,7 @@ def while_loaded(pace: Pace, reach: Reach, openings: Openings, h: float) -> floa
     return max(h, pace.short)
 
 
-@jitable
+@inlined
 def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
     """The step h [s], shortened to what a taut tie is integrated well in, but not below the short step.
 
@@ -148,7 +148,7 @@ def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
     return max(h, pace.short)
 
 
-@jitable
+@inlined
 def judged(pace: Pace, h: float, change: float, calm: int) -> tuple[float, int]:
     """The length of the next step, and how many steps in a row have been calm.
 

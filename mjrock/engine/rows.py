@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..quantities import Array
 from .solref import pair_values, row
 
@@ -77,13 +77,13 @@ class ContactRows(NamedTuple):
         )
 
 
-@jitable
+@inlined
 def row_of(law: ContactLaw, inertia: RowInertia, i: int, step: Step) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `solref.row`."""
     return row(law.k[i], law.c[i], step.h, inertia.weight[i], step.beta[i], step.ringing[i], inertia.overdamped[i])
 
 
-@jitable
+@inlined
 def impratio_of(inertia: RowInertia, i: int, normal: float, h: float) -> float:
     """Inertia that the friction row of contact i should have in a step h, over that of its normal row [-]."""
     if inertia.friction[i] == 0:
@@ -91,7 +91,7 @@ def impratio_of(inertia: RowInertia, i: int, normal: float, h: float) -> float:
     return max(inertia.growth * h, 1.0) * inertia.friction[i] / normal
 
 
-@jitable
+@inlined
 def set_rows(law: ContactLaw, inertia: RowInertia, step: Step, rows: ContactRows) -> float:
     """Write the rows of all contacts for a step, and return the `impratio` of the model [-]."""
     impratio = math.inf

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..geometry.kinematics import Ties
 from ..geometry.vectors import minus
 from ..method import METHOD, Method
@@ -54,7 +54,7 @@ class Setting(NamedTuple):
         return cls(points_of(scene, method), ties, scene.bodies.masses, scene.bodies.products, course.ground, *acting)
 
 
-@jitable
+@inlined
 def add_gyroscopic_correction(memory: EngineArrays, setting: Setting, axes: tuple[int, ...], ahead: float) -> None:
     """Add to the applied forces what MuJoCo's gyroscopic moments lack in space; in the plane there are none.
 
@@ -77,7 +77,7 @@ def add_gyroscopic_correction(memory: EngineArrays, setting: Setting, axes: tupl
         memory.applied[z] += lacking[2]
 
 
-@jitable
+@inlined
 def push(memory: EngineArrays, setting: Setting, frames: Array, t: float) -> None:
     """Write the forces of the moving ground and of the dampers in the step that is set into the applied forces.
 

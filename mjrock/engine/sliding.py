@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, tangent
 from ..method import METHOD, Method
@@ -117,7 +117,7 @@ def take_way(memory: EngineArrays, places: Places, sliding: Sliding, i: int, mee
     return turned_to(sliding, i, slip_of(meets.normal, plus(kept, ahead)).way)
 
 
-@jitable
+@inlined
 def pressing_force(memory: EngineArrays, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
     places, d, W = points.places, memory.rows.solimp[i, 0], points.inertia.weight[i]
@@ -127,7 +127,7 @@ def pressing_force(memory: EngineArrays, points: Points, i: int, meets: Meeting,
     return max(sprung / ((1 - d) * W) - inertia_of(d, W) * closing, 0.0)
 
 
-@jitable
+@inlined
 def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array) -> bool:
     """Whether a contact slides; its friction is guessed from the acceleration of the last step, its row let go.
 
@@ -166,7 +166,7 @@ def apply_friction(memory: EngineArrays, setting: Setting, sliding: Sliding, fra
             push_apart(places, i, meets, frames, force, memory.applied)
 
 
-@jitable
+@inlined
 def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, n: int) -> tuple[bool, bool]:
     """Bring the friction of what slides up to date with the accelerations that the engine has found in look n.
 
@@ -199,7 +199,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
     return again or stopped, stopped
 
 
-@jitable
+@inlined
 def slide(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, t: float) -> bool:
     """Whether contacts slide; the applied forces then hold their friction, and the engine all but the accelerations."""
     if not (sliding.coulomb and find_sliding(memory, setting.points, sliding, frames)):
@@ -222,7 +222,7 @@ def slide(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Arra
     return True
 
 
-@jitable
+@inlined
 def sliding_changed(sliding: Sliding) -> bool:
     """Whether a contact has begun or ceased to slide in the step, which is then the last one."""
     changed = False
@@ -232,7 +232,7 @@ def sliding_changed(sliding: Sliding) -> bool:
     return changed
 
 
-@jitable
+@inlined
 def give_rows_back(memory: EngineArrays, sliding: Sliding) -> None:
     """Give every contact that slid its row back, and clear the applied forces."""
     memory.applied[:] = 0.0

@@ -22,7 +22,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..quantities import Array, require_real, require_reals, require_row, require_within, shown
 
 IMPEDANCE_RANGE = (1e-4, 0.9999)
@@ -60,25 +60,25 @@ def body_weight(mass: Array, translations: int) -> Array:
     return translations / (3 * mass)
 
 
-@jitable
+@inlined
 def inertia_of(impedance: float, inverse_weight: float) -> float:
     """m_i = d / ((1 - d) W) [kg]."""
     return impedance / ((1 - impedance) * inverse_weight)
 
 
-@jitable
+@inlined
 def impedance_of(inertia: float, inverse_weight: float) -> float:
     """d of a row with the inertia m_i [-], the inverse of `inertia_of`."""
     return inverse_weight * inertia / (1 + inverse_weight * inertia)
 
 
-@jitable
+@inlined
 def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) -> float:
     """m_i = h c / 2 + beta h^2 k [kg], which makes the Euler step Newmark's with centred damping."""
     return 0.5 * timestep * c + newmark_beta * timestep**2 * k
 
 
-@jitable
+@inlined
 def row(
     k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float, overdamped: float
 ) -> tuple[float, float]:
@@ -109,7 +109,7 @@ def row(
     return dashpot, max(inertia, inertia_of(WITHIN[0], inverse_weight))
 
 
-@jitable
+@inlined
 def pair_values(k: float, dashpot: float, inertia: float, inverse_weight: float) -> tuple[float, float, float]:
     """The two numbers of solref, in the direct format [1/s2, 1/s], and the impedance [-] of a row."""
     d = impedance_of(inertia, inverse_weight)
@@ -117,7 +117,7 @@ def pair_values(k: float, dashpot: float, inertia: float, inverse_weight: float)
     return -scale * k, -scale * dashpot, d
 
 
-@jitable
+@inlined
 def longest_represented_step(k: float, inverse_weight: float) -> float:
     """The longest step at which MuJoCo can represent a spring of stiffness k [s]. It is no limit of stability.
 

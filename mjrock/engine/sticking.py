@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.frames import coordinates, take_frames, turn_between
 from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, ways_along, where_friction_acts
 from ..geometry.vectors import Vector, dot, minus, spun
@@ -89,7 +89,7 @@ class Moved(NamedTuple):
     frames: Array
 
 
-@jitable
+@inlined
 def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, step: Step, impratio: float) -> bool:
     """Whether point i was pressed and did not slide in the step from `before` to `after`, the velocities around it.
 
@@ -106,7 +106,7 @@ def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, s
     return pressing > 0 and abs(impratio * inertia * slip / step.h) <= law.friction[i] * pressing
 
 
-@jitable
+@inlined
 def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
     """The deepest point of a joint, -1 where none is closed.
 
@@ -121,7 +121,7 @@ def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
     return point
 
 
-@jitable
+@inlined
 def presses(places: Places, reach: Reach, body: int, frames: Array) -> bool:
     """Whether a contact of a body is closed that bears nothing while the scene is at rest."""
     for i in range(len(places.body)):
@@ -149,7 +149,7 @@ def shift(frames: Array, body: int, way: Vector, distance: float) -> None:
         frames[body, axis] += distance * way[axis]
 
 
-@jitable
+@inlined
 def put_back(points: Points, joints: Joints, j: int, i: int, moved: Moved) -> None:
     """Shift the body on joint j along its face so that point i, its deepest and sticking, is where it stuck.
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..geometry.kinematics import Places, Ties, opening
 from ..quantities import Array, Flags
 from .rows import ContactLaw
@@ -60,7 +60,7 @@ class Touches(NamedTuple):
         return cls(*np.zeros((2, len(springs.k))))
 
 
-@jitable
+@inlined
 def follow_openings(places: Places, ties: Ties, frames: Array, v: Array, a: Array, openings: Openings) -> None:
     """Write how the gap of every contact and the slack of every tie change. A tie that goes taut is a touch too.
 
@@ -77,7 +77,7 @@ def follow_openings(places: Places, ties: Ties, frames: Array, v: Array, a: Arra
             openings.linear[i], openings.swept[i] = side * now.linear, side * now.swept
 
 
-@jitable
+@inlined
 def closure_changed(openings: Openings, closed: Flags) -> bool:
     """Whether a contact or a tie has opened or closed since `closed` was brought up to date, which is done here."""
     changed = False
@@ -89,7 +89,7 @@ def closure_changed(openings: Openings, closed: Flags) -> bool:
     return changed
 
 
-@jitable
+@inlined
 def predict(springs: Springs, openings: Openings, now: float, h: float, least: float, touches: Touches) -> float:
     """Find the touches of a step that matter, and return the time until the first one [s], or infinity.
 
@@ -118,7 +118,7 @@ def predict(springs: Springs, openings: Openings, now: float, h: float, least: f
     return first
 
 
-@jitable
+@inlined
 def hardest(touches: Touches, latest: float) -> float:
     """Of the touches up to a time, the time of the one with the highest closing speed [s]."""
     when, fastest = 0.0, -1.0
@@ -128,7 +128,7 @@ def hardest(touches: Touches, latest: float) -> float:
     return when
 
 
-@jitable
+@inlined
 def step_to_touch(
     springs: Springs, openings: Openings, now: float, h: float, least: float, short: float, touches: Touches
 ) -> float:
@@ -143,7 +143,7 @@ def step_to_touch(
     return hardest(touches, first + 0.5 * short) + 0.5 * short
 
 
-@jitable
+@inlined
 def step_to_break(ties: Ties, openings: Openings, now: float, short: float) -> float:
     """Length of a step that ends half a short step after a tie breaks within it, or zero if none does [s].
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..quantities import Array
 from .vectors import Vector, minus, moment, plus, scaled, spun, vector
 
@@ -65,7 +65,7 @@ class Freedom(NamedTuple):
 PLANE, SPACE = Freedom((0, 2)), Freedom((0, 1, 2))
 
 
-@jitable
+@inlined
 def take_frames(q: Array, frames: Array, axes: tuple[int, ...]) -> None:
     """Write the frames of a pose: x, z, sin(theta), 1 - cos(theta), or x, y, z and the rows of R - 1."""
     if len(axes) == 2:
@@ -171,7 +171,7 @@ def turn_between(start: Array, pose: Array, body: int, axes: tuple[int, ...]) ->
     return scaled(2.0, plus(minus(scaled(w, new), scaled(later, old)), spun(old, new)))
 
 
-@jitable
+@inlined
 def push_body(frames: Array, body: int, arm: Vector, force: Vector, total: Array) -> None:
     """Add to generalised forces what a force does at `arm` from the centroid of a body."""
     turning = moment(arm, force)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..quantities import Array, Integers
 from .frames import Freedom, displaced, linear, place, push_body, rotation_change, spin, take_frames
 from .links import ends, parting
@@ -217,7 +217,7 @@ def along(places: Places, i: int, frames: Array, v: Array) -> Slip:
     return Slip(dot(along_face, meets.across), rate, bodies)
 
 
-@jitable
+@inlined
 def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vector, total: Array) -> None:
     """Add to generalised forces what a force does on the body of point i, and its reaction on that of the face [N]."""
     push_body(frames, places.body[i], meets.arm, force, total)
@@ -251,7 +251,7 @@ def opening(places: Places, ties: Ties, i: int, frames: Array, v: Array, a: Arra
     return slack(ties, i - len(places.body), frames, v, a, places.axes)
 
 
-@jitable
+@inlined
 def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> tuple[float, float]:
     """Elastic elongation of tie i, and by how much it has just yielded either way [m]. Its reach is brought up to date.
 
@@ -267,7 +267,7 @@ def stretch(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) 
     return pulled - yielded, abs(yielded)
 
 
-@jitable
+@inlined
 def snaps(ties: Ties, i: int, frames: Array, v: Array, axes: tuple[int, ...]) -> bool:
     """Whether tie i is longer than its limit and breaks now. It is slack from then on."""
     if ties.limit[i] == math.inf or ties.reach[i] == math.inf:

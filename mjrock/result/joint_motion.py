@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined
 from ..geometry.frames import frames_of, inverse_rotation_change, take_frames
 from ..geometry.kinematics import Places, meeting
 from ..geometry.vectors import Vector, minus, plus, scaled
@@ -140,7 +140,7 @@ def _looked(places: Places, points: JointPoints, pose: Array, frames: Array, joi
     return opened, nearest, slid
 
 
-@jitable
+@inlined
 def _along(places: Places, i: int, frames: Array) -> Vector:
     """Where point i is along its face, from the origin of the face, in the axes of the face [m]."""
     meets, face = meeting(places, i, frames), places.face_body[i]

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined
 from ..quantities import Array, Integers, require_within
 
 ROUNDING = 1e-12
@@ -30,7 +30,7 @@ def thinned(count: int, stride: int) -> Integers:
     return np.unique(np.append(np.arange(0, count, stride), count - 1))
 
 
-@jitable
+@inlined
 def cubic(width: float, y0: float, v0: float, y1: float, v1: float) -> tuple[float, float]:
     """Coefficients of s^2 and s^3 of the cubic y0 + v0 s + ... that has the values y and the rates v at both ends.
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, frames_of, push_body, take_frames
 from ..geometry.links import ends, parting
 from ..geometry.vectors import dot, scaled
@@ -47,14 +47,14 @@ def stretching(dampers: Dampers, i: int, frames: Array, v: Array, axes: tuple[in
     return dot(at.across, parting(dampers, i, at, frames, v, axes)) / math.sqrt(dot(at.across, at.across))
 
 
-@jitable
+@inlined
 def damping_forces(dampers: Dampers, frames: Array, v: Array, axes: tuple[int, ...], force: Array) -> None:
     """Write the force of every damper along its direction [N], shape (d,)."""
     for i in range(len(force)):
         force[i] = -dampers.c[i] * stretching(dampers, i, frames, v, axes)
 
 
-@jitable
+@inlined
 def push_ends(dampers: Dampers, i: int, force: float, frames: Array, axes: tuple[int, ...], total: Array) -> None:
     """Add a force that pushes the ends of damper i apart [N] to generalised forces."""
     at = ends(dampers, i, frames, axes)
@@ -64,7 +64,7 @@ def push_ends(dampers: Dampers, i: int, force: float, frames: Array, axes: tuple
         push_body(frames, dampers.anchor_body[i], at.anchor_arm, scaled(-1.0, pushed), total)
 
 
-@jitable
+@inlined
 def damp(dampers: Dampers, frames: Array, force: Array, axes: tuple[int, ...], total: Array) -> None:
     """Add the forces of the dampers [N], shape (d,), to generalised forces."""
     for i in range(len(force)):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..geometry.frames import velocities
 from ..problem.ground.motion import GroundMotion
 from ..quantities import Array
@@ -54,7 +54,7 @@ class Ground(NamedTuple):
         return cls(Shaking.of(motion), Shaking.of(vertical), Shaking.of(transverse))
 
 
-@jitable
+@inlined
 def ground_velocity(shaking: Shaking, t: float) -> float:
     """Exact integral of the acceleration from zero to t, constant after the last sample [m/s]."""
     position, last = t / shaking.dt, len(shaking.accel) - 1
@@ -68,7 +68,7 @@ def ground_velocity(shaking: Shaking, t: float) -> float:
     return shaking.velocity[i] + shaking.dt * s * (shaking.accel[i] + 0.5 * s * rise)
 
 
-@jitable
+@inlined
 def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
     """Mean acceleration of the ground over the window of a step [m/s2]."""
     if len(shaking.accel) == 0:
@@ -76,7 +76,7 @@ def mean_acceleration(shaking: Shaking, t: float, h: float) -> float:
     return (ground_velocity(shaking, t + 0.5 * h) - ground_velocity(shaking, t - 0.5 * h)) / h
 
 
-@jitable
+@inlined
 def push_ground(ground: Ground, masses: Array, axes: tuple[int, ...], t: float, h: float, applied: Array) -> None:
     """Add the force of the moving ground on every body to `applied` [N], shape (n nv,), as `masses`."""
     if len(ground.x.accel) > 0:

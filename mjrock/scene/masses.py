@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import block_diag, csr_array, eye_array
 
-from ..compiled import inlined, jitable
+from ..compiled import inlined
 from ..geometry.vectors import Vector, spun
 from ..quantities import Array
 
@@ -47,7 +47,7 @@ def principal(mass: Array, inertia: Array) -> tuple[csr_array, Array]:
     return csr_array(block_diag(blocks)), np.column_stack([mass, mass, mass, moments]).ravel()
 
 
-@jitable
+@inlined
 def coupling(products: Array, v: Array) -> float:
     """What the products of inertia add to v^T M v, the sum of masses times squares [J]."""
     total = 0.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined, jitable
+from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, take_frames
 from ..geometry.kinematics import AppliedForces, Places, Ties, depth, displacement, slack, stretch
 from ..geometry.vectors import dot, vector
@@ -39,7 +39,7 @@ class Structure(NamedTuple):
     products: Array = NO_PRODUCTS
 
 
-@jitable
+@inlined
 def spring_energy(places: Places, k: Array, i: int, frames: Array) -> float:
     """Energy in the spring of contact i [J]."""
     return stored(Law(k[i], 0.0, 0.0, 0.0), -depth(places, i, frames))
@@ -58,7 +58,7 @@ def weight_energy(masses: Array, q: Array, axes: tuple[int, ...]) -> float:
     return energy
 
 
-@jitable
+@inlined
 def force_energy(forces: AppliedForces, frames: Array, axes: tuple[int, ...]) -> float:
     """Energy of the constant forces above their position at rest [J]."""
     energy = 0.0

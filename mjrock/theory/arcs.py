@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, jitable
+from ..compiled import compiled, inlined
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import pulled, yielded
 from ..quantities import ON_ITS_FACE, Array, Integers
@@ -33,7 +33,7 @@ CHUNK = 4096
 """Room for knots, and for a quarter as many impacts and peaks, which is emptied when it is full."""
 
 
-@jitable
+@inlined
 def change_of(toe: Toe, ties: WallTies, i: int, theta: float) -> int:
     """What tie i does at a rotation, other than what it does in this step; -1 where that is the same.
 
@@ -57,7 +57,7 @@ def change_of(toe: Toe, ties: WallTies, i: int, theta: float) -> int:
     return -1
 
 
-@jitable
+@inlined
 def any_change(toe: Toe, ties: WallTies, theta: float) -> bool:
     """Whether any tie does something else at a rotation."""
     for i in range(len(ties.doing)):  # noqa: SIM110, numba knows no any()
@@ -66,7 +66,7 @@ def any_change(toe: Toe, ties: WallTies, theta: float) -> bool:
     return False
 
 
-@jitable
+@inlined
 def until_change(toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
     """The time within a step after which a tie first does something else, from just after it; `h` where none does."""
     if len(ties.doing) == 0 or not any_change(toe, ties, nystroem(toe, ties, push, theta, omega, h)[0]):
@@ -81,7 +81,7 @@ def until_change(toe: Toe, ties: WallTies, push: Push, theta: float, omega: floa
     return high
 
 
-@jitable
+@inlined
 def take_changes(toe: Toe, ties: WallTies, theta: float, turned: bool) -> None:
     """Let every tie do what it does from here on. One that yields has yielded for good when the wall turns."""
     for i in range(len(ties.doing)):
@@ -145,13 +145,13 @@ class ArcRoom(NamedTuple):
         return tuple(array[:count].copy() for array, count in zip(self[:3], self.counts, strict=True))
 
 
-@jitable
+@inlined
 def free_moment(toe: Toe, x: float, z: float) -> float:
     """Moment that holds a resting wall down, over its inertia [1/s2]; a negative one lifts it towards the toe."""
     return toe.P + toe.Wd * z + toe.side * toe.Wz * x
 
 
-@jitable
+@inlined
 def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple[float, float]:
     """When a wall that rests at time `t` is lifted, and to which side [s, +1 or -1]. Never is infinity."""
     begun = t
@@ -171,7 +171,7 @@ def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple
     return math.inf, 1.0
 
 
-@jitable
+@inlined
 def root(end: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
     """When within the next `h` the wall is at an end of its arc: UPRIGHT, TURNED or LYING [s].
 
@@ -203,7 +203,7 @@ def root(end: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: fl
     return tau
 
 
-@jitable
+@inlined
 def noted(room: ArcRoom, t: float, theta: float, omega: float, pulling: float) -> None:
     """Write a knot."""
     knot = room.knots[room.counts[0]]
@@ -211,7 +211,7 @@ def noted(room: ArcRoom, t: float, theta: float, omega: float, pulling: float) -
     room.counts[0] += 1
 
 
-@jitable
+@inlined
 def met(room: ArcRoom, law: RockingLaw, rules: Rules, t: float, side: float, omega: float) -> float:
     """Write an impact, and return the angular velocity after it."""
     impact, leaving = room.impacts[room.counts[1]], math.copysign(1.0, rules.e * omega)

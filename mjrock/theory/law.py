@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import jitable
+from ..compiled import inlined
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import TiePull, pulled
@@ -127,7 +127,7 @@ class Push(NamedTuple):
     z_rate: float
 
 
-@jitable
+@inlined
 def piece(shaken: Shaken, t: float) -> tuple[float, float, float]:
     """a_g / g at a time [-], its rate [1/s], and the end of the interval in which it is linear [s]."""
     i, last = int(t / shaken.dt + 1e-9), len(shaken.shares) - 1
@@ -137,7 +137,7 @@ def piece(shaken: Shaken, t: float) -> tuple[float, float, float]:
     return shaken.shares[i] + rate * (t - i * shaken.dt), rate, (i + 1) * shaken.dt
 
 
-@jitable
+@inlined
 def pushed(horizontal: Shaken, vertical: Shaken, t: float) -> tuple[Push, float]:
     """The motion of the base from a time on, and the end of the interval in which it is linear [s]."""
     x, x_rate, x_end = piece(horizontal, t)
@@ -147,7 +147,7 @@ def pushed(horizontal: Shaken, vertical: Shaken, t: float) -> tuple[Push, float]
     return Push(x, x_rate, z, z_rate), min(x_end, z_end)
 
 
-@jitable
+@inlined
 def turned_by(theta: float, sine: float, cosine: float, delta: float) -> tuple[float, float]:
     """Sine and cosine of theta + delta from those of theta: by the addition theorem, with series that are exact to
     rounding."""
@@ -159,7 +159,7 @@ def turned_by(theta: float, sine: float, cosine: float, delta: float) -> tuple[f
     return sine * c + cosine * s, cosine * c - sine * s
 
 
-@jitable
+@inlined
 def held_back(toe: Toe, ties: WallTies, theta: float) -> float:
     """Acceleration by the ties, each doing in the step what it did at its start [rad/s2]."""
     total = 0.0
@@ -172,14 +172,14 @@ def held_back(toe: Toe, ties: WallTies, theta: float) -> float:
     return total / toe.inertia
 
 
-@jitable
+@inlined
 def pull_of(ties: WallTies, i: int) -> TiePull:
     """Tie i."""
     tie = ties.pulls[i]
     return TiePull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7], tie[8])
 
 
-@jitable
+@inlined
 def acceleration(toe: Toe, ties: WallTies, x: float, z: float, theta: float, sine: float, cosine: float) -> float:
     """theta'' at accelerations x and z of the base over g [rad/s2]."""
     push = toe.side * x
@@ -188,7 +188,7 @@ def acceleration(toe: Toe, ties: WallTies, x: float, z: float, theta: float, sin
     return total + held_back(toe, ties, theta) if len(ties.doing) > 0 else total
 
 
-@jitable
+@inlined
 def nystroem(
     toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float
 ) -> tuple[float, float, float, float]:

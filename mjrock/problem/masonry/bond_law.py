@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ...compiled import inlined, jitable
+from ...compiled import inlined
 from .joint_law import shear_limit
 
 PASSES = 8
@@ -27,7 +27,7 @@ BRITTLE = 0.9
 """Rate at which a crack softens, over the stiffness of its spring, from which it breaks at once [-]."""
 
 
-@jitable
+@inlined
 def tear(bond: Any, gap: float) -> None:
     """Let the crack of a bond grow until it pulls no more than is left of its strength, at a gap [m].
 
@@ -49,7 +49,7 @@ def tear(bond: Any, gap: float) -> None:
     bond.secant = bond.k * (far - crack) / far
 
 
-@jitable
+@inlined
 def crush(bond: Any, gap: float, sheared: float) -> float:
     """Crush a joint at a gap [m] under a force along the face [N]. Returns by how much it closes for good [m]."""
     sheared *= 3

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...compiled import jitable
+from ...compiled import inlined
 from ...quantities import Array
 from .effect import Anchored
 
@@ -50,7 +50,7 @@ class TiePull(NamedTuple):
         return moment
 
 
-@jitable
+@inlined
 def pulled(tie: TiePull, theta: Any, side: float) -> tuple[Any, Any]:
     """Elongation of a tie beyond its slack [m], and its lever [m]: the rate of its length with the rotation theta.
 
