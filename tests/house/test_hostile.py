@@ -227,6 +227,7 @@ CALLS = OF_NUMBERS | {
         mr.Masonry.facade,
         {
             "length": 0.8, "height": 0.4, "depth": 0.4, "unit": (0.4, 0.2), "openings": (), "gable": 0, "density": 2e3,
+            "thickness": 0.2, "returns": "both", "ground": None,
         },
     ),
     "Polyhedron.prism": (mr.Polyhedron.prism, {"polygon": COLUMN.blocks[1], "middle": 0.0}),
