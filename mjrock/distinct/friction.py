@@ -41,6 +41,8 @@ SWEEPS = 50
 """Most sweeps over the lines in a step."""
 SETTLED = 1e-3
 """Change of an impulse in a sweep, over the largest of a line that is pressed most, below which the sweeps end [-]."""
+STRIDE = 3
+"""Lines from one that a sweep takes to the next."""
 HELD = 1e-9
 """Least compliance of a body that a guide holds, over that of its mass [-]."""
 
@@ -73,11 +75,11 @@ def shortened(a: Vector, limit: float) -> Vector:
 
 
 @inlined
-def carried(line: Row, supports: Supports, way: Vector) -> float:
-    """Velocity of the support of a line along a vector, zero where none moves it."""
-    if line.support < 0:
+def carried(row: Row, supports: Supports, way: Vector) -> float:
+    """Velocity of the support of a line, or of one of its ways, along a vector, zero where none moves it."""
+    if row.support < 0:
         return 0.0
-    return dot(way, vector(supports.moving, line.support, way))
+    return dot(way, vector(supports.moving, row.support, way))
 
 
 @inlined
@@ -154,6 +156,7 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
     body, face, on_face = system.bodies[line.body], system.bodies[max(line.face, 0)], line.face >= 0
     for i in range(len(normal) - 1):
         row, way = system.ways[first + i], way_along(normal, i)
+        row.body, row.face, row.support = line.body, line.face, line.support
         lever = moment(arm, way)
         spin = spin_from_moment(body, lever)
         put(row.way, way)
@@ -166,6 +169,7 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
             put(row.lever_on_face, lever)
             put(row.spin_of_face, spin)
             row.compliance += yielding(face, way) + dot(lever, spin)
+        row.stiffness = 1 / row.compliance
     if len(normal) == 3:
         a, b = system.ways[first], system.ways[first + 1]
         a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
@@ -174,26 +178,26 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
 
 
 @inlined
-def slip_along(system: System, line: Row, row: Row, axes: tuple[int, ...]) -> float:
+def slip_along(system: System, row: Row, axes: tuple[int, ...]) -> float:
     """Velocity along a way of a line that sticks rigidly [m/s]."""
-    body, way = system.bodies[line.body], components(row.way, axes)
+    body, way = system.bodies[row.body], components(row.way, axes)
     slip = dot(way, components(body.velocity, axes))
     slip += dot(spin_components(row.lever, axes), spin_components(body.spin, axes))
-    if line.face >= 0:
-        face = system.bodies[line.face]
+    if row.face >= 0:
+        face = system.bodies[row.face]
         slip -= dot(way, components(face.velocity, axes))
         slip -= dot(spin_components(row.lever_on_face, axes), spin_components(face.spin, axes))
-    return slip - carried(line, system.supports, way)
+    return slip - carried(row, system.supports, way)
 
 
 @inlined
-def strike(system: System, line: Row, row: Row, impulse: float, axes: tuple[int, ...]) -> None:
-    """Let an impulse along a way act on the body of a line and on that of its face [N s]."""
-    body, way = system.bodies[line.body], components(row.way, axes)
+def strike(system: System, row: Row, impulse: float, axes: tuple[int, ...]) -> None:
+    """Let an impulse along a way act on the body of its line and on that of its face [N s]."""
+    body, way = system.bodies[row.body], components(row.way, axes)
     kick_place(body, scaled(impulse, way))
     strike_spin(body, impulse, spin_components(row.lever, axes), spin_components(row.spin, axes))
-    if line.face >= 0:
-        face = system.bodies[line.face]
+    if row.face >= 0:
+        face = system.bodies[row.face]
         kick_place(face, scaled(-impulse, way))
         strike_spin(face, -impulse, spin_components(row.lever_on_face, axes), spin_components(row.spin_of_face, axes))
 
@@ -212,20 +216,20 @@ def begin(system: System, line: Row, first: int, kick: float, axes: tuple[int, .
         impulses = shortened((dot(components(a.way, axes), grip), dot(components(b.way, axes), grip)), limit)
     for i in range(len(axes) - 1):
         row = system.ways[first + i]
-        row.impulse = impulses[i]
-        strike(system, line, row, row.impulse, axes)
+        row.impulse, row.limit = impulses[i], limit
+        strike(system, row, row.impulse, axes)
     return limit
 
 
 @inlined
-def stopping(system: System, line: Row, first: int, limit: float, axes: tuple[int, ...]) -> Vector:
+def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
     """The impulses along its ways that stop the slip of a line as far as its face can [N s]."""
     a = system.ways[first]
-    slip = slip_along(system, line, a, axes)
+    slip, limit = slip_along(system, a, axes), a.limit
     if len(axes) == 2:
-        return shortened((a.impulse - slip / a.compliance,), limit)
+        return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.ways[first + 1]
-    other = slip_along(system, line, b, axes)
+    other = slip_along(system, b, axes)
     area = a.compliance * b.compliance - a.coupling * a.coupling
     along = a.impulse - (b.compliance * slip - a.coupling * other) / area
     across = b.impulse - (a.compliance * other - a.coupling * slip) / area
@@ -239,13 +243,13 @@ def stopping(system: System, line: Row, first: int, limit: float, axes: tuple[in
 
 
 @inlined
-def stop(system: System, line: Row, first: int, limit: float, axes: tuple[int, ...]) -> float:
+def stop(system: System, first: int, axes: tuple[int, ...]) -> float:
     """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
-    impulses, changed = stopping(system, line, first, limit, axes), 0.0
+    impulses, changed = stopping(system, first, axes), 0.0
     for i in range(len(axes) - 1):
         row = system.ways[first + i]
         change = impulses[i] - row.impulse
-        strike(system, line, row, change, axes)
+        strike(system, row, change, axes)
         row.impulse = impulses[i]
         changed = max(changed, abs(change))
     return changed
@@ -253,16 +257,19 @@ def stop(system: System, line: Row, first: int, limit: float, axes: tuple[int, .
 
 @inlined
 def stick(system: System, active: Integers, count: int, kick: float, axes: tuple[int, ...]) -> None:
-    """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s]."""
+    """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s].
+
+    Neighbouring lines share their bodies, so that each would wait for the one before it: a sweep takes every third.
+    """
     lines, each, largest = system.lines, len(axes) - 1, 0.0
     for i in range(count):
         largest = max(largest, begin(system, lines[active[i]], each * i, kick, axes))
     for sweep in range(SWEEPS):
         changed = 0.0
-        for turn in range(count):
-            i = turn if sweep % 2 else count - 1 - turn
-            line = lines[active[i]]
-            changed = max(changed, stop(system, line, each * i, kick * shear_limit(line, line.push), axes))
+        for start in range(STRIDE):
+            for turn in range(start, count, STRIDE):
+                i = turn if sweep % 2 else count - 1 - turn
+                changed = max(changed, stop(system, each * i, axes))
         if changed <= SETTLED * largest:
             break
     for i in range(count):
@@ -286,12 +293,12 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[i
 
 
 @inlined
-def note_slips(system: System, active: Integers, count: int, axes: tuple[int, ...]) -> None:
+def note_slips(system: System, count: int, axes: tuple[int, ...]) -> None:
     """Keep the slip of the lines that stick rigidly before the forces act."""
     each = len(axes) - 1
     for i in range(each * count):
         row = system.ways[i]
-        row.slip = slip_along(system, system.lines[active[i // each]], row, axes)
+        row.slip = slip_along(system, row, axes)
 
 
 @inlined
@@ -300,10 +307,10 @@ def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]
     the supports put in through it. Returns the halves of both before the pose [J]."""
     totals, each, rubbed, put_in = books.totals[0], len(axes) - 1, 0.0, 0.0
     for i in range(each * count):
-        row, line = system.ways[i], system.lines[books.active[i // each]]
-        slip = 0.5 * (row.slip + slip_along(system, line, row, axes))
+        row = system.ways[i]
+        slip = 0.5 * (row.slip + slip_along(system, row, axes))
         totals.friction -= row.impulse * slip
-        work = row.impulse * carried(line, system.supports, components(row.way, axes))
+        work = row.impulse * carried(row, system.supports, components(row.way, axes))
         totals.ground += work
         rubbed -= 0.5 * row.impulse * row.slip
         put_in += 0.5 * work

@@ -271,7 +271,7 @@ def make_steps(
         if sampled or looked:
             keep_pose(system, books, samples, kept, before, axes)
         if accounted:
-            note_slips(system, books.active, sticking, axes)
+            note_slips(system, sticking, axes)
         if clock.local > 0:
             oppose(system, books, clock.local, kick, axes)
         kick_bodies(system.bodies, kick, axes)

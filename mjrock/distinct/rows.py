@@ -128,10 +128,13 @@ def _edge(d: int) -> Fields:
 
 def _way(d: int, s: int) -> Fields:
     return [
+        *_integer("body", "face", "support"),  # those of its line, so that sweeps need no lines
+        *_number("limit"),  # the most that the face holds in this step [N s]
         *_vector(d, "way"),  # a direction along the face
         *_vector(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
         *_vector(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
         *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
+        *_number("stiffness"),  # 1 over the compliance [kg]
         *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
     ]
 
