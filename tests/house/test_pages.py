@@ -2,6 +2,7 @@
 
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import mjrock as mr
@@ -137,6 +139,25 @@ def test_every_public_name_is_in_the_reference():
     reference = (DOCS / "api.md").read_text(encoding="utf-8")
     listed = re.findall(r"^\.\. auto(?:class|function|data):: mjrock\.(?:[a-z]+\.)*(\w+)$", reference, re.MULTILINE)
     assert {name for name in mr.__all__ if not name.startswith("_")} <= set(listed)
+
+
+@pytest.mark.slow
+def test_the_church_example_goes_from_records_to_a_report(capsys):
+    names = runpy.run_path(str(DOCS / "examples" / "07_church_facade.py"))
+    assert [len(components) for components in names["records"].values()] == 7 * [2]
+    T, target = names["periods"], names["spectrum"](names["periods"])
+    for components in names["scaled"]:
+        means = [mr.response_spectrum(motion, T).Sa for motion in components]
+        assert np.exp(np.log(np.sqrt(means[0] * means[1]) / target).mean()) == pytest.approx(1.0)
+    checks, fits = names["checks"], names["fits"]
+    assert checks["as it is"].linear_ratio < 1 < checks["bars, 100 mm"].linear_ratio
+    assert checks["bars, 30 mm"].breaking["tie_0"] < checks["bars, 100 mm"].breaking["tie_0"]
+    assert names["check_upper"].peak > names["spectrum"].peak
+    assert fits["as it is"].median < fits["bars, 100 mm"].median
+    page = names["report"].read_text(encoding="utf-8")
+    assert all(f"{heading}</h2>" in page for heading in ("Code check", "Fragility", "Results"))
+    assert names["film"].stat().st_size > 1e5
+    assert "capacity over that as it is" in capsys.readouterr().out
 
 
 @pytest.mark.slow
