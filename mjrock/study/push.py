@@ -44,6 +44,8 @@ HIGHEST = 2.5
 """Largest multiplier of a push [-]."""
 DAMPED = 0.5
 """Damping ratio of the block on an actuator that has no damping of its own [-]."""
+STRIKING = 0.05
+"""Force of inertia over what is borne beyond which a point is part of a blow [-]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,14 +72,22 @@ class Push:
 
     @property
     def peak(self) -> float:
-        """The largest force either way [N] or multiplier [-]."""
-        return float(np.abs(self.force).max())
+        """The largest force either way [N] or multiplier [-], of points whose force of inertia is below 5 % of it.
+
+        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry.
+        """
+        return float(np.abs(self.force[self._peak_at]))
 
     @property
     def inertia_share(self) -> float:
         """Root mean square of the forces of inertia up to the peak, over the peak [-]."""
-        until = int(np.abs(self.force).argmax()) + 1
-        return float(np.sqrt(np.mean(self.inertia[:until] ** 2)) / self.peak)
+        return float(np.sqrt(np.mean(self.inertia[: self._peak_at + 1] ** 2)) / self.peak)
+
+    @property
+    def _peak_at(self) -> int:
+        """The point of the peak."""
+        slow = np.abs(self.inertia) <= STRIKING * np.abs(self.force)
+        return int(np.where(slow, np.abs(self.force), -1.0).argmax())
 
     def __repr__(self) -> str:
         return (

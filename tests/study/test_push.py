@@ -1,5 +1,7 @@
 """Slow pushes against closed forms: what a panel bears as it slides or turns, with its softening branch."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from driven import WEIGHT, B, H, panel
@@ -50,6 +52,23 @@ def test_local_damping_does_not_shift_it(turned):
     at = np.linspace(0.02, 0.38, 10)
     found = [np.interp(at, each.displacement, each.force) for each in (damped, turned)]
     np.testing.assert_allclose(*found, atol=0.002 * turned.peak)
+
+
+def test_a_blow_is_no_strength(turned):
+    """Points with more than 5 % of inertia do not count, whatever the masonry bears there."""
+    inertia = np.array([0.01, 0.02, 0.02, 0.5])
+    struck = replace(turned, displacement=np.arange(4.0), force=np.array([0.4, -1.0, 0.9, 2.0]), inertia=inertia)
+    assert struck.peak == 1.0
+    assert struck.inertia_share == pytest.approx(np.sqrt((0.01**2 + 0.02**2) / 2))
+
+
+@pytest.mark.slow
+def test_a_panel_of_blocks_bears_no_more_than_limit_analysis_and_its_hinges():
+    """Units that have given way strike each other, with a fifth more than they bore."""
+    joints = {"friction": 0.6, "k_n": 1e10, "k_s": 1e10}
+    wall = mr.Masonry.running_bond(2.0, 1.5, (0.5, 0.25), 0.25, **joints)
+    bound = mr.collapse_multiplier(wall).multiplier
+    assert 0.98 * bound < mr.push(wall, 1, 0.01).peak < 1.04 * bound
 
 
 def test_it_stops_where_the_force_has_fallen():
