@@ -160,12 +160,29 @@ def masonry_cautions(responses: Sequence[Response], names: Sequence[str]) -> lis
     if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
         said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
     if not any(response.solver == "explicit" for response in responses):
-        said.append("In MuJoCo faces have no end, and blocks that fall meet no others: explicit steps know both.")
+        said.append("In MuJoCo faces have no end, and blocks that fall meet no others. Explicit steps have both.")
     said.append("A margin depends on k_n and the points of the joints: repeat it with others.")
+    return said + broken_ties(responses, names)
+
+
+def broken_ties(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
+    """Which ties broke, in a sentence for all that broke in the same runs."""
+    broke: dict[str, dict[str, float]] = {}
     for response, name in zip(responses, names, strict=True):
         for tie, drawn in response.plastic.items():
             if drawn.broken < float("inf"):
-                said.append(f"{name}: {tie} broke at {drawn.broken:.3f} s.")
+                broke.setdefault(tie, {})[name] = drawn.broken
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for tie, when in broke.items():
+        alike.setdefault(tuple(when), []).append(tie)
+    said = []
+    for runs, ties in alike.items():
+        first = min(broke[tie][name] for tie in ties for name in runs)
+        held = sum(ties[0] in response.ties for response in responses)
+        count = f"all {held}" if len(runs) == held else f"{len(runs)} of {held}"
+        one = f"{runs[0]}: {named(ties)} broke"
+        many = f"{named(ties)} broke in {count} runs with {'it' if len(ties) == 1 else 'them'}"
+        said.append(f"{one if len(runs) == 1 else many}, first at {first:.3f} s.")
     return said
 
 
@@ -183,7 +200,7 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
     if motions and all(motion in (motions[0], motions[0].reversed()) for motion in motions):
         said.append("There is one ground motion: rocking is sensitive, and one record proves little.")
     if not any(response.solver == "MuJoCo" for response in responses):
-        said.append("Rocking theory alone knows no stiffness of the base and is most often the upper bound.")
+        said.append("Rocking theory has no stiffness of the base, and is most often the upper bound of the capacity.")
     if case.motion is None and not motions:
         said.append("There is no ground motion: this is the motion after a release.")
     for response, name in zip(responses, names, strict=True):
@@ -197,9 +214,7 @@ def cautions(case: Case, responses: Sequence[Response], names: Sequence[str]) ->
                     f"{name}: {tie}, which never breaks here, was drawn out by {1e3 * drawn.elongation:.3g} mm, "
                     f"{drawn.elongation / effect.span:.1%} of its length."
                 )
-            elif drawn.broken < float("inf"):
-                said.append(f"{name}: {tie} broke at {drawn.broken:.3f} s.")
-    return said
+    return said + broken_ties(responses, names)
 
 
 def versions() -> TableRows:

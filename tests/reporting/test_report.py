@@ -49,6 +49,21 @@ def test_one_page_with_all_that_it_needs(tmp_path):
     assert ANSWER.message in text.replace("&#x27;", "'")
 
 
+def test_ties_that_broke_are_told_in_one_sentence(tmp_path):
+    pair = (TIE, TIE)
+    cases = [mr.Case(WALL, 0.0, 2.5, motion=motion, effects=pair) for motion in MOTION.polarities]
+    runs = [mr.solve_analytical(case, E) for case in cases]
+    broken = [drawn.broken for run in runs for drawn in run.plastic.values()]
+    assert len(broken) == 4
+    bare = mr.solve_analytical(mr.Case(WALL, 0.0, 2.5, motion=MOTION), E)
+    labels = ["recorded", "reversed", "bare"]
+    text = mr.report(cases[0], [*runs, bare], tmp_path / "a.html", labels=labels).read_text(encoding="utf-8")
+    assert f"tie_0, tie_1 broke in all 2 runs with them, first at {min(broken):.3f} s." in text
+    assert text.count("broke in") == 1
+    one = mr.report(cases[0], runs[0], tmp_path / "b.html", labels=["recorded"]).read_text(encoding="utf-8")
+    assert f"recorded: tie_0, tie_1 broke, first at {min(broken[:2]):.3f} s." in one
+
+
 def test_sections_hold_texts_figures_and_tables(tmp_path):
     check = mr.mechanism_check(CASE, lambda T, xi: 0.1)
     figure = Figure(figsize=(2.0, 1.0))
