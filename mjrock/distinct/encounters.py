@@ -208,7 +208,7 @@ class Encounters:
         for name, column in self._law(found, number, poses, system, h).items():
             new.rows[name] = column
         blocks = self.blocks._replace(poses=poses)
-        hand_over(new, found, gone, Pairs.of(number, pair[which]), blocks, system.axes)
+        hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
         joints["margin"][worn] = np.inf  # no step looks at such a line again

@@ -79,7 +79,7 @@ class Pairs(NamedTuple):
     high: Integers
 
     @classmethod
-    def of(cls, places: Integers, gone: Integers) -> Pairs:
+    def belonging(cls, places: Integers, gone: Integers) -> Pairs:
         """From the number of the pair of each place, where those of a pair stand together, and of each line that is
         gone, where they increase."""
         first = np.concatenate([[0], np.flatnonzero(np.diff(places)) + 1, [len(places)]])

@@ -171,6 +171,20 @@ def test_a_facade_whose_units_are_cut_stands_at_rest():
     np.testing.assert_allclose(settled.pose[-1], settled.pose[0], atol=1e-7)
 
 
+def test_corners_may_be_bonded_in_part():
+    """Joints between facade and return walls are known by their names: less friction there, less is borne outwards."""
+
+    def at_corners(joint):
+        one, other = (name.split("_")[0] for name in joint.name.split("|"))
+        return 0.1 if {one, other} in ({"facade", "left"}, {"facade", "right"}) else 0.7
+
+    borne = []
+    for friction in (0.7, at_corners):
+        masonry = mr.Masonry.facade(2.4, 1.2, 0.8, UNIT, xi=0, friction=friction)
+        borne.append(mr.collapse_multiplier(masonry, angle=0.0).multiplier)
+    assert borne[1] < 0.8 * borne[0]
+
+
 def test_the_ground_may_be_given():
     slab = mr.Polyhedron.box((3.0, 3.0, 0.3), (-0.5, 0.0, -0.15), fixed=True, name="slab")
     masonry = mr.Masonry.facade(1.6, 0.8, 0.8, UNIT, ground=slab, xi=0)

@@ -1,0 +1,22 @@
+"""First cracks of mortared walls, and masonry on a tilting table in time, against closed forms."""
+
+import pytest
+
+import mjrock as mr
+from scripts.checks import mortar, tilting_table
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if "12" in name else name for name in mortar.CASES]
+)
+def test_a_mortared_wall_cracks_where_the_closed_form_says(name):
+    wall, expected = mortar.CASES[name]()
+    assert mortar.first_crack(wall, expected) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", tilting_table.CASES)
+def test_masonry_on_a_tilting_table_moves_where_the_closed_form_says(name):
+    masonry, closed = tilting_table.CASES[name]
+    expected = mr.collapse_multiplier(masonry).multiplier if closed is None else closed
+    assert tilting_table.tangent(masonry, expected) == pytest.approx(expected, rel=0.01)
