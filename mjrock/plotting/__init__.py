@@ -1,4 +1,8 @@
-"""Pictures: functions that draw on an Axes and return it. The only package that imports matplotlib."""
+"""Pictures: functions that draw on an Axes and return it, or make a figure of several panels and return that.
+
+An Axes is the first argument, or `ax`, and may be left out: `save(pushover(curves), "curves.png")`. The only package
+that imports matplotlib.
+"""
 
 from .accuracy import convergence, peers, work_precision
 from .animation import animate, animate_bodies

@@ -6,7 +6,7 @@ import functools
 import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar, cast
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -29,6 +29,7 @@ from ..quantities import (
 from ..result.response import Response
 from ..study.fragility import Fragility
 
+P = ParamSpec("P")
 Picture = TypeVar("Picture", bound=Callable[..., Any])
 Check = Callable[[str, Any], object]
 """Raises a TypeError or ValueError with the name and the value of an argument that cannot be."""
@@ -196,20 +197,56 @@ CHECKS: dict[str, Check] = {
 """The check of each argument that means the same in every picture."""
 
 
-def picture(**own: Check) -> Callable[[Picture], Picture]:
-    """Check the arguments of a function that draws, by `CHECKS` and by those of its own, before anything is drawn."""
+class OnAxes(Protocol[P]):
+    """A function that draws on an Axes, its first argument or `ax`, or on one of its own, and returns it."""
 
-    def decorated(draw: Picture) -> Picture:
+    @overload
+    def __call__(self, ax: Axes, /, *given: P.args, **options: P.kwargs) -> Axes: ...
+
+    @overload
+    def __call__(self, *given: P.args, **options: P.kwargs) -> Axes: ...
+
+
+class Checked(Protocol):
+    """What `picture` makes of a function that draws."""
+
+    @overload
+    def __call__(self, draw: Callable[Concatenate[Axes, P], Axes], /) -> OnAxes[P]: ...
+
+    @overload
+    def __call__(self, draw: Picture, /) -> Picture: ...
+
+
+def own_axes(about: Any) -> Axes:
+    """An Axes in a figure of its own, of three dimensions for masonry in space or what was found of it."""
+    about = getattr(about, "case", about)
+    deep = getattr(getattr(about, "masonry", about), "in_space", False)
+    figure = Figure(figsize=(6.4, 4.8) if deep else (5.2, 3.6), layout="constrained")
+    return figure.add_subplot(projection="3d" if deep else None)
+
+
+def picture(**own: Check) -> Checked:
+    """Check the arguments of a function that draws, by `CHECKS` and by those of its own, before anything is drawn.
+
+    One that draws on an Axes makes a figure where it is not given one.
+    """
+
+    def decorated(draw: Any) -> Any:
         signature = inspect.signature(draw)
+        on_axes = next(iter(signature.parameters)) == "ax"
 
         @functools.wraps(draw)
-        def checked(*given: Any, **options: Any) -> Any:
+        def checked(*given: Any, ax: Axes | None = None, **options: Any) -> Any:
+            if ax is not None:
+                given = (ax, *given)
+            elif on_axes and given and not isinstance(given[0], Axes):
+                given = (own_axes(given[0]), *given)
             for name, value in signature.bind(*given, **options).arguments.items():
                 check = own.get(name) or CHECKS.get(name)
                 if check is not None and not (value is None and signature.parameters[name].default is None):
                     check(name, value)
             return draw(*given, **options)
 
-        return cast(Picture, checked)
+        return checked
 
     return decorated

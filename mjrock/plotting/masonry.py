@@ -14,6 +14,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_kind, require_within
 from ..result.response import Response
+from .arguments import anything, picture
 from .bodies import ends_of, require_masonry, required_limits, window
 from .forces import Moving, forces_on, require_shown, sample_at
 from .solids import Solids
@@ -28,6 +29,7 @@ def moved(corners: Array, centroid: Array, pose: Array) -> Array:
     return np.asarray((corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2])
 
 
+@picture(limits=anything)
 def blocks(
     ax: Axes,
     masonry: Masonry | Response,
@@ -64,7 +66,6 @@ def blocks(
         ValueError: for a pose of another shape, a value outside its range, or axes of two dimensions for blocks in
             space.
     """
-    require_kind("ax", ax, Axes)
     time: Array = np.zeros(1)
     supports: tuple[Support, ...] = ()
     acting: tuple[Response, Moving, str] | None = None

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from ..problem.masonry.collapse import Collapse
 from ..problem.masonry.joints import Joint
 from ..quantities import require_flag, require_kind, require_within
+from .arguments import picture
 from .masonry import blocks
 
 FORCE = "#8a3a68"
@@ -15,6 +16,7 @@ THICK = 3.0
 """Width of the line of the largest force [points]."""
 
 
+@picture()
 def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool = True) -> Axes:
     """Masonry that has moved a little in its mechanism of collapse, and where joints press as it begins to move.
 
@@ -31,7 +33,6 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
     Raises:
         ValueError: for a multiplier that is infinite, or a share out of its range.
     """
-    require_kind("ax", ax, Axes)
     require_kind("collapse", collapse, Collapse)
     share, forces = require_within("share", share, 0.0, 1.0), require_flag("forces", forces)
     masonry = collapse.masonry

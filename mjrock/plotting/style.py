@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -98,24 +98,27 @@ def several(count: int, columns: int, size: tuple[float, float]) -> tuple[Figure
     return figure, axes
 
 
-def save(figure: Figure, path: str | Path) -> Path:
-    """Write a figure, in the format of the path's suffix, without traces of when and by what (reproducible bytes).
+def save(figure: Figure | Axes, path: str | Path) -> Path:
+    """Write a figure, or that of an Axes, in the format of the path's suffix.
+
+    It has no traces of when and by what it was made (reproducible bytes).
 
     A path without a suffix is that of a PNG. Returns the path that was written.
 
     Raises:
-        TypeError: for what is not a figure.
+        TypeError: for what is not a figure or an Axes.
         ValueError: for a suffix that Matplotlib does not write.
     """
-    require_kind("figure", figure, Figure)
+    require_kind("figure", figure, Figure, Axes)
+    drawn = cast(Figure, figure.get_figure(root=True)) if isinstance(figure, Axes) else figure
     path = require_path("path", path)
     if path.name not in ("", "..") and not path.suffix:
         path = path.with_suffix(".png")
-    formats = figure.canvas.get_supported_filetypes()
+    formats = drawn.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
         raise ValueError(f"path = {(path.name or str(path))!r} ends in none of .{', .'.join(sorted(formats))}")
     with replacing(path) as partial:
-        figure.savefig(partial, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
+        drawn.savefig(partial, dpi=200, metadata={"Software": None} if path.suffix == ".png" else None)
     return path
 
 

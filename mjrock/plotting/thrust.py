@@ -9,10 +9,12 @@ from ..problem.wall.case import Case
 from ..quantities import require_kind
 from ..result.response import Response
 from . import masonry, section
+from .arguments import anything, picture
 from .bodies import Bodies
 from .forces import Moving, forces_on, require_shown, sample_at
 
 
+@picture(limits=anything)
 def thrust(
     ax: Axes,
     response: Response,
@@ -38,7 +40,6 @@ def thrust(
         AttributeError: if the run has kept no forces.
         ValueError: for a time outside the run, or a value outside its range.
     """
-    require_kind("ax", ax, Axes)
     require_kind("response", response, Response)
     if not isinstance(response.case, Case):
         return masonry.blocks(ax, response, at=at, forces="thrust", magnified=magnified, limits=limits)

@@ -9,15 +9,16 @@ from matplotlib.axes import Axes
 
 from ..quantities import require_kind
 from ..study.sensitivity import Sensitivity
+from .arguments import picture
 
 
+@picture()
 def tornado(ax: Axes, found: Sensitivity) -> Axes:
     """A bar for each setting, from the lowest to the highest value where it alone changes, the widest on top.
 
     The bar "together" is the range of all runs. The vertical line is the base. A bar that reaches the dashed line has a
     run in which the wall overturned.
     """
-    require_kind("ax", ax, Axes)
     require_kind("found", found, Sensitivity)
     bars = dict(found.swings)
     if any(len(names) > 1 for names in found.changed):

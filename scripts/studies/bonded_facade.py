@@ -25,7 +25,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, UNIT, WINDOWS
+from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, SEEN, UNIT, WINDOWS
 
 JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 2}
 BONDS = {
@@ -69,10 +69,10 @@ def shaken(masonry: mr.Masonry, duration: float) -> mr.Response:
 
 def drawn(answers: dict[str, mr.Response]) -> Figure:
     """The façades after the motions."""
-    figure = Figure(figsize=(4.2 * len(answers), 3.8), layout=ConstrainedLayoutEngine(rect=(0.03, 0.0, 0.94, 1.0)))
+    figure = Figure(figsize=(4.2 * len(answers), 3.0), layout=ConstrainedLayoutEngine(rect=(0.03, 0.0, 0.94, 1.0)))
     for i, (name, answer) in enumerate(answers.items()):
         ax = figure.add_subplot(1, len(answers), i + 1, projection="3d")
-        plotting.blocks(ax, answer.case.masonry, answer.pose[-1], camera=CAMERA)
+        plotting.blocks(ax, answer.case.masonry, answer.pose[-1], camera=CAMERA, limits=SEEN)
         ax.set_title(f"{name}: {len(answer.fallen)} of {len(answer.case.masonry.free)} fallen", fontsize=9)
     return figure
 

@@ -109,7 +109,7 @@ def followed(run: Run) -> Found:
 def creep(duration: float, rest: float) -> tuple[float, float]:
     """Kinetic energy of the heap after its fall [J], and the largest way of a block in the time after it [m]."""
     run = Run("wall of 36 units", 1.0, duration)
-    fallen = mr.solve_explicit(case_of(run), output_step=0.05, ledger=True)
+    fallen = mr.solve_explicit(case_of(run), output_step=0.02, ledger=True)
     quiet = mr.solve_explicit(mr.MasonryCase(fallen.case.masonry, rest), output_step=0.05, start=fallen.end)
     assert fallen.ledger is not None
     ways = np.linalg.norm(quiet.pose[-1, :, :2] - quiet.pose[0, :, :2], axis=1)
