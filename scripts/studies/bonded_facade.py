@@ -1,0 +1,97 @@
+"""A façade whose mortar ties it to its return walls: when it cracks, parts from them and falls, with lime and dry.
+
+The façade is that of `facade_in_space`, 3.2 m long and 1.6 m high with two windows, in units of 0.4 x 0.2 x 0.2 m on
+joints with k_n = k_s = 3e9 N/m3 and mu = 0.6. It is dry, in poor lime mortar (f_t = 0.05 MPa, c = 0.07 MPa, G_I = 5 and
+G_II = 50 N/m) and in better lime (twice the strengths, 8 and 80 N/m).
+- The ground accelerates away from under the façade, by 0.25 g more each second. Printed are the accelerations at which
+  the first joint has cracked, and at which a block of the façade has moved out by 10 mm, and the multiplier of limit
+  analysis, which is an upper bound where joints soften.
+- Three motions shake it, with peaks of 9, 6 and 4.5 m/s2 along x, y and z. Printed are the joints that have cracked and
+  the blocks that have fallen, and drawn is how it stands after them.
+Writes bonded_facade.csv, .png and .txt.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from tqdm import tqdm
+
+import mjrock as mr
+from mjrock import plotting
+from scripts.shared import cli
+from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, UNIT, WINDOWS
+
+JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 2}
+BONDS = {
+    "dry": None,
+    "poor lime": mr.Bond(0.05e6, 0.07e6, 5.0, 50.0),
+    "better lime": mr.Bond(0.1e6, 0.14e6, 8.0, 80.0),
+}
+RATE, BEYOND = 0.25, 1.2
+"""Growth of the acceleration [g/s], and the largest over the multiplier of limit analysis [-]."""
+MOVED = 0.01
+"""How far a block has moved out of a façade that has parted from its return walls [m]."""
+PEAKS = {"motion": 9.0, "transverse": 6.0, "vertical": 4.5}
+"""Largest acceleration of the ground along x, y and z [m/s2]."""
+SHAKEN, FOLLOWED = 4.0, 5.0
+"""Duration of the motions, and of the runs under them [s]."""
+
+
+def facade(bond: mr.Bond | None) -> mr.Masonry:
+    """The façade with this mortar."""
+    return mr.Masonry.facade(LENGTH, HEIGHT, DEPTH, UNIT, openings=WINDOWS, bond=bond, **JOINTS)
+
+
+def pushed(masonry: mr.Masonry, most: float) -> tuple[float, float]:
+    """Accelerations over g at which the first joint has cracked, and a block has moved out, infinite for none."""
+    duration = most / RATE
+    ground = mr.GroundMotion(np.linspace(0.0, -most * mr.GRAVITY, 1001), duration / 1000)
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, duration, ground), output_step=0.01)
+    out = np.flatnonzero((answer.pose[:, :, 0] - answer.pose[0, :, 0]).max(axis=1) > MOVED)
+    crack = min(answer.cracked.values(), default=np.inf)
+    return RATE * crack, RATE * float(answer.t[out[0]]) if len(out) else np.inf
+
+
+def shaken(masonry: mr.Masonry, duration: float) -> mr.Response:
+    """The façade under the three motions."""
+    motions: dict[str, Any] = {
+        name: mr.GroundMotion.synthetic(peak=peak, duration=SHAKEN, seed=seed)
+        for seed, (name, peak) in enumerate(PEAKS.items(), 1)
+    }
+    return mr.solve_explicit(mr.MasonryCase(masonry, duration, **motions), output_step=0.01)
+
+
+def drawn(answers: dict[str, mr.Response]) -> Figure:
+    """The façades after the motions."""
+    figure = Figure(figsize=(4.2 * len(answers), 3.8), layout=ConstrainedLayoutEngine(rect=(0.03, 0.0, 0.94, 1.0)))
+    for i, (name, answer) in enumerate(answers.items()):
+        ax = figure.add_subplot(1, len(answers), i + 1, projection="3d")
+        plotting.blocks(ax, answer.case.masonry, answer.pose[-1], camera=CAMERA)
+        ax.set_title(f"{name}: {len(answer.fallen)} of {len(answer.case.masonry.free)} fallen", fontsize=9)
+    return figure
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Push and shake, print the table and draw."""
+    args = cli.parser(__doc__, "bonded_facade").parse_args(argv)
+    out, rows, answers = cli.folder(args.out), list[list[object]](), dict[str, mr.Response]()
+    for name in tqdm(["poor lime"] if args.quick else list(BONDS), desc="mortars", disable=None, leave=False):
+        masonry = facade(BONDS[name])
+        bound = mr.collapse_multiplier(masonry, (1.0, 0.0)).multiplier
+        crack, parts = pushed(masonry, 0.02 if args.quick else BEYOND * bound)
+        answers[name] = answer = shaken(masonry, 0.02 if args.quick else FOLLOWED)
+        cells = [f"{bound:.3f}", len(answer.cracked), len(answer.fallen)]
+        rows.append([name, f"{crack:.3f}" if np.isfinite(crack) else "-", f"{parts:.3f}", *cells])
+    plotting.save(drawn(answers), out / "bonded_facade.png")
+    header = ["mortar", "first crack [g]", "parts at [g]", "limit analysis [g]", "cracked joints", "fallen"]
+    cli.report(out / "bonded_facade", cli.table(header, rows), header, rows)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))
