@@ -163,3 +163,16 @@ def test_bonds_are_given_for_some_joints():
 def test_a_bond_out_of_range_is_refused(numbers, message):
     with pytest.raises(ValueError, match=message):
         mr.Bond(*numbers)
+
+
+def test_units_in_halves_have_the_mass_of_whole_ones_and_a_bond_within():
+    """A wall of 1.0 m in units of 0.4 m: two whole units and a piece of 0.2 m, which stays whole, in a course."""
+    within, between = mr.Bond(1e6, 1.4e6, 50.0, 500.0), mr.Bond(0.1e6, 0.14e6, 10.0, 100.0)
+    options = {"k_n": 1e10, "k_s": 1e10, "bond": between}
+    whole, halved = (mr.Masonry.running_bond(1.0, 0.4, (0.4, 0.2), halves=one, **options) for one in (None, within))
+    assert sum(block.mass for block in halved.blocks) == pytest.approx(sum(block.mass for block in whole.blocks))
+    assert len(halved.free) - len(whole.free) == 4
+    inner = [joint.name for joint, bond in zip(halved.joints, halved.bonds, strict=True) if bond == within]
+    assert len(inner) == 4
+    assert all(first[:-1] == second[:-1] for first, second in (name.split("|") for name in inner))
+    assert all(bond in (within, between) for bond in halved.bonds)

@@ -15,6 +15,7 @@ from arguments import BALL, OF_NUMBERS
 
 import mjrock as mr
 from mjrock.plotting import bodies
+from mjrock.study.ida import IncrementalAnalysis
 
 WALL = mr.Block(0.5, 2.0)
 E = mr.Restitution(0.75, -0.5)
@@ -38,6 +39,13 @@ def push(scale):
 
 CALLS = OF_NUMBERS | {
     "Block": (mr.Block, {"b": 1, "h": 100, "length": 8, "density": 100, "inset": 0.5}),
+    "Bond": (
+        mr.Bond,
+        {
+            "tension": 100, "cohesion": 100, "opening_energy": 8, "slip_energy": 8, "crushing": 16384,
+            "crushing_energy": 100,
+        },
+    ),
     "profile": (lambda z, t: mr.Block(1.0, 50.0, profile=[(0.0, 2.0), (z, t)]).inertia, {"z": 100, "t": 1}),
     "Restitution, stop": (lambda top: mr.Restitution.from_geometry(WALL, top), {"top": 3}),
     "Case": (lambda **given: mr.Case(WALL, **given), {"theta0": 0.125, "duration": 100, "omega0": 1}),
@@ -127,7 +135,7 @@ CALLS = OF_NUMBERS | {
         {"load": 100, "height": 4, "stiffness": 100},
     ),
     "ida percentiles": (
-        lambda share: mr.study.ida.IncrementalAnalysis(
+        lambda share: IncrementalAnalysis(
             ("a", "b"), np.array([1.0]), np.array([[1.0], [2.0]]), ((), ())
         ).percentiles([share]),
         {"share": 100},
