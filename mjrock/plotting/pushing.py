@@ -78,7 +78,8 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
             for name, rotation in reached.items():
                 together.setdefault(rotation, []).append(name)
             for rotation, names in together.items():
-                at = rotation, float(np.interp(rotation, curve.rotation, curve.multiplier))
+                near = int(np.searchsorted(curve.rotation, rotation))
+                at = rotation, float(curve.multiplier[max(near - 2, 0) : near + 1].max())  # before it falls
                 ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
                 said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
                 ax.annotate(said, at, (4, 4), textcoords="offset points", fontsize=7, color=line.get_color(), zorder=6)

@@ -1,10 +1,11 @@
 """Every public picture against one that somebody has looked at.
 
-Texts are taken out, since fonts differ between versions. Pictures are compared in cells: within one, the mean difference
-of the colours of both has to be small. A line that lies half a pixel beside its place changes a cell by some hundredths;
-what is missing changes one by more. `python tests/plotting/test_baselines.py` draws the pictures anew, to be looked at.
+Texts are taken out, since fonts differ between versions. Pictures are compared in cells: within one, the mean
+difference of the colours of both has to be small. `python tests/plotting/test_baselines.py` draws the pictures anew, to
+be looked at.
 """
 
+import importlib
 import io
 from pathlib import Path
 
@@ -17,23 +18,23 @@ from PIL import Image, ImageFilter
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.plotting import sketch as sketches
 
 FOLDER = Path(__file__).parent / "baselines"
 DPI = 45
 CELL = 6
 """Side of a cell [pixel]."""
-DIFFERENT = 0.06
-"""Largest mean difference of a cell, over that of black and white: a half of what the least thing that was taken away
-makes, and twice what another version of Matplotlib does."""
+DIFFERENT = 0.05
+"""Largest mean difference of a cell, over that of black and white. Matplotlib 3.10.7 for 3.11.2 makes up to 0.016, and
+0.039 in the sketch, a line of a result that is missing 0.07 or more, a block of a wall 0.28. Faint lines of reference
+make less."""
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)], gable=mr.Gable(1.0))
 E = mr.Restitution.from_geometry(WALL)
-TIE = mr.Tie(height=3.9, stiffness=2e6, slack=1e-3, strength=3e3, ultimate=0.02)
+TIE = mr.Tie(height=3.9, stiffness=2e6, slack=1e-3, strength=3e3, ultimate=0.1)
 EFFECTS = (TIE, mr.Thrust(3.5, 5e2), mr.Load(5e3, 4.0), mr.AddedMass(200.0, 4.0))
 LOADED = mr.Case(WALL, 0.0, 1.0, side_stop=mr.SideStop(3.0), effects=EFFECTS)
 T = np.linspace(0.0, 3.0, 301)
-MOTION = mr.GroundMotion(3.0 * np.sin(4.0 * T) * np.exp(-T), 0.01)
+MOTION = mr.GroundMotion(-3.0 * np.sin(4.0 * T) * np.exp(-T), 0.01)
 STACK = mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 3, k_n=1e8)
 BOND = mr.Masonry.running_bond(1.6, 0.8, (0.4, 0.2), k_n=1e9)
 DEEP = mr.Masonry.box((0.5, 0.8, 1.2), k_n=1e9)
@@ -54,12 +55,11 @@ def swung():
 
 
 def found():
-    rows = tuple(
-        {"k_n": k, "points": p, "capacity_g": g} for k, p, g in ((1e9, 2, 0.44), (3e8, 2, 0.35), (1e9, 9, 0.48))
-    )
+    tried = ((1e9, 2, 0.4401), (3e8, 2, 0.35), (1e9, 9, 0.4404), (1e9, 16, 0.47))
+    rows = tuple({"k_n": k, "points": p, "capacity_g": g} for k, p, g in tried)
     values = np.array([row["capacity_g"] for row in rows])
     base = {"k_n": 1e9, "points": 2}
-    return mr.Sensitivity("capacity_g", ("k_n", "points"), base, rows, values, ((), ("k_n",), ("points",)))
+    return mr.Sensitivity("capacity_g", ("k_n", "points"), base, rows, values, ((), ("k_n",), ("points",), ("points",)))
 
 
 def fitted():
@@ -80,14 +80,12 @@ def spectra():
 
 
 def pushed():
-    curves = {"tied": mr.pushover(LOADED), "bare": mr.pushover(mr.Case(WALL, 0.0, 1.0))}
-    return curves
+    return {"tied": mr.pushover(LOADED), "bare": mr.pushover(mr.Case(WALL, 0.0, 1.0))}
 
 
 def points(columns):
-    return [
-        (case, f"{way}, a", *(x * i for i in range(1, columns))) for case in "AB" for way in "cd" for x in (1e-3, 1e-2)
-    ]
+    costs = [(case, way, x) for case in "AB" for way in ("c, a", "d, a") for x in (1e-3, 1e-2)]
+    return [(case, way, *(x * i ** (2 + (way < "d")) for i in range(1, columns))) for case, way, x in costs]
 
 
 def both():
@@ -113,9 +111,12 @@ PICTURES = {
     "obtained": lambda: plotting.obtained({"a": (RISING, RISING**1.1), "b": (RISING, RISING**0.9)}),
     "overturning_map": mapped,
     "pairs": lambda: plotting.pairs(np.column_stack([RISING, RISING**1.2]), ("a", "b"), (0.05, 1.5)),
-    "panels": lambda: plotting.panels([("a", lambda ax: plotting.blocks(ax, BOND)), ("b", lambda ax: ax)]),
+    "panels": lambda: plotting.panels(
+        [("a", lambda ax: plotting.blocks(ax, BOND)), ("b", lambda ax: plotting.ties(ax, both()))]
+    ),
     "parity": lambda: plotting.parity(RISING, RISING**1.1, RISING),
     "peers": lambda: plotting.peers(points(4)),
+    "push": lambda: plotting.push({"a": mr.Push(RISING, 1e4 * RISING * (2 - RISING), 0 * RISING, "", swung())}),
     "pushover": lambda: plotting.pushover(pushed()),
     "residuals": lambda: plotting.residuals("t", RISING, {"R": (RISING, "log"), "h": (RISING[::-1], "linear")}),
     "rotation": lambda: plotting.rotation(both(), ["a", "b"]),
@@ -130,7 +131,7 @@ PICTURES = {
 }
 
 
-def rendered(drawn):
+def rendered(drawn, size=None):
     """A picture without its texts, as pixels."""
     figure = drawn.get_figure(root=True) if isinstance(drawn, Axes) else drawn
     for ax in figure.axes:
@@ -141,25 +142,28 @@ def rendered(drawn):
         if legend is not None:
             legend.remove()
     figure.set_layout_engine("none")
+    if size is not None:  # a legend below a figure makes it as high as its fonts ask for
+        figure.set_size_inches((np.array(size) + 0.01) / DPI)
     file = io.BytesIO()
     figure.savefig(file, dpi=DPI, format="png", metadata={"Software": None})
     return Image.open(file).convert("RGB")
 
 
-def difference(image, other):
-    """The largest mean difference of a cell of two pictures, one brought to the size of the other [-]."""
-    left, right = (
-        np.asarray(one.resize(image.size).filter(ImageFilter.BoxBlur(CELL // 2)), dtype=float) for one in (image, other)
-    )
-    return float(np.abs(left - right).mean(axis=-1).max()) / 255
+def difference(name, drawn):
+    """The largest mean difference of a cell of what is drawn and of the picture that is kept [-].
 
-
-def kept(name):
-    return Image.open(FOLDER / f"{name}.png").convert("RGB")
+    A cell may lie a pixel aside: frames and edges are drawn on the nearest pixel.
+    """
+    kept = Image.open(FOLDER / f"{name}.png").convert("RGB")
+    both = kept, rendered(drawn, kept.size)
+    left, right = (np.asarray(one.filter(ImageFilter.BoxBlur(CELL // 2)), dtype=float) for one in both)
+    aside = [np.roll(right, shift, (0, 1)) for shift in np.ndindex(3, 3)]
+    apart = [np.abs(np.roll(left, 1, (0, 1)) - other).mean(axis=-1) for other in aside]
+    return float(np.min(apart, axis=0).max()) / 255
 
 
 def test_every_public_picture_is_kept():
-    others = {"MODES", "STYLES", "Drawing", "save", "animate", "animate_bodies", "mode_legend", "push"}
+    others = {"MODES", "STYLES", "Drawing", "save", "animate", "animate_bodies", "mode_legend"}
     assert set(plotting.__all__) - others == set(PICTURES) - {"blocks_in_space"}
     assert {path.stem for path in FOLDER.glob("*.png")} == set(PICTURES)
 
@@ -168,19 +172,20 @@ def test_every_public_picture_is_kept():
 def test_a_picture_is_the_one_that_was_looked_at(name):
     drawn = PICTURES[name]()
     assert isinstance(drawn, Axes | Figure)
-    assert difference(kept(name), rendered(drawn)) < DIFFERENT
+    assert difference(name, drawn) < DIFFERENT
 
 
 @pytest.mark.parametrize("missing", ["_elevation", "blocks", "surroundings"])
 def test_a_sketch_without_its_wall_or_what_it_meets_is_another_picture(missing, monkeypatch):
+    sketches = importlib.import_module("mjrock.plotting.sketch")
     monkeypatch.setattr(sketches, missing, lambda *given: lambda frame: None)
-    assert difference(kept("sketch"), rendered(plotting.sketch(LOADED))) > 2 * DIFFERENT
+    assert difference("sketch", plotting.sketch(LOADED)) > 2 * DIFFERENT
 
 
 def test_masonry_without_a_block_is_another_picture():
     ax = plotting.blocks(BOND)
     ax.patches[-1].remove()
-    assert difference(kept("blocks"), rendered(ax)) > 2 * DIFFERENT
+    assert difference("blocks", ax) > 2 * DIFFERENT
 
 
 if __name__ == "__main__":
