@@ -16,7 +16,7 @@ from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
 from ..quantities import require_flag, require_text
-from .arguments import picture
+from .arguments import anything, picture
 from .bodies import Bodies
 from .section import GROUND, STONE, blocks, surroundings
 from .style import titled
@@ -31,7 +31,7 @@ NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
 """Width of the column of notes, room between the drawings and at the edges, and height of a line of text [inch]."""
 
 
-@picture()
+@picture(case=anything)
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
