@@ -3,8 +3,9 @@
 A joint of the drawing serves while it is intact. Once all of it has opened by a share of its width, or a part of it has
 slid by so much, it is handed over for good, with its friction, to contacts that are found where the blocks are. Blocks
 that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
-gives each pair its places, with the law of `pair_law`. Until the next find each place moves with its body, and its
-normal with the other. What the springs of a find hold less than those before it is booked.
+gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
+they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
+moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
 from .limit import Sides, shares_within
 from .looking import Wear, held, wears
-from .pair_law import SHARED, PairLaw, pair_number
+from .pair_law import SHARED, PairLaw, least_among, pair_number
 from .rows import joined, rows
 from .solids import Poses
 from .system import Books, System
@@ -59,6 +60,7 @@ class Met:
         handed: whether the joints of each pair that has some are handed over, shape (p,).
         pair: number of the pair of each line of an encounter, shape (lines,).
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
+        share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
         poses: where each block was when it was last taken to have moved.
         moves: how often it has, shape (blocks,).
         found: moves of both blocks when each line was found, shape (lines,).
@@ -68,6 +70,7 @@ class Met:
     handed: Flags
     pair: Integers
     slack: Array
+    share: Array
     poses: Poses
     moves: Integers
     found: Integers
@@ -115,7 +118,7 @@ class Encounters:
     def _nothing_met(self) -> Met:
         none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(nobody, intact, none, np.zeros(0), self.start, unmoved, none)
+        return Met(nobody, intact, none, np.zeros(0), np.zeros(0), self.start, unmoved, none)
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
@@ -205,14 +208,19 @@ class Encounters:
         gone = Lines(lines[which], slack[which], np.empty(len(which)))
         new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
         before = held(system, which, gone.depth)
-        for name, column in self._law(found, number, poses, system, h).items():
-            new.rows[name] = column
+        share, pressed = np.append(np.ones(count), met.share)[which], gone.depth > 0
+        share = least_among(number, pair[which][pressed], share[pressed])
+        law = self.law.of_places(number, found.share, found.area, self.count)
+        share = np.minimum(share, self._stable(found, law, poses, system, h))
+        for name, column in law.items():
+            new.rows[name] = share * column if name in SHARED else column
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
         for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
             joints[name][worn] = 0.0
         joints["margin"][worn] = np.inf  # no step looks at such a line again
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
+        met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
         lines = joined(joints, others[stays], np.asarray(new.rows))
         ways = system.ways
@@ -226,14 +234,12 @@ class Encounters:
         """Moves of both blocks of pairs."""
         return np.asarray(self.met.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
-    def _law(self, found: Found, number: Integers, poses: Poses, system: System, h: float) -> dict[str, Array]:
-        """The law of places, softened where a step of h [s] asks for it."""
-        law = self.law.of_places(number, found.share, found.area, self.count)
+    def _stable(self, found: Found, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
+        """Share of their law that leaves places stable in a step of h [s], shape (n,)."""
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
-        share = shares_within(sides, law, inverse_masses(system.bodies, poses.change[self.blocks.free]), h / STABLE)
-        return law | {name: share * law[name] for name in SHARED}
+        return shares_within(sides, law, inverse_masses(system.bodies, poses.change[self.blocks.free]), h / STABLE)
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

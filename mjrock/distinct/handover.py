@@ -36,6 +36,8 @@ BESIDE = 0.2
 """Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
 ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
+REGAINED = 1.25
+"""Largest factor by which a find raises what presses of the overlap of a place [-]."""
 
 
 class Blocks(NamedTuple):
@@ -196,8 +198,9 @@ def pressed_at(
 
 
 @inlined
-def press(new: Lines, places: tuple[int, int], gone: Lines, ends: tuple[int, int]) -> None:
-    """Let the places of a pair press no more in all, and hold no more energy, than the lines that are gone."""
+def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: tuple[int, int]) -> None:
+    """Let the places of a pair press as much in all as the lines that are gone, and hold no more energy. A pair that
+    has lost force at a find gets it back at others, or blocks would sink into each other from find to find."""
     force = energy = had = held = 0.0
     for j in range(ends[0], ends[1]):
         had += gone.rows[j].k * gone.depth[j]
@@ -205,9 +208,9 @@ def press(new: Lines, places: tuple[int, int], gone: Lines, ends: tuple[int, int
     for i in range(places[0], places[1]):
         force += new.rows[i].k * new.depth[i]
         energy += new.rows[i].k * new.depth[i] ** 2
-    share = min(1.0, had / force, math.sqrt(held / energy)) if force > 0 else 0.0
+    share = min(REGAINED, had / force, math.sqrt(held / energy)) if force > 0 else 0.0
     for i in range(places[0], places[1]):
-        new.depth[i] *= share
+        new.depth[i] = min(share * new.depth[i], max(-found.gap[i], 0.0))
 
 
 @inlined
@@ -272,8 +275,8 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
 
     What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
     as long as it has it. So what a look has missed, or what touched at rest without a joint, puts no energy in. The
-    places of a pair press no more in all than the lines before them, and hold no more energy. Each line that is gone
-    gives all that it has along its face to the nearest new one, so that the forces of a pair stay.
+    places of a pair press as much in all as the lines before them where they can, and hold no more energy. Each line
+    that is gone gives all that it has along its face to the nearest new one, so that the forces of a pair stay.
 
     Args:
         new: rows with the law of each place, and room for what presses of its overlap and what does not.
@@ -288,7 +291,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
         both = found.face[begin] + found.other[begin]
         for i in range(begin, end):
             new.depth[i] = pressed_at(i, found, gone, ends, blocks, axes)
-        press(new, (begin, end), gone, ends)
+        press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
             new.slack[i] = max(-found.gap[i], 0.0) - new.depth[i]
             write_line(new.rows[i], i, new.slack[i], found, blocks, axes)

@@ -35,6 +35,14 @@ def are_among(numbers: Integers, increasing: Integers) -> Flags:
     return np.asarray(increasing[place] == numbers)
 
 
+def least_among(pair: Integers, others: Integers, shares: Array) -> Array:
+    """The least share of each pair among others, 1 where it is not one of them, shape of the pairs."""
+    known, of = np.unique(others, return_inverse=True)
+    least = np.ones(len(known) + 1)
+    np.minimum.at(least, of, shares)
+    return least[np.where(are_among(pair, known), np.searchsorted(known, pair), -1)]
+
+
 class PairLaw(NamedTuple):
     """What each pair of blocks has in all.
 

@@ -5,7 +5,11 @@ import pytest
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
+from mjrock.distinct.finder import Found
+from mjrock.distinct.handover import Lines, press
 from mjrock.distinct.limit import Sides, shares_within
+from mjrock.distinct.pair_law import least_among
+from mjrock.distinct.rows import kinds, rows
 
 
 def places(rng, bodies, count, d):
@@ -95,3 +99,23 @@ def test_a_dome_that_falls_puts_no_energy_in_where_lines_follow_each_other(share
     assert ledger.kinetic.max() > 1e5
     assert lost.min() > -1e-3 * ledger.kinetic.max()
     assert lost[-1] < 0.05 * ledger.kinetic.max()
+
+
+def test_the_least_share_of_a_pair_is_that_of_its_softest_line():
+    shares = least_among(np.array([7, 3, 7, 5]), np.array([3, 7, 7]), np.array([0.9, 0.4, 0.6]))
+    np.testing.assert_array_equal(shares, [0.4, 0.9, 0.4, 1.0])
+    np.testing.assert_array_equal(least_among(np.array([1, 2]), np.zeros(0, dtype=int), np.zeros(0)), [1.0, 1.0])
+
+
+def test_what_presses_follows_the_lines_before_it_and_gains_no_energy():
+    """A stiffer place starts with the force, a softer one with the energy of the line before it."""
+    kind = kinds(2).line
+    found = Found(
+        np.array([0]), np.array([1]), np.zeros((1, 2)), np.zeros((1, 2)), np.array([-1.0]), np.ones(1), np.ones(1)
+    )
+    for stiffness, depth in ((2.0, 0.5), (1.0, 1.0), (0.81, 1 / 0.9)):
+        gone = Lines(rows(kind, 1, k=1.0), np.zeros(1), np.array([0.5]))
+        new = Lines(rows(kind, 1, k=stiffness), np.zeros(1), np.array([0.5]))
+        press(new, (0, 1), found, gone, (0, 1))
+        assert new.depth[0] == pytest.approx(0.5 * depth)
+        assert stiffness * new.depth[0] ** 2 <= 0.25 * (1 + 1e-12)
