@@ -22,5 +22,4 @@ curves = {}
 for name, effects in cases.items():
     curves[name] = curve = mr.pushover(mr.Case(wall, 0.0, 1.0, effects=effects))
     print(f"{name}: starts at {curve.start:.3f} g, peak {curve.peak:.3f} g, ends at {curve.end:.3f} rad")
-figure = plotting.single(lambda ax: plotting.pushover(ax, curves))
-_ = figure.axes[0].legend(frameon=False)
+_ = plotting.pushover(curves)

@@ -173,6 +173,8 @@ def simulate(
     if isinstance(case, MasonryCase):
         require_still(case)
         warn_if_sheared(case.masonry)
+    elif contacts is not None and contacts.base.friction is None:
+        warn_of_low_stop(case)
     if options.timestep is not None:
         require_unbreakable(case)
     if forces:
@@ -196,7 +198,6 @@ def simulate(
         warn_if_lifted(scene, run.steps)
     if isinstance(case, Case) and contacts is not None:
         if contacts.base.friction is None:
-            warn_of_low_stop(case)
             warn_if_slid(run, case.block.half_base)
         warn_of_gain(response, run, case, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:

@@ -141,7 +141,7 @@ def of_wall(name: str, value: Any) -> None:
     """A response of a wall."""
     require_kind(name, value, Response)
     if not isinstance(value.case, Case):
-        raise TypeError(f"{name} is that of masonry; the picture is of walls")
+        raise TypeError(f"{name} is of masonry, and the picture is of one wall; for masonry take plotting.displacement")
 
 
 def drawing(name: str, value: Any) -> None:

@@ -159,8 +159,9 @@ def history(
     Of masonry it is the largest displacement of a block, see `displacement`.
 
     Args:
-        responses: one, or several under the same ground motion: of one case by several solvers, or of two cases, such
-            as one with a tie and one without.
+        responses: one, or several under the same ground motion or its reverse: of one case by several solvers, of the
+            two polarities of a record, or of two cases, such as one with a tie and one without. The ground motion that
+            is drawn is that of the first.
         title: what stands above.
         labels: what each response is called, one for each; each then has a colour of its own. Without them responses
             have the names of their solvers, and cases that differ are numbered.
@@ -180,9 +181,10 @@ def history(
     for i, response in enumerate(given):
         if isinstance(response.case, Case) != isinstance(given[0].case, Case):
             raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
-        if not same_ground(given[0], response):
+        if not same_ground(given[0], response) and not reversed_ground(given[0], response):
             raise ValueError(
-                f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion"
+                f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion "
+                "or its reverse"
             )
     names = required_labels(given, labels)
     case, until = given[0].case, max(float(response.t[-1]) for response in given)
@@ -210,6 +212,14 @@ def same_ground(left: Response, right: Response) -> bool:
     return all(getattr(left.case, name, None) == getattr(right.case, name, None) for name in GROUNDS)
 
 
+def reversed_ground(left: Response, right: Response) -> bool:
+    """Whether the horizontal motion of the ground of one response is that of the other, reversed."""
+    one, other = (response.case for response in (left, right))
+    if one.motion is None or other.motion != one.motion.reversed():
+        return False
+    return all(getattr(one, name, None) == getattr(other, name, None) for name in ("transverse", "vertical"))
+
+
 def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:
     """The labels of responses: those given, or solvers and numbers where cases differ, or None where solvers say it.
 
@@ -219,7 +229,9 @@ def required_labels(responses: Sequence[Response], labels: object) -> list[str] 
     if labels is None:
         if len({response.solver for response in responses}) == len(responses):
             return None
-        return [f"{response.solver} {i + 1}" for i, response in enumerate(responses)]
+        turned = [", reversed" if reversed_ground(responses[0], response) else "" for response in responses]
+        own = [f"{response.solver}{way}" for response, way in zip(responses, turned, strict=True)]
+        return own if len(set(own)) == len(own) else [f"{name} {i + 1}" for i, name in enumerate(own)]
     if isinstance(labels, str) or not isinstance(labels, Sequence):
         raise TypeError(f"labels = {shown(labels)} is not a sequence of texts")
     if len(labels) != len(responses):

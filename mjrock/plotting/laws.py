@@ -17,6 +17,7 @@ from .style import titled
 ASKED = "restitution asked for $|e|$ [-]"
 
 
+@picture()
 def damping_curves(
     ax: Axes, families: Sequence[tuple[str, tuple[ArrayLike, ArrayLike], tuple[ArrayLike, ArrayLike]]]
 ) -> Axes:

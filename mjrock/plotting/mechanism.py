@@ -10,8 +10,8 @@ from ..problem.masonry.joints import Joint
 from ..quantities import require_flag, require_kind, require_within
 from .arguments import picture
 from .masonry import blocks
+from .section import FORCE
 
-FORCE = "#8a3a68"
 THICK = 3.0
 """Width of the line of the largest force [points]."""
 
@@ -57,6 +57,7 @@ def _pressed(ax: Axes, joints: tuple[Joint, ...], collapse: Collapse) -> None:
     assert collapse.forces is not None
     normal, shear, along = collapse.forces.normal, collapse.forces.shear, collapse.forces.eccentricity
     size = np.hypot(normal, shear)
+    ax.set_xlabel(f"{ax.get_xlabel()}\nline {THICK:g} pt wide: {size.max() / 1e3:.3g} kN")
     for i, joint in enumerate(joints):
         if normal[i] > 1e-3 * size.max():
             way = (normal[i] * joint.normal + shear[i] * joint.along) / size[i]

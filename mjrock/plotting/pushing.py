@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from ..quantities import named
 from ..study.push import Push
 from ..study.pushover import PushoverCurve
 from .arguments import equal_rows, kind, mapping, picture
@@ -29,15 +30,16 @@ Closed = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 @picture(curves=mapping(kind(PushoverCurve)))
 def pushover(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
-    """Multiplier against rotation, a line a curve, with closed forms as points; no legend."""
+    """Multiplier against rotation, a line a curve, with closed forms as points, and where ties yield and break."""
     _drawn(ax, {name: (curve.rotation, curve.multiplier) for name, curve in curves.items()}, closed or {})
+    _marked(ax, curves)
     ax.set_ylabel(r"multiplier $\lambda$ [-]")
     return ax
 
 
 @picture(curves=mapping(kind(PushoverCurve)))
 def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
-    """Restoring moment against rotation, as in Figure 1(c) of the paper; closed forms [N m] as points; no legend.
+    """Restoring moment against rotation, as in Figure 1(c) of the paper; closed forms [N m] as points.
 
     The moment of a rigid wall rises at no rotation.
     """
@@ -55,8 +57,7 @@ def moment_rotation(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Close
 
 @picture(curves=mapping(kind(Push)))
 def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> Axes:
-    """Force against displacement of slow pushes, a line a push, to and fro too; closed forms [m, N] as points; no
-    legend."""
+    """Force against displacement of slow pushes, a line a push, to and fro too; closed forms [m, N] as points."""
     factor = 1e-3 if all(curve.unit == "N" for curve in curves.values()) else 1.0
     lines = {name: (1e3 * curve.displacement, factor * curve.force) for name, curve in curves.items()}
     points = {
@@ -69,6 +70,21 @@ def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> 
     return ax
 
 
+def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
+    """A triangle where ties of a curve yield and a cross where they break, those at one rotation with one text."""
+    for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
+        for what, marker, reached in zip(("yield", "break"), ("v", "x"), curve.ties, strict=True):
+            together: dict[float, list[str]] = {}
+            for name, rotation in reached.items():
+                together.setdefault(rotation, []).append(name)
+            for rotation, names in together.items():
+                near = int(np.searchsorted(curve.rotation, rotation))
+                at = rotation, float(curve.multiplier[max(near - 2, 0) : near + 1].max())  # before it falls
+                ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
+                said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
+                ax.annotate(said, at, (4, 4), textcoords="offset points", fontsize=7, color=line.get_color(), zorder=6)
+
+
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:
     for (name, (x, y)), style in zip(lines.items(), cycle(LINES), strict=False):
         ax.plot(x, y, label=folded(name), **style)
@@ -77,4 +93,5 @@ def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: C
         colour = LINES[list(lines).index(name) % len(LINES)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
+    ax.legend(frameon=False, fontsize=8)
     ax.set(xlim=(0, None), ylim=(0, None), xlabel=r"rotation $\theta$ [rad]")

@@ -12,10 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Patch, Polygon, Rectangle
 
+from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.effect import Effect
-from ..quantities import require_flag, require_kind, require_text
-from .arguments import picture
+from ..quantities import require_flag, require_text
+from .arguments import anything, picture
 from .bodies import Bodies
 from .section import GROUND, STONE, blocks, surroundings
 from .style import titled
@@ -30,7 +31,7 @@ NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
 """Width of the column of notes, room between the drawings and at the edges, and height of a line of text [inch]."""
 
 
-@picture()
+@picture(case=anything)
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
@@ -43,7 +44,7 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
         arguments: whether to write the names of the arguments of `Tie`, `Thrust`, `Load`, `AddedMass` and `SideStop`
             beside what they place, in place of the values.
     """
-    require_kind("case", case, Case)
+    require_wall("case", case, "plotting.blocks")
     require_text("title", title)
     require_flag("arguments", arguments)
     figure = Figure()

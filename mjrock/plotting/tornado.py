@@ -8,8 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..quantities import require_kind
-from ..study.sensitivity import Sensitivity
+from ..study.sensitivity import Sensitivity, shortened
 from .arguments import picture
+
+SETTINGS = dict.fromkeys(("k_n", "k_s", "k_base", "k_side"), "N/m³") | {"thickness": "m", "height": "m", "length": "m"}
+SETTINGS |= {"density": "kg/m³", "thrust": "N", "strength": "N"}
+"""Units of settings that have the names of arguments."""
 
 
 @picture()
@@ -17,7 +21,7 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
     """A bar for each setting, from the lowest to the highest value where it alone changes, the widest on top.
 
     The bar "together" is the range of all runs. The vertical line is the base. A bar that reaches the dashed line has a
-    run in which the wall overturned.
+    run in which the wall overturned. Below the name of a setting stand the values that were tried.
     """
     require_kind("found", found, Sensitivity)
     bars = dict(found.swings)
@@ -38,13 +42,21 @@ def tornado(ax: Axes, found: Sensitivity) -> Axes:
         ax.axvline(found.base_value, color="0.15", linewidth=1.0)
     if not np.isfinite(found.values).all():
         ax.axvline(edge, color="0.15", linewidth=1.0, linestyle="--")
-    ax.set_yticks(range(len(bars)), list(bars))
+    ax.set_yticks(range(len(bars)), [f"{name}\n{_tried(found, name)}".strip() for name in bars])
     ax.invert_yaxis()
     right = 0.12 if np.isfinite(found.values).all() else 0.4  # room for the word at the end of a bar
     ax.set_xlim(least - 0.2 * width, edge + right * width)
     ax.set_xlabel(f"{found.measure}{f' [{found.unit}]' if found.unit else ''}")
     ax.set_title(found.sentence, fontsize=10)
     return ax
+
+
+def _tried(found: Sensitivity, setting: str) -> str:
+    """The values of a setting that were tried, with the unit of the settings that have a known one."""
+    values = list(dict.fromkeys(row[setting] for row in found.rows)) if setting in found.settings else []
+    if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
+        return ", ".join(shortened(value) for value in values)
+    return f"{min(values):.4g} to {max(values):.4g} {SETTINGS.get(setting, '')}".strip()
 
 
 def _apart(found: Sensitivity, low: float, high: float) -> tuple[str, str]:

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
 from ..problem.damping.contacts import Contacts
+from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausible import warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
@@ -51,7 +52,7 @@ def solve_compliant(
         ValueError: if the contacts do not fit the case, for a tolerance or step out of range, or a tie that yields.
         RuntimeError: if the integration fails.
     """
-    require_kind("case", case, Case)
+    require_wall("case", case, "solve_explicit or simulate")
     require_kind("contacts", contacts, Contacts)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
     atol = require_within("atol", atol, 1e-16, 0.1)

@@ -151,6 +151,18 @@ def of_ties(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
     return rows
 
 
+def of_forces(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
+    """The largest reaction and the largest normal force of a joint, of each response that has kept its forces."""
+    rows: TableRows = []
+    for response, name in zip(responses, names, strict=True):
+        if response.kept_forces is not None:
+            forces, normal = response.forces, response.forces.normal.max(axis=0)
+            joint = int(normal.argmax())
+            reaction, pressed = (f"{force / 1e3:.4g} kN" for force in (forces.largest_reaction, normal[joint]))
+            rows.append((name, reaction, pressed, forces.joints[joint]))
+    return rows
+
+
 def masonry_cautions(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
     """What to be careful of in the results of masonry."""
     said = []

@@ -179,7 +179,7 @@ def section(name: str, pieces: object) -> list[str]:
 
 
 def results(responses: Sequence[Response], names: Sequence[str]) -> str:
-    """The tables of results, of ties, and the messages."""
+    """The tables of results, of ties, of forces that were kept, and the messages."""
     if isinstance(responses[0].case, Case):
         columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts"
         rows = content.of_results(responses, names)
@@ -191,6 +191,9 @@ def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     if ties:
         of_tie = "response", "tie", "largest force", "drawn out by", "energy taken", "broke at"
         made += "<p></p>" + table(of_tie, ties)
+    forces = content.of_forces(responses, names)
+    if forces:
+        made += "<p></p>" + table(("response", "largest reaction", "largest force of a joint", "of"), forces)
     return made + listed([f"{name}: {r.message}" for r, name in zip(responses, names, strict=True)], "")
 
 

@@ -26,6 +26,8 @@ less than 0.001 of e_2s."""
 TOUCH_DOWN = 0.415
 """Damping ratio of such a base times h/b [-], about that of a plastic touch-down. With less the wall bounces on it,
 with more a faint rebound loses more than a large one."""
+WORTH_SAYING = 0.02
+"""Miss of |e| that is warned of, over |e| [-]: as the scatter of |e| with the phase of a touch is."""
 UNLIKE = 5e-3
 """Relative difference of e_2s to Eq. 2 from which a stiff base is said not to give it [-]."""
 
@@ -165,7 +167,7 @@ def _matched(name: str, match: Match, bounds: tuple[float, float], *, whole: boo
             return match.restitution(xi)
 
         closest = highest_branch(measured, match.target, bounds, whole=whole)
-    if not closest.reached:
+    if not closest.reached and abs(closest.value - match.target) > WORTH_SAYING * match.target:
         warnings.warn(
             f"no damping of the {name} gives |e| = {match.target:.4g}; the closest, xi = {closest.xi:.3g}, gives "
             f"{closest.value:.4g}",

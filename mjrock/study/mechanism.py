@@ -16,9 +16,10 @@ from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.oscillator import SHORTEST
 from ..problem.ground.spectrum import response_spectrum
+from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
-from ..problem.wall.ties_on_wall import moment_at_strength, pulled
-from ..quantities import GRAVITY, Array, require_kind, require_real, require_within, shown
+from ..problem.wall.ties_on_wall import moment_at_strength
+from ..quantities import GRAVITY, Array, require_real, require_within, shown
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -169,7 +170,7 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     Raises:
         TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
     """
-    require_kind("case", case, Case)
+    require_wall("case", case, "collapse_multiplier")
     if not isinstance(demand, GroundMotion) and not callable(demand):
         raise TypeError(f"demand = {shown(demand)} is neither a GroundMotion nor a function S_De(T, xi)")
     peak = demand.peak if isinstance(demand, GroundMotion | CodeSpectrum | FloorSpectrum) else None
@@ -193,23 +194,8 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     alpha_0, tied = float(curve.multiplier[0]), None
     if case.pulls:
         tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
-    yielding, breaking = _reached(case, curve.rotation, d)
+    yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
     return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
-
-
-def _reached(case: Case, rotation: Array, d: Array) -> tuple[dict[str, float], dict[str, float]]:
-    """Displacements of the oscillator at which each tie yields and breaks along the curve [m], of those that do."""
-    fine = np.linspace(rotation[0], rotation[-1], 20_001)
-    yielding: dict[str, float] = {}
-    breaking: dict[str, float] = {}
-    ties = [name for name, tie in case.springs.items() if tie.law.holds]
-    for name, pull in zip(ties, case.pulls, strict=True):
-        elongation = pulled(pull, fine, 1.0)[0]
-        for at, further in ((yielding, 0.0), (breaking, pull.ultimate)):
-            beyond = np.flatnonzero(elongation > pull.strength / pull.stiffness + further)
-            if beyond.size:
-                at[name] = float(np.interp(fine[beyond[0]], rotation, d))
-    return yielding, breaking
 
 
 def _masses(case: Case) -> tuple[Array, Array]:

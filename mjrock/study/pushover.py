@@ -13,6 +13,7 @@ from tqdm import tqdm
 from ..geometry.frames import frames_of
 from ..geometry.kinematics import along, gaps, snaps, stretch
 from ..problem.damping.contacts import Contacts, Uplift
+from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import pulled, yielded
 from ..quantities import GRAVITY, ON_ITS_FACE, Array, Flags, Integers, require_increasing, require_kind, require_whole
@@ -138,6 +139,24 @@ class PushoverCurve:
     end: float
     peak: float
 
+    @property
+    def ties(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Rotations [rad] at which ties yield, and at which they break, by name, of those that do along the curve.
+
+        They are those of a wall that turns about its outer toe.
+        """
+        fine = np.linspace(self.rotation[0], self.rotation[-1], 20_001)
+        yielding: dict[str, float] = {}
+        breaking: dict[str, float] = {}
+        names = [name for name, tie in self.case.springs.items() if tie.law.holds]
+        for name, pull in zip(names, self.case.pulls, strict=True):
+            elongation = pulled(pull, fine, 1.0)[0] - pull.strength / pull.stiffness
+            for at, further in ((yielding, 0.0), (breaking, pull.ultimate)):
+                beyond = np.flatnonzero(elongation > further)
+                if beyond.size:
+                    at[name] = float(fine[beyond[0]])
+        return yielding, breaking
+
     def __repr__(self) -> str:
         base = "rigid" if self.contacts is None else f"{self.contacts.base.points} lines"
         return (
@@ -171,7 +190,7 @@ def pushover(
     Raises:
         ValueError: for a value outside its range, or if the contacts do not fit the case or cannot carry it.
     """
-    require_kind("case", case, Case)
+    require_wall("case", case, "push or collapse_multiplier")
     require_kind("contacts", contacts, Contacts, type(None))
     points = require_whole("points", points, 20, 100_000)
     asked = np.zeros(0)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -115,7 +116,7 @@ class Sensitivity:
         rows = [["setting", "in the base", "lowest", "highest", "runs"]]
         for name, ends in self.swings.items():
             count = sum(names == (name,) for names in self.changed)
-            rows.append([name, _short(self.base[name]), *map(self.written, ends), str(count)])
+            rows.append([name, shortened(self.base[name]), *map(self.written, ends), str(count)])
         if together:
             rows.append(["together", "", *map(self.written, self.range), str(together)])
         what = f"{self.measure}{f' [{self.unit}]' if self.unit else ''}"
@@ -148,7 +149,8 @@ def sensitivity(
         build: `build(**settings)` makes the task of some settings: an `Analysis`, or a `Capacity` of one, where the
             question is at which intensity a wall overturns. Whatever it takes can be varied: an intensity, a polarity,
             a record, a stiffness, a damping ratio, a number of contact lines.
-        base: the settings of the base. A varied setting that it leaves out has its first value.
+        base: the settings of the base. A varied setting that it leaves out has its default in `build`, or without one
+            its first value.
         vary: the values to try of each setting.
         store: the SQLite file; None keeps no rows.
         measure: the column of the rows to look at; None is `peak_over_alpha` of an `Analysis`, the
@@ -197,6 +199,7 @@ def _points(
     assert isinstance(vary, Mapping)
     if not vary:
         raise ValueError("vary is empty; at least one setting is needed")
+    base = defaults_of(build, vary) | dict(base)
     choices: dict[str, list[Any]] = {}
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
@@ -223,6 +226,16 @@ def _points(
     return points, tuple(changed)
 
 
+def defaults_of(build: Callable[..., Any], names: Iterable[str]) -> dict[str, Any]:
+    """The defaults of these arguments of a function, of those that have one."""
+    try:
+        arguments = inspect.signature(build).parameters
+    except (TypeError, ValueError):  # some built-in functions tell nothing
+        return {}
+    found = {name: arguments[name].default for name in names if name in arguments}
+    return {name: value for name, value in found.items() if value is not inspect.Parameter.empty}
+
+
 def _column(task: Task, measure: str | None) -> str:
     """The column to look at."""
     if measure is None:
@@ -233,5 +246,6 @@ def _column(task: Task, measure: str | None) -> str:
     return measure
 
 
-def _short(value: object) -> str:
+def shortened(value: object) -> str:
+    """The value of a setting as a short text."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)[:30]

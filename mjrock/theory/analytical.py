@@ -11,6 +11,7 @@ import warnings
 import numpy as np
 
 from ..problem.damping.restitution import Restitution
+from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
@@ -57,7 +58,7 @@ def solve_analytical(
         Implausible: if the restitution was made for another wall or another side stop.
         UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
     """
-    require_kind("case", case, Case)
+    require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution)
     rtol = require_within("rtol", rtol, 1e-14, 0.1)
     spacing = required_spacing(output_step, case.duration)

@@ -67,6 +67,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         at = np.linspace(0, last, 400)
         expected = multiplier(block, effects, at)
         plotting.pushover(ax, curves, {"rigid": (at[::40], expected[::40])}).set_title(name, fontsize=10)
+        ax.legend().remove()
         ax.label_outer()
         off = mr.pushover(case, rotations=at).multiplier - expected
         end = falls(block, effects) if curves["rigid"].end < math.inf else math.inf

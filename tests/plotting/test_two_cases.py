@@ -49,7 +49,12 @@ def test_labels_that_cannot_be(labels, complaint):
 
 def test_two_ground_motions_are_no_picture():
     with pytest.raises(ValueError, match=r"responses\[1\] is that to another ground motion"):
-        plotting.history([theory(), theory(MOTION.reversed())])
+        plotting.history([theory(), theory(MOTION.scaled(2.0))])
+
+
+def test_two_polarities_are_one_picture():
+    figure = plotting.history([theory(), theory(MOTION.reversed())])
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["analytical", "analytical, reversed"]
 
 
 def test_peaks_of_walls_that_stand_are_not_cut():

@@ -79,6 +79,16 @@ def test_sections_hold_texts_figures_and_tables(tmp_path):
     assert text.index("<h2>Results") < text.index("<h2>Code check") < text.index("<h2>Inputs: wall")
 
 
+def test_largest_forces_of_runs_that_kept_them(tmp_path):
+    masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 2, k_n=1e8)
+    case = mr.MasonryCase(masonry, 1e-3)
+    kept, bare = mr.solve_explicit(case, forces=True), mr.solve_explicit(case)
+    text = mr.report(case, [kept, bare], tmp_path / "a.html", labels=["kept", "bare"]).read_text(encoding="utf-8")
+    assert "<tr><td>kept</td><td>9.81 kN</td><td>9.81 kN</td><td>ground|block_0</td></tr>" in text  # two of 500 kg
+    assert text.count("largest force of a joint") == 1
+    assert "largest reaction" not in mr.report(case, bare, tmp_path / "b.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.slow
 def test_the_same_report_is_the_same_bytes(tmp_path):
     paths = [mr.report(CASE, ANSWER, tmp_path / name) for name in ("a.html", "b.html")]

@@ -311,3 +311,17 @@ def test_a_yielded_tie_slackens_where_the_wall_comes_nearer_to_its_anchor():
 def lever(case, phi):
     """W z' [N m]."""
     return case.wall.weight * (case.wall.centroid_height * math.cos(phi) + case.wall.lever * math.sin(phi))
+
+
+def test_rotations_at_which_a_tie_yields_and_breaks():
+    """Of a tie whose anchor is far, the elongation is the horizontal motion of the point that it holds."""
+    wall = mr.Block.from_size(0.6, 4.2)
+    tie = mr.Tie(height=4.0, stiffness=1e6, slack=0.01, strength=5e3, ultimate=0.05, length=1000.0)
+    curve = mr.pushover(mr.Case(wall, 0.0, 1.0, effects=(tie,)))
+    yields, breaks = (at["tie_0"] for at in curve.ties)
+    for found, elongation in ((yields, 0.015), (breaks, 0.065)):
+        moved = 4.0 * np.sin(found) + 2 * 0.3 * (1 - np.cos(found))
+        assert moved == pytest.approx(elongation, abs=2e-4)
+    ax = mr.plotting.pushover({"tied": curve})
+    assert [text.get_text() for text in ax.texts] == ["tie_0 yields", "tie_0 breaks"]
+    assert mr.pushover(mr.Case(wall, 0.0, 1.0)).ties == ({}, {})

@@ -82,7 +82,7 @@ def test_overturning_counts_more_than_any_finite_change(monkeypatch):
     found = mr.sensitivity(build, {"a": 0.0, "b": 0.5}, {"a": [0.4], "b": [math.inf]})
     assert found.governs == "b"
     assert found.sentence == "0.50 to overturned, governed by b"
-    assert plotting.single(lambda ax: plotting.tornado(ax, found)).axes[0].get_yticklabels()[0].get_text() == "b"
+    assert plotting.tornado(found).get_yticklabels()[0].get_text() == "b\n0.5 to inf"
 
 
 def test_values_that_three_digits_do_not_tell_apart(monkeypatch):
@@ -98,8 +98,17 @@ def test_what_changes_nothing(monkeypatch):
         found.swing("z")
 
 
+def test_the_base_has_the_defaults_of_build(monkeypatch):
+    def build(a, b=0.5, c=3.0):
+        return made(a=a, b=b)
+
+    made = summed(monkeypatch)
+    assert mr.sensitivity(build, {}, {"a": [0.1, 0.2], "b": [0.4, 0.6]}).base == {"a": 0.1, "b": 0.5}
+    assert mr.sensitivity(build, {"b": 0.7}, {"a": [0.1], "b": [0.4]}).base == {"a": 0.1, "b": 0.7}
+
+
 def test_of_a_wall_and_resumed(build, tmp_path):
-    asked = {"base": {"duration": 0.5}, "vary": {"scale": [1.5, 1.2], "sign": [-1.0]}}
+    asked = {"base": {"duration": 0.5, "scale": 1.5, "sign": -1.0}, "vary": {"scale": [1.5, 1.2], "sign": [-1.0]}}
     store = tmp_path / "s.sqlite"
     found = mr.sensitivity(build, store=store, executor=ThreadPoolExecutor(1), **asked)
     assert found.values.tolist() == [build(scale).solve().peak_over_alpha for scale in (1.5, 1.2)]

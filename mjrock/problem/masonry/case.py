@@ -20,6 +20,7 @@ from ...quantities import (
     require_within,
 )
 from ..ground.motion import GroundMotion
+from ..wall.case import Case
 from ..wall.effect import Effect
 from ..wall.effects import KINDS, Carrying, Load
 from ..wall.in_space import LATER, require_in_plane
@@ -154,3 +155,10 @@ class MasonryCase(Carrying):
 
     def __hash__(self) -> int:
         return hash(tuple(getattr(self, name) for name in COMPARED))
+
+
+def require_wall(name: str, value: object, instead: str) -> None:
+    """Raise a TypeError unless it is a Case of one wall. For masonry it names the call that takes that."""
+    if isinstance(value, Masonry | MasonryCase):
+        raise TypeError(f"{name} is masonry, and one wall is needed; for masonry take {instead}")
+    require_kind(name, value, Case)
