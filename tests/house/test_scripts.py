@@ -44,6 +44,7 @@ WRITES = {
     "slow_push": {f"slow_push.{ending}" for ending in ("png", "csv", "txt")},
     "tilting_table": {"tilting_table.csv", "tilting_table.txt"},
     "mortar": {"mortar.csv", "mortar.txt"},
+    "bonded_facade": {f"bonded_facade.{ending}" for ending in ("png", "csv", "txt")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
     "thrust_lines": {"thrust_lines.png", "thrust_lines.txt"},
