@@ -25,8 +25,8 @@ CELL = 6
 """Side of a cell [pixel]."""
 DIFFERENT = 0.05
 """Largest mean difference of a cell, over that of black and white. Matplotlib 3.10.7 for 3.11.2 makes up to 0.018, and
-0.039 in the sketch, most lines of results that are missing 0.07 or more, a block of a wall 0.28. Faint lines of reference
-make less."""
+0.039 in the sketch, most lines of results that are missing 0.07 or more, a block of a wall 0.28. Faint lines of
+reference make less."""
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)], gable=mr.Gable(1.0))
 E = mr.Restitution.from_geometry(WALL)
