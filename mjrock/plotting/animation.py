@@ -147,7 +147,7 @@ def animate(
             None is (18, 35), from outside.
         limits: lowest and highest coordinate that the picture shows along each axis [m], shape (2, 2), in space (3, 2);
             None shows a wall or blocks, and what has gone no farther than one extent of them.
-        forces: "thrust" or "bars" draws the forces of a response with forces=True, see `blocks`.
+        forces: "thrust", "bars" or "cracks" is drawn of a response with forces=True, see `blocks`.
 
     Returns:
         The path that was written.

@@ -1,7 +1,8 @@
-"""Forces of joints on pictures of blocks: the line of thrust, or a bar at each joint."""
+"""Forces of joints on pictures of blocks: the line of thrust, or a bar at each joint; and cracks."""
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,14 +10,17 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
-from ..quantities import Array, require_within, shown
+from ..problem.masonry.joints import Joint
+from ..quantities import Array, Integers, require_within, shown
 from ..result.response import Response
 from .section import FORCE, Update
 
-SHOWN = ("thrust", "bars")
+SHOWN = ("thrust", "bars", "cracks")
 """How forces are shown."""
-WIDEST, BAR = 5.0, 2.5
-"""Width of the line of thrust at a large force, and of a bar [point]."""
+WIDEST, BAR, CRACK = 5.0, 2.5, 4.0
+"""Width of the line of thrust at a large force, of a bar, and of a crack that has lost its bond [point]."""
+CRACKED = "#c0392b"
+"""Colour of cracks."""
 LONGEST = 0.12
 """Length of the bar of a large force, over the extent of the joints [-]."""
 LARGE = 2.0
@@ -49,9 +53,16 @@ class Strokes(LineCollection):
 
 
 def require_shown(name: str, value: object, response: Response) -> None:
-    """Raise a ValueError unless it is one of `SHOWN`, and an AttributeError unless the response has kept its forces."""
+    """Raise unless the forces of a response can be drawn so.
+
+    Raises:
+        AttributeError: if the response has kept no forces.
+        ValueError: for what is not one of `SHOWN`, or for cracks where no joint has a bond.
+    """
     if not isinstance(value, str) or value not in SHOWN:
         raise ValueError(f"{name} = {shown(value)} is not one of {', '.join(SHOWN)}")
+    if value == "cracks" and np.isnan(response.forces.damage).all():
+        raise ValueError(f"{name} = 'cracks' needs joints with a bond, and all joints are dry")
     _ = response.forces
 
 
@@ -97,16 +108,20 @@ class Acting:
         """Extent of joints and centroids at rest [m]."""
         return float(np.ptp(np.concatenate([self.frames.middle, self.frames.rest]), axis=0).max())
 
-    def placed(self, frame: int) -> tuple[Array, Array]:
-        """Where the force of each joint acts in a frame [m], and the force over the scale, shape (j, d) each."""
+    def joints(self, frame: int) -> tuple[Array, Array]:
+        """Middles [m] and axes of the joints in a frame, shapes (j, d) and (j, d, d)."""
         bodies, frames = self.bodies, self.frames
         middle, axes = frames.placed(self.case, bodies.t[frame : frame + 1], bodies.poses[frame : frame + 1])
-        middle = frames.middle + bodies.magnify * (middle[0] - frames.middle)
-        off = np.nan_to_num(self.forces.eccentricity[self.sample[frame]]).reshape(len(middle), -1)
-        place = middle + (off[..., None] * axes[0, :, 1:]).sum(axis=1)
-        return place, (self.along[frame][..., None] * axes[0]).sum(axis=1) / self.scale
+        return frames.middle + bodies.magnify * (middle[0] - frames.middle), axes[0]
 
-    def thrust(self, frame: int) -> tuple[Array, Array]:
+    def placed(self, frame: int) -> tuple[Array, Array]:
+        """Where the force of each joint acts in a frame [m], and the force over the scale, shape (j, d) each."""
+        middle, axes = self.joints(frame)
+        off = np.nan_to_num(self.forces.eccentricity[self.sample[frame]]).reshape(len(middle), -1)
+        place = middle + (off[..., None] * axes[:, 1:]).sum(axis=1)
+        return place, (self.along[frame][..., None] * axes).sum(axis=1) / self.scale
+
+    def thrust(self, frame: int) -> tuple[Array, Array | float]:
         """The line of thrust in a frame: ends of its pieces [m], shape (n, 2, d), and their widths [point].
 
         In each block it goes from joint to joint by way of the mean of their places, in proportion to their forces. So
@@ -126,26 +141,51 @@ class Acting:
         node[alone] = (frames.rest + self.bodies.magnify * self.bodies.poses[frame, :, :d])[alone]
         return np.stack([place[joint], node[body]], axis=1), WIDEST * np.minimum(share[joint], LARGE)
 
-    def bars(self, frame: int) -> tuple[Array, float]:
+    def bars(self, frame: int) -> tuple[Array, Array | float]:
         """A bar through the place of each joint's force along it, as long as the force is large, and their width."""
         place, share = self.placed(frame)
         size = np.linalg.norm(share, axis=1)
         half = 0.5 * LONGEST * self.extent * share * np.minimum(LARGE / np.maximum(size, 1e-300), 1.0)[:, None]
         return np.stack([place - half, place + half], axis=1)[size > NOTHING], BAR
 
+    @cached_property
+    def edges(self) -> tuple[Integers, Array]:
+        """Edges of the joints: the joint of each, and its ends from the middle along the axes [m], shape (e, 2, d)."""
+        outlines = [
+            np.array([joint.start, joint.end])[None] if isinstance(joint, Joint) else edges_of(joint.outline)
+            for joint in self.case.masonry.joints
+        ]
+        of = np.repeat(np.arange(len(outlines)), [len(edges) for edges in outlines])
+        off = np.concatenate(outlines) - self.frames.middle[of, None]
+        return of, np.matmul(off, np.swapaxes(self.frames.axes[of], 1, 2))
+
+    def cracks(self, frame: int) -> tuple[Array, Array | float]:
+        """Edges of joints that have lost some of their bond [m], and widths of their lines, as the lost share."""
+        middle, axes = self.joints(frame)
+        of, ends = self.edges
+        lost: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[of]
+        return (middle[of, None] + np.matmul(ends, axes[of]))[lost > NOTHING], CRACK * lost[lost > NOTHING]
+
+
+def edges_of(outline: Array) -> Array:
+    """Edges of a polygon, shape (n, 2, d)."""
+    return np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
+
 
 def forces_on(ax: Axes, response: Response, bodies: Moving, how: str, *, animated: bool = True) -> Update:
     """Draw the forces of the joints on blocks that are drawn already, and say what a large one is."""
     acting = Acting(response, bodies)
-    strokes = Strokes([], colors=FORCE, zorder=7, animated=animated, capstyle="round")
+    cracks = how == "cracks"
+    colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")
+    strokes = Strokes([], colors=colour, zorder=7, animated=animated, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
     said = f"line {WIDEST:g} pt wide" if how == "thrust" else f"bar {LONGEST * acting.extent:.2g} m long"
-    said = f"{said}: {acting.scale / 1e3:.3g} kN"
+    said = f"line {CRACK:g} pt wide: all bond lost" if cracks else f"{said}: {acting.scale / 1e3:.3g} kN"
     if acting.frames.middle.shape[1] == 2:
         ax.set_xlabel(f"{ax.get_xlabel()}\n{said}")
     else:
         ax.annotate(said, (0.99, 0.99), xycoords="axes fraction", fontsize=8, ha="right", va="top")
-    drawn = acting.thrust if how == "thrust" else acting.bars
+    drawn = {"thrust": acting.thrust, "bars": acting.bars, "cracks": acting.cracks}[how]
 
     def update(frame: int) -> None:
         strokes.put(*drawn(frame))

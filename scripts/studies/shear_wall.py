@@ -111,7 +111,6 @@ DRAWN = "5 lines"
 
 def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
     """The curve beside the test, and the cracks at the end: lines as thick as the joint has lost of its bond."""
-    masonry = answer.case.masonry
     figure = Figure(figsize=(11, 4.6), layout="constrained")
     curve, cracks = figure.subplots(1, 2)
     begun = answer.t > 0.07
@@ -119,11 +118,8 @@ def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
     curve.errorbar(list(MEASURED), list(MEASURED.values()), 8, fmt="o", color="0.3", capsize=2, label="test J4D")
     curve.set(xlabel="displacement of the beam [mm]", ylabel="force [kN]", ylim=(0, None))
     curve.legend(frameon=False)
-    plotting.blocks(cracks, masonry, answer.pose[-1], joints=False, limits=[(-0.1, WIDTH + 0.1), (-0.05, 1.05)])
-    for joint, damage in zip(masonry.joints, answer.forces.damage[-1].tolist(), strict=True):
-        (x0, z0), (x1, z1) = joint.start, joint.end
-        cracks.plot([x0, x1], [z0, z1], color="#c0392b", linewidth=4 * damage, solid_capstyle="butt", zorder=5)
-    cracks.set(xlabel="x [m]", ylabel="z [m]", title="what joints have lost of their bond, at rest")
+    plotting.blocks(cracks, answer, forces="cracks", limits=[(-0.1, WIDTH + 0.1), (-0.05, 1.05)])
+    cracks.set(title="what joints have lost of their bond")
     return figure
 
 

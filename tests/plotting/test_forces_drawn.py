@@ -119,6 +119,32 @@ def test_a_film_is_written_with_forces(tmp_path):
     assert plotting.animate(run, tmp_path / "a.gif", forces="bars", speed=1e-3, fps=2, dpi=40).exists()
 
 
+@pytest.mark.parametrize("in_space", [False, True])
+def test_cracks_are_where_joints_have_lost_their_bond(in_space):
+    """A block that is pulled off loses its joint, which is drawn where it was; the joint above it holds."""
+    blocks = [GROUND, box(-0.5, 0.5, 0.0, 0.5), box(-0.5, 0.5, 0.5, 1.0), box(-0.5, 0.5, 1.0, 1.5, fixed=True)]
+    bonds = {"weak": mr.Bond(1e4, 1e4, 1.0, 10.0), "strong": mr.Bond(1e6, 1e6, 1e3, 1e4)}
+    if in_space:
+        blocks = [mr.Polyhedron.prism(block) for block in blocks]
+    masonry = mr.Masonry(
+        blocks,
+        k_n=1e10,
+        k_s=1e10,
+        xi=0.05,
+        bond=lambda joint: bonds["weak" if joint.middle[-1] < 0.1 else "strong"],
+    )
+    up = ((0.0, 0.01, 0.02), *[(0.0, 0.0, 0.0)] * (2 if in_space else 1), (0.0, 0.001, 0.001))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.02, supports={masonry.names[3]: up}, settled=False), forces=True)
+    assert run.forces.damage[-1] == pytest.approx(
+        [1.0, 0.0, 0.0], abs=np.exp(-9)
+    )  # what is left of a bond that has gone
+    ax = Figure().add_subplot(projection="3d" if in_space else None)
+    (strokes,) = (line for line in plotting.blocks(ax, run, forces="cracks").collections if hasattr(line, "ends"))
+    assert strokes.ends[..., -1] == pytest.approx(0.0)
+    assert np.ptp(strokes.ends[..., 0]) == pytest.approx(1.0)
+    assert list(strokes.get_linewidths()) == pytest.approx([4 * run.forces.damage[-1, 0]] * len(strokes.ends))
+
+
 def test_what_cannot_be_drawn():
     ax, run = Figure().subplots(), corbelled()
     without = mr.solve_explicit(run.case)
@@ -131,6 +157,8 @@ def test_what_cannot_be_drawn():
             draw()
     with pytest.raises(ValueError, match=r"forces = 'arrows' .* is not one of thrust, bars"):
         plotting.blocks(ax, run, forces="arrows")
+    with pytest.raises(ValueError, match="forces = 'cracks' needs joints with a bond, and all joints are dry"):
+        plotting.blocks(ax, run, forces="cracks")
     with pytest.raises(ValueError, match=r"at = 1 s is outside the valid range 0 to 0.001 s"):
         plotting.thrust(ax, run, at=1.0)
     with pytest.raises(ValueError, match="at and forces are for a response"):
