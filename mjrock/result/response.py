@@ -16,14 +16,17 @@ from ..geometry.frames import SPACE
 from ..geometry.poses import angle_of, tilt_of
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path
+from .bodies import bodies_of, frames_at, in_space, openings
 from .ending import Outcome
 from .forces import Forces
+from .gltf import write_gltf
 from .joints import JointMotion
 from .ledger import Ledger
 from .motion import Motion
 from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
+from .vtk import texts_of_bodies, texts_of_joints, write_series
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
@@ -320,6 +323,59 @@ class Response:
         if path is not None:
             write_text(require_path("path", path), text)
         return text
+
+    def to_gltf(self, path: str | Path, fps: float = 25.0) -> Path:
+        """Write the motion as glTF in one .glb, which Blender and viewers on the web open.
+
+        Each block is a node of its name with its mesh, animated where it moves. Blocks of the plane are prisms of their
+        length. A wall has no openings, and stands on a slab, beside another one where it has a side stop. y points
+        upwards in the file, as it does in glTF.
+
+        Args:
+            path: where to, a .glb.
+            fps: most samples of a second that are kept [1/s], 1 to 10000. They are those of the response.
+
+        Returns:
+            The path that was written.
+
+        Raises:
+            ValueError: for another ending, or a value outside its range.
+            OSError: if the file cannot be written.
+        """
+        kept = frames_at(self.t, fps)
+        return write_gltf(path, self.t[kept], bodies_of(self.case, self.t[kept], self.pose[kept], self.velocity[kept]))
+
+    def to_vtk(self, folder: str | Path, fps: float = 25.0) -> Path:
+        """Write the motion as a series of files, which ParaView opens by `blocks.pvd`.
+
+        Corners have their displacement [m] and velocity [m/s], and faces the number of their block and whether it is
+        fixed. With forces=True there is `joints.pvd` too: a point in the middle of each joint with the force on the
+        block above and its normal part [N], and of masonry the largest gap at that time [m].
+
+        Args:
+            folder: where to; it is made where there is none.
+            fps: most samples of a second that are kept [1/s], 1 to 10000. They are those of the response.
+
+        Returns:
+            The path of `blocks.pvd`.
+
+        Raises:
+            ValueError: for a value outside its range.
+            OSError: if a file cannot be written.
+        """
+        kept = frames_at(self.t, fps)
+        t, pose = self.t[kept], self.pose[kept]
+        bodies = bodies_of(self.case, t, pose, self.velocity[kept])
+        if self.kept_forces is not None:
+            forces, d = self.kept_forces, 3 if self.in_space else 2
+            middle, axes = forces.frames.placed(self.case, t, pose)
+            normal, shear = forces.normal[kept], forces.shear[kept].reshape(*middle.shape[:2], d - 1)
+            along = np.concatenate([normal[..., None], shear], axis=-1)
+            values = {"force": in_space((along[..., None] * axes).sum(axis=-2)), "normal": normal}
+            if self.rocking is None:
+                values["opening"] = openings(self.case.masonry, bodies)
+            write_series(folder, "joints", t, texts_of_joints(in_space(middle), values))
+        return write_series(folder, "blocks", t, texts_of_bodies(bodies))
 
     @property
     def bodies(self) -> tuple[str, ...]:
