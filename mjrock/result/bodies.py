@@ -102,8 +102,10 @@ def bodies_of(case: Case | MasonryCase, t: Array, pose: Array, velocity: Array) 
     for i, (name, block, rest) in enumerate(
         zip(masonry.names, masonry.blocks, in_space(laden(masonry, case.effects)[1]), strict=True)
     ):
-        flat = isinstance(block, Polygon)
-        corners, faces = prism(block.corners, block.length) if flat else (block.corners, block.faces)
+        if isinstance(block, Polygon):
+            corners, faces = prism(block.corners, block.length)
+        else:
+            corners, faces = block.corners, block.faces
         where, rate = still
         if not block.fixed:
             where, rate = (part[:, masonry.free.index(i)] for part in (pose, velocity))

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..files import replacing
-from ..quantities import Array, require_path
+from ..quantities import Array, Integers, require_path
 from .bodies import Body
 
 FLOAT, WHOLE = 5126, 5125
@@ -29,7 +29,7 @@ class Numbers:
     def __init__(self) -> None:
         self.data, self.views, self.accessors = bytearray(), list[dict[str, Any]](), list[dict[str, Any]]()
 
-    def add(self, values: Array, kind: str, whole: bool = False) -> int:
+    def add(self, values: Array | Integers, kind: str, whole: bool = False) -> int:
         """Append values of a kind such as "VEC3", as 32 bits; the number of their accessor."""
         packed = np.ascontiguousarray(values, dtype="<u4" if whole else "<f4")
         rows = packed.reshape(len(packed), -1)
