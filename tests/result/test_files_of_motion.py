@@ -11,6 +11,7 @@ import pytest
 import mjrock as mr
 from mjrock.plotting.bodies import Bodies
 from mjrock.plotting.solids import Solids
+from mjrock.result.gltf import turns
 
 
 @pytest.fixture(scope="module")
@@ -143,6 +144,15 @@ def test_a_wall_with_a_profile_has_its_volume(e, tmp_path):
     answer = mr.solve_analytical(mr.Case(wall, 0.02, 0.1), mr.Restitution.from_geometry(wall))
     glb = Glb(answer.to_gltf(tmp_path / "wall.glb"))
     assert volume(*glb.mesh(0)) == pytest.approx(0.6 * 2.0 + 0.4 * 2.2, rel=1e-5)
+
+
+def test_quaternions_have_no_jumps_of_sign():
+    """A viewer that goes straight from one to the next would turn a block back by a whole turn."""
+    half = np.linspace(0, 2 * np.pi, 41)
+    zero = np.zeros(41)
+    smooth = np.column_stack([np.cos(half), zero, np.sin(half), zero])
+    jumping = smooth * np.where(np.arange(41) % 3 == 1, -1.0, 1.0)[:, None]
+    np.testing.assert_allclose(turns(jumping), np.column_stack([zero, zero, -np.sin(half), np.cos(half)]), atol=1e-12)
 
 
 def test_another_library_opens_the_glb(space, tmp_path):
