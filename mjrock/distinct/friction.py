@@ -41,8 +41,6 @@ SWEEPS = 50
 """Most sweeps over the lines in a step."""
 SETTLED = 1e-3
 """Change of an impulse in a sweep, over the largest of a line that is pressed most, below which the sweeps end [-]."""
-STRIDE = 3
-"""Lines from one that a sweep takes to the next."""
 HELD = 1e-9
 """Least compliance of a body that a guide holds, over that of its mass [-]."""
 
@@ -259,17 +257,17 @@ def stop(system: System, first: int, axes: tuple[int, ...]) -> float:
 def stick(system: System, active: Integers, count: int, kick: float, axes: tuple[int, ...]) -> None:
     """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s].
 
-    Neighbouring lines share their bodies, so that each would wait for the one before it: a sweep takes every third.
+    Lines that follow each other share their bodies, and a sweep carries friction through all of them. Dealt out in
+    strides they would be a tenth faster, and the sweeps would end farther from where they converge.
     """
     lines, each, largest = system.lines, len(axes) - 1, 0.0
     for i in range(count):
         largest = max(largest, begin(system, lines[active[i]], each * i, kick, axes))
     for sweep in range(SWEEPS):
         changed = 0.0
-        for start in range(STRIDE):
-            for turn in range(start, count, STRIDE):
-                i = turn if sweep % 2 else count - 1 - turn
-                changed = max(changed, stop(system, each * i, axes))
+        for turn in range(count):
+            i = turn if sweep % 2 else count - 1 - turn
+            changed = max(changed, stop(system, each * i, axes))
         if changed <= SETTLED * largest:
             break
     for i in range(count):
