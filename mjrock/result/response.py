@@ -321,6 +321,51 @@ class Response:
             write_text(require_path("path", path), text)
         return text
 
+    def to_gltf(self, path: str | Path, fps: float = 50.0) -> Path:
+        """Write the motion as glTF, which Blender, three.js and the viewers of Windows and macOS open.
+
+        Each block is a node with its name, and its translation and rotation are an animation. The first sample is at
+        time 0. Needs `pip install 'mjrock[export]'`.
+
+        Args:
+            path: where to, with the ending .glb.
+            fps: frames a second [1/s], 1 to 10000.
+
+        Returns:
+            The path.
+
+        Raises:
+            ImportError: if pygltflib is missing.
+            ValueError: for another ending, or a value outside its range.
+            OSError: if the file cannot be written.
+        """
+        from .gltf import write_gltf
+
+        return write_gltf(self, path, fps)
+
+    def to_vtk(self, folder: str | Path, fps: float = 50.0) -> Path:
+        """Write the motion as series of files for ParaView: `blocks.pvd` and, of masonry, `joints.pvd`.
+
+        Blocks have displacement and velocity at their corners, and their numbers. They are drawn where they are: no
+        warp is needed. Joints lie on the block below and have opening and slip, and normal force, shear and damage
+        where the run kept forces. Needs `pip install 'mjrock[export]'`.
+
+        Args:
+            folder: where to; it is made.
+            fps: files a second [1/s], 1 to 10000.
+
+        Returns:
+            The folder.
+
+        Raises:
+            ImportError: if meshio is missing.
+            ValueError: for a value outside its range.
+            OSError: if a file cannot be written.
+        """
+        from .paraview import write_vtk
+
+        return write_vtk(self, folder, fps)
+
     @property
     def bodies(self) -> tuple[str, ...]:
         """Names of the bodies, in their order."""
