@@ -30,7 +30,7 @@ from .histories import acceleration, rotation, ties
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
 from .style import Drawing, titled
-from .view import fill, solids, ties_in_view
+from .perspective import fill, solids, ties_in_view
 
 MOST_FRAMES = 20_000
 HUNDREDTHS = 100

@@ -10,7 +10,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
 from mjrock.plotting.solids import Solids
-from mjrock.plotting.view import Faces
+from mjrock.plotting.perspective import Faces
 
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
 PAIR = (mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), name="front"), mr.Polyhedron.box((1, 1, 1), (-0.5, 0, 0.5)))

@@ -1,0 +1,186 @@
+"""A page that shows a run in any browser without a network: blocks that are turned, zoomed, scrubbed and played."""
+
+from __future__ import annotations
+
+import html
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..files import write_text, writer
+from ..geometry.poses import rotations
+from ..problem.masonry.case import MasonryCase
+from ..quantities import Array, require_path
+from ..result.response import Response
+from ..result.shapes import MovingShapes, in_space, outline_of
+from ..result.ties import held_by
+from .arguments import kind, picture
+from .forces import CRACKED, NOTHING, Acting, Moving
+from .perspective import GROUND
+from .section import FORCE
+from .solids import TINTS
+
+SUPPORT, TIE = "#bdbdbd", "#1f5f9e"
+THICK = 0.005
+"""Thickness of lines, over the extent of what moves [-]."""
+WAY = np.array([1.15, -1.3, 0.5])
+"""From what moves to the eye, over its extent [-]."""
+PANEL = """
+const world = K3DInstance.getWorld(), objects = Object.values(world.ObjectsListJson);
+const panel = document.createElement('div'), last = LAST;
+panel.style = 'position:absolute;left:12px;top:12px;font:14px sans-serif;background:#fffd;padding:8px;z-index:9';
+document.body.appendChild(panel);
+const add = (tag, more, parent) => (parent || panel).appendChild(Object.assign(document.createElement(tag), more));
+const play = add('button', {id: 'play', textContent: 'play'});
+const slider = add('input', {id: 'time', type: 'range', min: FIRST, max: last, step: 'any', value: FIRST});
+const clock = add('span', {id: 'clock'});
+const put = t => { slider.value = t; clock.textContent = t.toFixed(2) + ' s'; return K3DInstance.setTime(t); };
+slider.oninput = () => put(+slider.value);
+let since = null;
+const step = now => {
+  if (play.textContent === 'play') { since = null; return; }
+  const before = since === null ? now : since, t = +slider.value + (now - before) / 1000;
+  since = now;
+  put(t > last ? FIRST : t);
+  requestAnimationFrame(step);
+};
+play.onclick = () => {
+  play.textContent = play.textContent === 'play' ? 'pause' : 'play';
+  if (play.textContent === 'pause') requestAnimationFrame(step);
+};
+for (const group of new Set(objects.map(o => o.group))) {
+  const label = add('label', {style: 'display:block'});
+  const box = add('input', {type: 'checkbox', checked: true, name: group}, label);
+  label.append(group);
+  box.onchange = () => objects.filter(o => o.group === group).forEach(o => {
+    world.ObjectsListJson[o.id].visible = box.checked;
+    K3DInstance.reload(world.ObjectsListJson[o.id], {visible: box.checked}, true);
+  });
+}
+put(FIRST);
+"""
+"""The switches and the slider of the page. The names in capitals are the first and the last time [s]."""
+
+
+@picture(response=kind(Response))
+def view(response: Response, path: str | Path, *, fps: float = 25.0) -> Path:
+    """Write a page with the motion of a response that opens in any browser without a network.
+
+    The blocks can be turned, zoomed, scrubbed and played. There is a switch for blocks, ground, supports that move,
+    ties, and for cracks and forces where the run kept forces. Needs `pip install 'mjrock[view]'`.
+
+    Args:
+        response: of any solver, of a wall or of masonry. Openings of a wall are left out.
+        path: where to, with the ending .html.
+        fps: positions that are kept a second [1/s], 1 to 10000; the page interpolates between them.
+
+    Returns:
+        The path.
+
+    Raises:
+        ImportError: if k3d is missing.
+        ValueError: for another ending, or a value outside its range.
+        OSError: if the file cannot be written.
+    """
+    k3d, path = writer("k3d", "view"), require_path("path", path)
+    if path.suffix != ".html":
+        raise ValueError(f"path = {str(path)!r} does not end with .html")
+    page = Page(k3d, MovingShapes.of(response, fps))
+    page.bodies()
+    page.ties()
+    if response.kept_forces is not None:
+        page.forces()
+    return write_text(path, page.text(path.stem))
+
+
+class Page:
+    """What a page shows."""
+
+    def __init__(self, k3d: Any, moving: MovingShapes) -> None:
+        self.k3d, self.moving, self.case = k3d, moving, moving.response.case
+        corners = np.concatenate([s.corners + s.rest for s in moving.shapes if not s.fixed])
+        self.middle, self.extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
+        self.front = float(corners[:, 1].min()) - 2 * THICK * self.extent
+        self.plot = k3d.plot(
+            grid_visible=False, camera_auto_fit=False, camera_up_axis="z", menu_visibility=False, axes_helper=0.0
+        )
+        self.plot.camera = [*(self.middle + WAY * self.extent), *self.middle, 0.0, 0.0, 1.0]
+
+    def bodies(self) -> None:
+        """Add blocks, ground and supports."""
+        moved, turned = self.moving.motion
+        driven = {support.block for support in getattr(self.case, "supports", ())}
+        for i, shape in enumerate(self.moving.shapes):
+            group, colour = "blocks", TINTS[i % len(TINTS)]
+            if shape.fixed:
+                group, colour = ("supports", SUPPORT) if shape.name in driven else ("ground", GROUND)
+            mesh = self.k3d.mesh(
+                shape.corners.astype(np.float32),
+                shape.triangles.astype(np.uint32),
+                color=_number(colour),
+                name=shape.name,
+                group=group,
+            )
+            matrices = np.tile(np.eye(4, dtype=np.float32), (len(moved), 1, 1))
+            matrices[:, :3, :3] = rotations(np.concatenate([moved[:, i], turned[:, i]], axis=1))
+            matrices[:, :3, 3] = shape.rest + moved[:, i]
+            still = shape.fixed and group == "ground"
+            mesh.model_matrix = matrices[0] if still else self._series(matrices)
+            self.plot += mesh
+
+    def ties(self) -> None:
+        """Add a line for each link, until it breaks."""
+        for name, link in self.case.links.items():
+            of_wall = not isinstance(self.case, MasonryCase)
+            held = held_by(self.case, link)[1]
+            points = held, link.anchor_of(held)
+            blocks = 0 if of_wall else link.block, None if of_wall else link.anchor_block
+            ends = np.stack([self._placed(b, in_space(np.asarray(p))) for b, p in zip(blocks, points, strict=True)], 1)
+            ties = self.moving.response.ties
+            broken = ties[name].broken if name in ties else np.inf
+            ends[self.moving.t >= broken] = ends[0, 0]
+            self._lines(name, "ties", ends[:, None], TIE)
+
+    def forces(self) -> None:
+        """Add a bar for the force of each joint, in the plane on the front, and the outlines of cracked joints."""
+        response, moving = self.moving.response, self.moving
+        acting = Acting(response, Moving(moving.t, response.pose[moving.samples], 1.0))
+        ends = np.stack([acting.every_bar(frame) for frame in range(len(moving.t))])
+        self._lines("forces", "forces", in_space(ends, self.front), FORCE)
+        damage = np.nan_to_num(response.forces.damage[moving.samples])
+        for i in np.flatnonzero((damage > NOTHING).any(axis=0)):
+            joint = self.case.masonry.joints[i]
+            outline = moving.placed(joint.below, outline_of(joint))
+            edges = np.stack([outline, np.roll(outline, -1, axis=1)], axis=2)
+            edges[damage[:, i] <= NOTHING] = outline[0, 0]
+            self._lines(joint.name, "cracks", edges, CRACKED)
+
+    def text(self, title: str) -> str:
+        """The page."""
+        first, last = float(self.moving.t[0]), float(self.moving.t[-1])
+        panel = PANEL.replace("FIRST", repr(first)).replace("LAST", repr(last))
+        page = str(self.plot.get_snapshot(additional_js_code=panel))
+        return page.replace("<title>K3D snapshot viewer", f"<title>{html.escape(title)}", 1)
+
+    def _lines(self, name: str, group: str, ends: Array, colour: str) -> None:
+        """Add lines that move: ends of shape (n, lines, 2, 3) [m]."""
+        vertices = ends.reshape(len(ends), -1, 3).astype(np.float32)
+        pairs = np.arange(vertices.shape[1], dtype=np.uint32).reshape(-1, 2)
+        options = {"color": _number(colour), "width": THICK * self.extent, "name": name, "group": group}
+        self.plot += self.k3d.lines(self._series(vertices), pairs, indices_type="segment", shader="mesh", **options)
+
+    def _placed(self, block: int | None, point: Array) -> Array:
+        """Where a point of a block, or of none, is at the samples [m], shape (n, 3)."""
+        if block is None:
+            return np.tile(point, (len(self.moving.t), 1))
+        return self.moving.placed(block, point[None])[:, 0]
+
+    def _series(self, values: Array) -> dict[str, Array]:
+        """An array for each time, as k3d takes it."""
+        return {repr(float(t)): row for t, row in zip(self.moving.t, values, strict=True)}
+
+
+def _number(colour: str) -> int:
+    """A colour as one number."""
+    return int(colour[1:], 16)
