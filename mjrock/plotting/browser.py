@@ -29,7 +29,7 @@ WAY = np.array([1.15, -1.3, 0.5])
 PANEL = """
 const world = K3DInstance.getWorld(), objects = Object.values(world.ObjectsListJson);
 const panel = document.createElement('div'), last = LAST;
-panel.style = 'position:absolute;left:12px;top:12px;font:14px sans-serif;background:#fffd;padding:8px;z-index:9';
+panel.style = 'position:absolute;left:12px;top:12px;font:14px sans-serif;background:#fffd;padding:8px;z-index:99999';
 document.body.appendChild(panel);
 const add = (tag, more, parent) => (parent || panel).appendChild(Object.assign(document.createElement(tag), more));
 const play = add('button', {id: 'play', textContent: 'play'});
@@ -53,10 +53,10 @@ for (const group of new Set(objects.map(o => o.group))) {
   const label = add('label', {style: 'display:block'});
   const box = add('input', {type: 'checkbox', checked: true, name: group}, label);
   label.append(group);
-  box.onchange = () => objects.filter(o => o.group === group).forEach(o => {
+  box.onchange = () => Promise.all(objects.filter(o => o.group === group).map(o => {
     world.ObjectsListJson[o.id].visible = box.checked;
-    K3DInstance.reload(world.ObjectsListJson[o.id], {visible: box.checked}, true);
-  });
+    return K3DInstance.reload(world.ObjectsListJson[o.id], null, true);
+  })).then(() => put(+slider.value)).then(() => K3DInstance.render());
 }
 put(FIRST);
 """
@@ -68,7 +68,8 @@ def view(response: Response, path: str | Path, *, fps: float = 25.0) -> Path:
     """Write a page with the motion of a response that opens in any browser without a network.
 
     The blocks can be turned, zoomed, scrubbed and played. There is a switch for blocks, ground, supports that move,
-    ties, and for cracks and forces where the run kept forces. Needs `pip install 'mjrock[view]'`.
+    ties, and for cracks and forces where the run kept forces. Forces in space act inside the blocks: switch the blocks
+    off to see them. Needs `pip install 'mjrock[view]'`.
 
     Args:
         response: of any solver, of a wall or of masonry. Openings of a wall are left out.

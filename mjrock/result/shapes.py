@@ -84,7 +84,9 @@ def _of_wall(case: Case) -> list[Shape]:
     heights = np.sort(np.append(outer[:, 1], wall.front.eaves)) if wall.gable else outer[:, 1]
     x = np.interp(heights, outer[:, 1], outer[:, 0]) if wall.gable else outer[:, 0]
     half = 0.5 * wall.front.long(heights)
-    rings = [((-wall.b, -y, z), (w, -y, z), (w, y, z), (-wall.b, y, z)) for w, y, z in zip(x, half, heights, strict=True)]
+    rings = [
+        ((-wall.b, -y, z), (w, -y, z), (w, y, z), (-wall.b, y, z)) for w, y, z in zip(x, half, heights, strict=True)
+    ]
     top = 4 * (len(rings) - 1)
     sides = [(i + j, i + (j + 1) % 4, i + 4 + (j + 1) % 4, i + 4 + j) for i in range(0, top, 4) for j in range(4)]
     faces = ((3, 2, 1, 0), *sides, tuple(range(top, top + 4)))
