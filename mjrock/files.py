@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import importlib
 import os
 import shutil
 import stat
@@ -110,18 +109,6 @@ def write_text(path: str | Path, text: str) -> Path:
         file.flush()
         os.fsync(file.fileno())
     return Path(path)
-
-
-def writer(package: str, extra: str) -> Any:
-    """A package that writes files of a kind, imported when it is needed.
-
-    Raises:
-        ImportError: with the extra that installs it, if it is missing.
-    """
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        raise ImportError(f"{error}; this file is written by {package}: pip install 'mjrock[{extra}]'") from error
 
 
 def write_arrays(path: str | Path, **arrays: Any) -> None:

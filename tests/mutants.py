@@ -74,6 +74,7 @@ OWN = {
     "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
     "result/ledger.py": ("ledger",),
+    **{f"result/{name}.py": ("files_of_motion",) for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties_that_break", "friction_damper", "masonry_effects"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),

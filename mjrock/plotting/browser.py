@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import html
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..files import write_text, writer
+from ..files import write_text
 from ..geometry.poses import rotations
 from ..problem.masonry.case import MasonryCase
-from ..quantities import Array, require_path
+from ..problem.masonry.joints import Joint
+from ..problem.masonry.joints_in_space import SpaceJoint
+from ..quantities import Array, Integers, require_path
+from ..result.bodies import bodies_of, frames_at, in_space
 from ..result.response import Response
-from ..result.shapes import MovingShapes, in_space, outline_of
 from ..result.ties import held_by
 from .arguments import kind, picture
 from .forces import CRACKED, NOTHING, Acting, Moving
@@ -84,10 +87,14 @@ def view(response: Response, path: str | Path, *, fps: float = 25.0) -> Path:
         ValueError: for another ending, or a value outside its range.
         OSError: if the file cannot be written.
     """
-    k3d, path = writer("k3d", "view"), require_path("path", path)
+    try:
+        import k3d
+    except ImportError as error:
+        raise ImportError(f"{error}; k3d makes this page: pip install 'mjrock[view]'") from error
+    path = require_path("path", path)
     if path.suffix != ".html":
         raise ValueError(f"path = {str(path)!r} does not end with .html")
-    page = Page(k3d, MovingShapes.of(response, fps))
+    page = Page(k3d, response, frames_at(response.t, fps))
     page.bodies()
     page.ties()
     if response.kept_forces is not None:
@@ -96,11 +103,13 @@ def view(response: Response, path: str | Path, *, fps: float = 25.0) -> Path:
 
 
 class Page:
-    """What a page shows."""
+    """What a page shows: a response at some of its samples."""
 
-    def __init__(self, k3d: Any, moving: MovingShapes) -> None:
-        self.k3d, self.moving, self.case = k3d, moving, moving.response.case
-        corners = np.concatenate([s.corners + s.rest for s in moving.shapes if not s.fixed])
+    def __init__(self, k3d: Any, response: Response, samples: Integers) -> None:
+        self.k3d, self.response, self.case, self.samples = k3d, response, response.case, samples
+        self.t, self.pose = response.t[samples], response.pose[samples]
+        self.all = bodies_of(self.case, self.t, self.pose, response.velocity[samples])
+        corners = np.concatenate([body.corners + body.rest for body in self.all if not body.fixed])
         self.middle, self.extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
         self.front = float(corners[:, 1].min()) - 2 * THICK * self.extent
         self.plot = k3d.plot(
@@ -110,56 +119,51 @@ class Page:
 
     def bodies(self) -> None:
         """Add blocks, ground and supports."""
-        moved, turned = self.moving.motion
-        driven = {support.block for support in getattr(self.case, "supports", ())}
-        for i, shape in enumerate(self.moving.shapes):
+        for i, body in enumerate(self.all):
             group, colour = "blocks", TINTS[i % len(TINTS)]
-            if shape.fixed:
-                group, colour = ("supports", SUPPORT) if shape.name in driven else ("ground", GROUND)
+            if body.fixed:
+                group, colour = ("supports", SUPPORT) if body.moves else ("ground", GROUND)
+            fans = [(face[0], *pair) for face in body.faces for pair in pairwise(face[1:])]
             mesh = self.k3d.mesh(
-                shape.corners.astype(np.float32),
-                shape.triangles.astype(np.uint32),
+                body.corners.astype(np.float32),
+                np.array(fans, dtype=np.uint32),
                 color=_number(colour),
-                name=shape.name,
+                name=body.name,
                 group=group,
             )
-            matrices = np.tile(np.eye(4, dtype=np.float32), (len(moved), 1, 1))
-            matrices[:, :3, :3] = rotations(np.concatenate([moved[:, i], turned[:, i]], axis=1))
-            matrices[:, :3, 3] = shape.rest + moved[:, i]
-            still = shape.fixed and group == "ground"
-            mesh.model_matrix = matrices[0] if still else self._series(matrices)
+            matrices = np.tile(np.eye(4, dtype=np.float32), (len(self.t), 1, 1))
+            matrices[:, :3, :3], matrices[:, :3, 3] = rotations(body.pose), body.rest + body.pose[:, :3]
+            mesh.model_matrix = self._series(matrices) if body.moves else matrices[0]
             self.plot += mesh
 
     def ties(self) -> None:
         """Add a line for each link, until it breaks."""
         for name, link in self.case.links.items():
-            of_wall = not isinstance(self.case, MasonryCase)
             held = held_by(self.case, link)[1]
-            points = held, link.anchor_of(held)
-            blocks = 0 if of_wall else link.block, None if of_wall else link.anchor_block
-            ends = np.stack([self._placed(b, in_space(np.asarray(p))) for b, p in zip(blocks, points, strict=True)], 1)
-            ties = self.moving.response.ties
-            broken = ties[name].broken if name in ties else np.inf
-            ends[self.moving.t >= broken] = ends[0, 0]
-            self._lines(name, "ties", ends[:, None], TIE)
+            blocks = (link.block, link.anchor_block) if isinstance(self.case, MasonryCase) else (0, None)
+            ends = [self._placed(b, in_space(p)) for b, p in zip(blocks, (held, link.anchor_of(held)), strict=True)]
+            lines, ties = np.stack(ends, axis=2), self.response.ties
+            lines[self.t >= (ties[name].broken if name in ties else np.inf)] = lines[0, 0, 0]
+            self._lines(name, "ties", lines, TIE)
 
     def forces(self) -> None:
         """Add a bar for the force of each joint, in the plane on the front, and the outlines of cracked joints."""
-        response, moving = self.moving.response, self.moving
-        acting = Acting(response, Moving(moving.t, response.pose[moving.samples], 1.0))
-        ends = np.stack([acting.every_bar(frame) for frame in range(len(moving.t))])
-        self._lines("forces", "forces", in_space(ends, self.front), FORCE)
-        damage = np.nan_to_num(response.forces.damage[moving.samples])
+        acting = Acting(self.response, Moving(self.t, self.pose, 1.0))
+        bars = in_space(np.stack([acting.every_bar(frame) for frame in range(len(self.t))]))
+        if not self.response.in_space:
+            bars[..., 1] = self.front
+        self._lines("forces", "forces", bars, FORCE)
+        damage = np.nan_to_num(self.response.forces.damage[self.samples])
         for i in np.flatnonzero((damage > NOTHING).any(axis=0)):
             joint = self.case.masonry.joints[i]
-            outline = moving.placed(joint.below, outline_of(joint))
+            outline = self._placed(joint.below, outline_of(joint))
             edges = np.stack([outline, np.roll(outline, -1, axis=1)], axis=2)
-            edges[damage[:, i] <= NOTHING] = outline[0, 0]
+            edges[damage[:, i] <= NOTHING] = edges[0, 0, 0]
             self._lines(joint.name, "cracks", edges, CRACKED)
 
     def text(self, title: str) -> str:
         """The page."""
-        first, last = float(self.moving.t[0]), float(self.moving.t[-1])
+        first, last = float(self.t[0]), float(self.t[-1])
         panel = PANEL.replace("FIRST", repr(first)).replace("LAST", repr(last))
         page = str(self.plot.get_snapshot(additional_js_code=panel))
         return page.replace("<title>K3D snapshot viewer", f"<title>{html.escape(title)}", 1)
@@ -171,15 +175,24 @@ class Page:
         options = {"color": _number(colour), "width": THICK * self.extent, "name": name, "group": group}
         self.plot += self.k3d.lines(self._series(vertices), pairs, indices_type="segment", shader="mesh", **options)
 
-    def _placed(self, block: int | None, point: Array) -> Array:
-        """Where a point of a block, or of none, is at the samples [m], shape (n, 3)."""
+    def _placed(self, block: int | None, points: Array) -> Array:
+        """Where points of a block, or of none, are at the samples [m], shape (n, m, 3)."""
+        about = np.atleast_2d(points)
         if block is None:
-            return np.tile(point, (len(self.moving.t), 1))
-        return self.moving.placed(block, point[None])[:, 0]
+            return np.tile(about, (len(self.t), 1, 1))
+        return self.all[block].placed(about - self.all[block].rest)
 
     def _series(self, values: Array) -> dict[str, Array]:
         """An array for each time, as k3d takes it."""
-        return {repr(float(t)): row for t, row in zip(self.moving.t, values, strict=True)}
+        return {repr(float(t)): row for t, row in zip(self.t, values, strict=True)}
+
+
+def outline_of(joint: Joint | SpaceJoint) -> Array:
+    """Corners of a joint at rest [m], shape (n, 3)."""
+    if isinstance(joint, SpaceJoint):
+        return joint.outline
+    ends, half = in_space(np.array([joint.start, joint.end])), np.array([0.0, 0.5 * joint.length, 0.0])
+    return np.concatenate([ends - half, ends[::-1] + half])
 
 
 def _number(colour: str) -> int:

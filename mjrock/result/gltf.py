@@ -1,88 +1,104 @@
-"""glTF: the bodies of a run as nodes with an animation, for Blender, three.js and the viewers of operating systems."""
+"""The motion of bodies as glTF 2.0 in one binary file, which Blender and viewers on the web open.
+
+The standard library writes it: a file is one JSON text and one buffer of numbers, and a library of its classes would
+still be given all of these numbers. In glTF y points upwards: x, y, z become x, z, -y.
+"""
 
 from __future__ import annotations
 
+import json
+import struct
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..files import replacing, writer
-from ..quantities import Array, require_path
-from .response import Response
-from .shapes import MovingShapes
+from ..files import replacing
+from ..quantities import Array, Integers, require_path
+from .bodies import Body
 
-FLOAT, UNSIGNED = 5126, 5125
-VERTICES, INDICES = 34962, 34963
-"""Kinds of numbers and of their use, as the standard numbers them."""
-UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
-"""Quaternion, w last, that turns z upwards into y upwards, as glTF has it."""
-COLOURS = ([0.83, 0.62, 0.49, 1.0], [0.74, 0.74, 0.74, 1.0])
-"""Of what moves and of what is fixed."""
+FLOAT, WHOLE = 5126, 5125
+"""glTF's numbers of the kinds of 32 bits."""
+COLOURS = {"masonry": (0.77, 0.55, 0.40, 1.0), "fixed": (0.5, 0.5, 0.5, 1.0)}
 
 
-class Buffer:
-    """The binary part of a file, and where each array is in it."""
+class Numbers:
+    """The buffer of a file, and the tables of what it holds."""
 
-    def __init__(self, gltf: Any) -> None:
-        self.gltf, self.data = gltf, b""
+    def __init__(self) -> None:
+        self.data, self.views, self.accessors = bytearray(), list[dict[str, Any]](), list[dict[str, Any]]()
 
-    def add(self, values: Array, kind: str, use: int | None = None) -> int:
-        """Append an array; the number of its accessor."""
-        gltf, number = self.gltf, UNSIGNED if use == INDICES else FLOAT
-        stored = np.ascontiguousarray(values, dtype=np.uint32 if use == INDICES else np.float32)
-        rows = stored.reshape(len(stored), -1)
-        gl, size = writer("pygltflib", "export"), stored.nbytes
-        gltf.bufferViews.append(gl.BufferView(buffer=0, byteOffset=len(self.data), byteLength=size, target=use))
-        gltf.accessors.append(
-            gl.Accessor(
-                bufferView=len(gltf.bufferViews) - 1,
-                componentType=number,
-                count=len(rows),
-                type=kind,
-                min=rows.min(axis=0).tolist(),
-                max=rows.max(axis=0).tolist(),
-            )
-        )
-        self.data += stored.tobytes()
-        return len(gltf.accessors) - 1
+    def add(self, values: Array | Integers, kind: str, whole: bool = False) -> int:
+        """Append values of a kind such as "VEC3", as 32 bits; the number of their accessor."""
+        packed = np.ascontiguousarray(values, dtype="<u4" if whole else "<f4")
+        rows = packed.reshape(len(packed), -1)
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": packed.nbytes})
+        table = {"bufferView": len(self.views) - 1, "componentType": WHOLE if whole else FLOAT, "count": len(packed)}
+        ends = {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
+        self.accessors.append(table | {"type": kind} | ends)
+        self.data += packed.tobytes()
+        return len(self.accessors) - 1
 
 
-def write_gltf(response: Response, path: str | Path, fps: float) -> Path:
-    """Write a .glb, see `Response.to_gltf`."""
-    gl, path = writer("pygltflib", "export"), require_path("path", path)
-    if path.suffix != ".glb":
-        raise ValueError(f"path = {str(path)!r} does not end with .glb, which is the one file that glTF has")
-    moving = MovingShapes.of(response, fps)
-    gltf = gl.GLTF2(asset=gl.Asset(generator="mjrock"), scene=0, scenes=[gl.Scene(nodes=[0])])
-    gltf.materials = [
-        gl.Material(pbrMetallicRoughness=gl.PbrMetallicRoughness(baseColorFactor=colour, metallicFactor=0.0))
-        for colour in COLOURS
-    ]
-    buffer, animation = Buffer(gltf), gl.Animation(name="motion")
-    gltf.nodes.append(gl.Node(name="z upwards", rotation=UPRIGHT))
-    moved, turned = moving.motion
-    times = buffer.add(moving.t - moving.t[0], "SCALAR")
-    for i, shape in enumerate(moving.shapes):
-        facets = shape.corners[shape.triangles].reshape(-1, 3)  # corners of their own, so that faces are flat
-        primitive = gl.Primitive(
-            attributes=gl.Attributes(POSITION=buffer.add(facets, "VEC3", VERTICES)),
-            indices=buffer.add(np.arange(len(facets))[:, None], "SCALAR", INDICES),
-            material=int(shape.fixed),
-        )
-        gltf.meshes.append(gl.Mesh(name=shape.name, primitives=[primitive]))
-        places, turns = shape.rest + moved[:, i], np.roll(turned[:, i], -1, axis=1)
-        place, turn = places[0].tolist(), turns[0].tolist()
-        gltf.nodes.append(gl.Node(name=shape.name, mesh=i, translation=place, rotation=turn))
-        for values, kind, what in ((places, "VEC3", "translation"), (turns, "VEC4", "rotation")):
-            if len(values) > 1 and np.ptp(values, axis=0).any():
-                target = gl.AnimationChannelTarget(node=i + 1, path=what)
-                animation.channels.append(gl.AnimationChannel(sampler=len(animation.samplers), target=target))
-                animation.samplers.append(gl.AnimationSampler(input=times, output=buffer.add(values, kind)))
-    gltf.nodes[0].children = list(range(1, len(gltf.nodes)))
-    gltf.animations = [animation] if animation.channels else []
-    gltf.buffers = [gl.Buffer(byteLength=len(buffer.data))]
-    gltf.set_binary_blob(buffer.data)
-    with replacing(path) as partial:
-        gltf.save_binary(str(partial))
+def upright(vectors: Array) -> Array:
+    """Vectors in the axes of glTF, shape (..., 3)."""
+    return vectors[..., [0, 2, 1]] * (1.0, 1.0, -1.0)
+
+
+def turns(quaternions: Array) -> Array:
+    """Unit quaternions with w first in the axes and the order of glTF, w last, without jumps of sign, shape (n, 4)."""
+    along = (quaternions[1:] * quaternions[:-1]).sum(axis=1)
+    signs = np.cumprod(np.append(1.0, np.where(along < 0, -1.0, 1.0)))
+    smooth = quaternions * signs[:, None]
+    return np.column_stack([upright(smooth[:, 1:]), smooth[:, 0]])
+
+
+def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
+    """Write bodies at their times [s] to a .glb, one node each; those that move are animated.
+
+    Raises:
+        ValueError: for another ending.
+        OSError: if the file cannot be written.
+    """
+    path = require_path("path", path)
+    if path.suffix.lower() != ".glb":
+        raise ValueError(f"path = {(path.name or str(path))!r} does not end in .glb")
+    numbers, nodes, meshes = Numbers(), list[dict[str, Any]](), list[dict[str, Any]]()
+    samplers, channels = list[dict[str, Any]](), list[dict[str, Any]]()
+    times = numbers.add(t - t[0], "SCALAR")
+    for node, body in enumerate(bodies):
+        fans = [(face[0], *pair) for face in body.faces for pair in pairwise(face[1:])]
+        at = numbers.add(upright(body.corners), "VEC3")
+        indices = numbers.add(np.ravel(fans), "SCALAR", whole=True)
+        part = {"attributes": {"POSITION": at}, "indices": indices, "material": int(body.fixed)}
+        meshes.append({"name": body.name, "primitives": [part]})
+        places, turned = upright(body.rest + body.pose[:, :3]), turns(body.pose[:, 3:])
+        start = {"translation": places[0].tolist(), "rotation": turned[0].tolist()}
+        nodes.append({"name": body.name, "mesh": node} | start)
+        moves = (("translation", places, "VEC3"), ("rotation", turned, "VEC4")) if body.moves else ()
+        for what, values, kind in moves:
+            channels.append({"sampler": len(samplers), "target": {"node": node, "path": what}})
+            samplers.append({"input": times, "output": numbers.add(values, kind), "interpolation": "LINEAR"})
+    text = {
+        "asset": {"version": "2.0", "generator": "mjrock"},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(len(nodes)))}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": [
+            {"name": name, "pbrMetallicRoughness": {"baseColorFactor": colour, "metallicFactor": 0.0}}
+            for name, colour in COLOURS.items()
+        ],
+        "animations": [{"name": "motion", "samplers": samplers, "channels": channels}],
+        "buffers": [{"byteLength": len(numbers.data)}],
+        "bufferViews": numbers.views,
+        "accessors": numbers.accessors,
+    }
+    written = json.dumps(text, separators=(",", ":")).encode()
+    written += b" " * (-len(written) % 4)
+    head = struct.pack("<4sII", b"glTF", 2, 28 + len(written) + len(numbers.data))
+    with replacing(path) as partial, open(partial, "wb") as file:
+        file.write(head + struct.pack("<I4s", len(written), b"JSON") + written)
+        file.write(struct.pack("<I4s", len(numbers.data), b"BIN\0") + bytes(numbers.data))
     return path

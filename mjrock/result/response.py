@@ -16,14 +16,17 @@ from ..geometry.frames import SPACE
 from ..geometry.poses import angle_of, tilt_of
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path
+from .bodies import bodies_of, frames_at, in_space, openings
 from .ending import Outcome
 from .forces import Forces
+from .gltf import write_gltf
 from .joints import JointMotion
 from .ledger import Ledger
 from .motion import Motion
 from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
+from .vtk import texts_of_bodies, texts_of_joints, write_series
 
 State = tuple[Array, Array]
 """Pose (x, z, theta) of each body as its displacement from rest [m, m, rad], and its velocity, shape (bodies, 3). In
@@ -321,50 +324,58 @@ class Response:
             write_text(require_path("path", path), text)
         return text
 
-    def to_gltf(self, path: str | Path, fps: float = 50.0) -> Path:
-        """Write the motion as glTF, which Blender, three.js and the viewers of Windows and macOS open.
+    def to_gltf(self, path: str | Path, fps: float = 25.0) -> Path:
+        """Write the motion as glTF in one .glb, which Blender and viewers on the web open.
 
-        Each block is a node with its name, and its translation and rotation are an animation. The first sample is at
-        time 0. Needs `pip install 'mjrock[export]'`.
+        Each block is a node of its name with its mesh, animated where it moves. Blocks of the plane are prisms of their
+        length. A wall has no openings, and stands on a slab, beside another one where it has a side stop. y points
+        upwards in the file, as it does in glTF.
 
         Args:
-            path: where to, with the ending .glb.
-            fps: frames a second [1/s], 1 to 10000.
+            path: where to, a .glb.
+            fps: most samples of a second that are kept [1/s], 1 to 10000. They are those of the response.
 
         Returns:
-            The path.
+            The path that was written.
 
         Raises:
-            ImportError: if pygltflib is missing.
             ValueError: for another ending, or a value outside its range.
             OSError: if the file cannot be written.
         """
-        from .gltf import write_gltf
+        kept = frames_at(self.t, fps)
+        return write_gltf(path, self.t[kept], bodies_of(self.case, self.t[kept], self.pose[kept], self.velocity[kept]))
 
-        return write_gltf(self, path, fps)
+    def to_vtk(self, folder: str | Path, fps: float = 25.0) -> Path:
+        """Write the motion as a series of files, which ParaView opens by `blocks.pvd`.
 
-    def to_vtk(self, folder: str | Path, fps: float = 50.0) -> Path:
-        """Write the motion as series of files for ParaView: `blocks.pvd` and, of masonry, `joints.pvd`.
-
-        Blocks have displacement and velocity at their corners, and their numbers. They are drawn where they are: no
-        warp is needed. Joints lie on the block below and have opening and slip, and normal force, shear and damage
-        where the run kept forces. Needs `pip install 'mjrock[export]'`.
+        Corners have their displacement [m] and velocity [m/s], and faces the number of their block and whether it is
+        fixed. With forces=True there is `joints.pvd` too: a point in the middle of each joint with the force on the
+        block above and its normal part [N], and of masonry the largest gap at that time [m].
 
         Args:
-            folder: where to; it is made.
-            fps: files a second [1/s], 1 to 10000.
+            folder: where to; it is made where there is none.
+            fps: most samples of a second that are kept [1/s], 1 to 10000. They are those of the response.
 
         Returns:
-            The folder.
+            The path of `blocks.pvd`.
 
         Raises:
-            ImportError: if meshio is missing.
             ValueError: for a value outside its range.
             OSError: if a file cannot be written.
         """
-        from .paraview import write_vtk
-
-        return write_vtk(self, folder, fps)
+        kept = frames_at(self.t, fps)
+        t, pose = self.t[kept], self.pose[kept]
+        bodies = bodies_of(self.case, t, pose, self.velocity[kept])
+        if self.kept_forces is not None:
+            forces, d = self.kept_forces, 3 if self.in_space else 2
+            middle, axes = forces.frames.placed(self.case, t, pose)
+            normal, shear = forces.normal[kept], forces.shear[kept].reshape(*middle.shape[:2], d - 1)
+            along = np.concatenate([normal[..., None], shear], axis=-1)
+            values = {"force": in_space((along[..., None] * axes).sum(axis=-2)), "normal": normal}
+            if self.rocking is None:
+                values["opening"] = openings(self.case.masonry, bodies)
+            write_series(folder, "joints", t, texts_of_joints(in_space(middle), values))
+        return write_series(folder, "blocks", t, texts_of_bodies(bodies))
 
     @property
     def bodies(self) -> tuple[str, ...]:

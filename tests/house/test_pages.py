@@ -22,7 +22,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DO
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
 RUNS = ["stiffness.md", "law_and_step.md", "solvers.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "deciding.md", "code_check.md", "masonry.md", "impacts.md"]
-LONG += ["space.md", "forces.md", "mortar.md", "slow_loading.md"]
+LONG += ["space.md", "forces.md", "mortar.md", "slow_loading.md", "export.md"]
 """Pages whose lines run."""
 
 

@@ -74,8 +74,8 @@ def test_a_wall_of_one_block_has_a_page(tmp_path):
     )
     assert {name: each["group"] for name, each in objects.items()} == {
         "wall": "blocks",
-        "ground": "ground",
-        "side stop": "ground",
+        "base": "ground",
+        "side": "ground",
     }
 
 
