@@ -27,7 +27,7 @@ from .solids import TINTS
 SUPPORT, TIE = "#bdbdbd", "#1f5f9e"
 THICK = 0.005
 """Thickness of lines, over the extent of what moves [-]."""
-WAY = np.array([1.15, -1.3, 0.5])
+WAY = np.array([0.7, -0.9, 0.3])
 """From what moves to the eye, over its extent [-]."""
 PANEL = """
 const world = K3DInstance.getWorld(), objects = Object.values(world.ObjectsListJson);
@@ -182,7 +182,7 @@ class Page:
             return np.tile(about, (len(self.t), 1, 1))
         return self.all[block].placed(about - self.all[block].rest)
 
-    def _series(self, values: Array) -> dict[str, Array]:
+    def _series(self, values: Any) -> dict[str, Any]:
         """An array for each time, as k3d takes it."""
         return {repr(float(t)): row for t, row in zip(self.t, values, strict=True)}
 

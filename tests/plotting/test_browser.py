@@ -1,6 +1,7 @@
 """The page for the browser: what it holds, and where there is a browser, what it shows."""
 
 import base64
+import dataclasses
 import re
 import shutil
 import sys
@@ -11,6 +12,7 @@ import pytest
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.result.motion import SampledMotion
 
 pytest.importorskip("k3d")
 msgpack = pytest.importorskip("msgpack")
@@ -64,6 +66,26 @@ def test_a_page_asks_for_nothing_from_elsewhere(fallen, tmp_path):
     text = plotting.view(fallen, tmp_path / "page.html").read_text()
     assert not re.search(r"<(script|link|img|iframe)[^>]*(src|href)=", text)
     assert "unpkg" not in text.split("window.k3dCompressed")[0]
+
+
+@pytest.mark.slow
+def test_a_page_of_150_blocks_and_10_seconds_is_small(tmp_path):
+    masonry = mr.Masonry.running_bond(3.0, 3.0, (0.3, 0.2), k_n=1e9, friction=0.6)
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.01), forces=True)
+    number, t = len(masonry.free), np.arange(0, 10, 0.01)
+    assert number >= 150
+    anywhere = np.random.default_rng(0).normal(size=(len(t), number, 3))  # packs worse than any motion
+    forces = {
+        name: np.resize(getattr(answer.forces, name), (len(t), len(masonry.joints)))
+        for name in ("normal", "shear", "eccentricity", "damage")
+    }
+    long = dataclasses.replace(
+        answer,
+        t=t,
+        motion=SampledMotion(anywhere, anywhere, np.zeros(len(t))),
+        kept_forces=dataclasses.replace(answer.forces, **forces),
+    )
+    assert plotting.view(long, tmp_path / "page.html").stat().st_size < 15e6
 
 
 def test_a_wall_of_one_block_has_a_page(tmp_path):
