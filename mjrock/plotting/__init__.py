@@ -6,6 +6,7 @@ that imports matplotlib.
 
 from .accuracy import convergence, peers, work_precision
 from .animation import animate, animate_bodies
+from .browser import view
 from .earthquakes import MODES, distributions, fragility, incremental, mode_legend, overturning_map, pairs, spectra
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .laws import damping_curves, obtained, parity, residuals, sensitivity
@@ -22,5 +23,5 @@ __all__ = [
     "damping_curves", "displacement", "distributions", "energy", "fragility", "grid", "history", "incremental",
     "mechanism", "mode_legend", "moment_rotation", "obtained", "overturning_map", "pairs", "panels", "parity",
     "peers", "push", "pushover", "residuals", "rotation", "save", "sensitivity", "single", "sketch", "spectra",
-    "thrust", "ties", "tornado", "work_precision",
+    "thrust", "ties", "tornado", "view", "work_precision",
 ]  # fmt: skip

@@ -27,10 +27,10 @@ from ..result.response import Response
 from .bodies import Bodies
 from .forces import Moving, forces_on, require_shown
 from .histories import acceleration, rotation, ties
+from .perspective import fill, solids, ties_in_view
 from .section import Update, blocks, frame_view, surroundings, ties_of_masonry, together
 from .solids import Solids
 from .style import Drawing, titled
-from .view import fill, solids, ties_in_view
 
 MOST_FRAMES = 20_000
 HUNDREDTHS = 100

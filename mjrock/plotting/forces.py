@@ -143,10 +143,16 @@ class Acting:
 
     def bars(self, frame: int) -> tuple[Array, Array | float]:
         """A bar through the place of each joint's force along it, as long as the force is large, and their width."""
+        ends = self.every_bar(frame)
+        return ends[(ends[:, 0] != ends[:, 1]).any(axis=1)], BAR
+
+    def every_bar(self, frame: int) -> Array:
+        """Ends of the bar of each joint [m], shape (j, 2, d), the same twice where nothing presses."""
         place, share = self.placed(frame)
         size = np.linalg.norm(share, axis=1)
-        half = 0.5 * LONGEST * self.extent * share * np.minimum(LARGE / np.maximum(size, 1e-300), 1.0)[:, None]
-        return np.stack([place - half, place + half], axis=1)[size > NOTHING], BAR
+        length = np.where(size > NOTHING, np.minimum(LARGE / np.maximum(size, 1e-300), 1.0), 0.0)
+        half = 0.5 * LONGEST * self.extent * share * length[:, None]
+        return np.stack([place - half, place + half], axis=1)
 
     @cached_property
     def edges(self) -> tuple[Integers, Array]:

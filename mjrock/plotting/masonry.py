@@ -17,8 +17,8 @@ from ..result.response import Response
 from .arguments import anything, picture
 from .bodies import ends_of, require_masonry, required_limits, window
 from .forces import Moving, forces_on, require_shown, sample_at
+from .perspective import fill, solids
 from .solids import Solids
-from .view import fill, solids
 
 BRICK, STONE, MORTAR = "#e3b79a", "0.85", "#12406b"
 

@@ -122,8 +122,12 @@ def _wall(case: Case, pose: Array, velocity: Array, still: tuple[Array, Array]) 
     wall, top = case.wall, case.stop_top
     b, length, rest = wall.b, wall.length, np.array([wall.centroid_offset, 0.0, wall.centroid_height])
     outer = wall.outline[1:-1]
+    if wall.gable is not None:
+        z = np.sort(np.append(outer[:, 1], wall.front.eaves - rest[2]))
+        outer = np.column_stack([np.interp(z, outer[:, 1], outer[:, 0]), z])
     inner = np.column_stack([np.full(len(outer), wall.outline[0, 0]), outer[:, 1]])
     corners, n = prism(np.concatenate([outer, inner[::-1]]), length)[0], 2 * len(outer)
+    corners[:, 1] *= wall.front.long(corners[:, 2] + rest[2]) / length
     ends = [(i, i + 1, n - 2 - i, n - 1 - i) for i in range(len(outer) - 1)]  # the outline of a profile is not convex
     rim = [(i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n)]
     faces = (*ends, *(tuple(n + i for i in end[::-1]) for end in ends), *rim)

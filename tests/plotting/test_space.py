@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting import animation
+from mjrock.plotting.perspective import Faces
 from mjrock.plotting.solids import Solids
-from mjrock.plotting.view import Faces
 
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True, name="ground")
 PAIR = (mr.Polyhedron.box((1, 1, 1), (0.5, 0, 0.5), name="front"), mr.Polyhedron.box((1, 1, 1), (-0.5, 0, 0.5)))
