@@ -163,7 +163,7 @@ def difference(name, drawn):
 
 
 def test_every_public_picture_is_kept():
-    others = {"MODES", "STYLES", "Drawing", "save", "animate", "animate_bodies", "mode_legend"}
+    others = {"MODES", "STYLES", "Drawing", "save", "animate", "animate_bodies", "mode_legend", "view"}
     assert set(plotting.__all__) - others == set(PICTURES) - {"blocks_in_space"}
     assert {path.stem for path in FOLDER.glob("*.png")} == set(PICTURES)
 
