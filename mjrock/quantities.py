@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import os
 from collections.abc import Iterable, Sequence
@@ -112,6 +113,19 @@ def require_kind(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         needed = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
         raise TypeError(f"{name} = {shown(value)} is not a {needed}")
+
+
+def takes(value: object, count: int) -> bool:
+    """Whether a value is a function that so many arguments by position call."""
+    if not callable(value):
+        return False
+    try:
+        inspect.signature(value).bind(*range(count))
+    except TypeError:
+        return False
+    except ValueError:  # some built-in functions tell nothing of their arguments
+        return True
+    return True
 
 
 def is_iterable(values: object) -> bool:

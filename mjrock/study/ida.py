@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..quantities import Array, Implausible, require_increasing, require_kind, require_within, shown
+from ..quantities import Array, Implausible, require_increasing, require_kind, require_within, shown, takes
 from .analysis import Analysis
 from .campaign import completed
 from .campaign_task import Row
@@ -183,7 +183,7 @@ def _peak(build: Build, scale: float) -> float:
 
 def built(build: Build, scale: float, name: str) -> Analysis:
     """The analysis that a function makes of a scale; TypeError with its name unless it returns an `Analysis`."""
-    if not callable(build):
+    if not takes(build, 1):
         raise TypeError(f"{name} = {shown(build)} is not a function of a scale")
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="the record peaks at ", category=Implausible)  # low scales are meant

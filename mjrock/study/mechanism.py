@@ -19,7 +19,7 @@ from ..problem.ground.spectrum import response_spectrum
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import moment_at_strength
-from ..quantities import GRAVITY, Array, require_real, require_within, shown
+from ..quantities import GRAVITY, Array, require_real, require_within, shown, takes
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -171,7 +171,7 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
         TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
     """
     require_wall("case", case, "collapse_multiplier")
-    if not isinstance(demand, GroundMotion) and not callable(demand):
+    if not isinstance(demand, GroundMotion) and not takes(demand, 2):
         raise TypeError(f"demand = {shown(demand)} is neither a GroundMotion nor a function S_De(T, xi)")
     peak = demand.peak if isinstance(demand, GroundMotion | CodeSpectrum | FloorSpectrum) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)

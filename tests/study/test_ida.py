@@ -139,6 +139,7 @@ def test_builds_that_cannot_be(build, complaint, tmp_path):
         ({"high": math.nan}, "high = nan is outside the valid range"),
         ({"tolerance": 0.0}, "tolerance = 0 is outside the valid range"),
         ({"build": 3}, "build = 3 of type int is not a function of a scale"),
+        ({"build": mr.CALIBRATED}, "build = <DampingLaw .* is not a function of a scale"),
         ({"build": lambda scale: scale}, r"build\(1\) = 1.0 of type float is not an Analysis"),
     ],
 )

@@ -61,6 +61,7 @@ def test_a_record_asks_for_its_largest_displacement_up_to_the_period():
     ("call", "complaint"),
     [
         (lambda: mr.mechanism_check(CASE, 3), "demand = 3 of type int is neither a GroundMotion nor a function"),
+        (lambda: mr.mechanism_check(CASE, abs), "demand = <built-in function abs> .* nor a function"),
         (lambda: mr.mechanism_check(CASE, lambda T, xi: "x"), r"demand\(T, xi\) = 'x' of type str is not a real"),
         (lambda: mr.mechanism_check(CASE, lambda T, xi: 0.1, confidence_factor=2), "confidence_factor = 2 is outside"),
         (
