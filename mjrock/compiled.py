@@ -28,7 +28,7 @@ SLOW = {
     "mjrock.distinct.finder.find": ("contacts of explicit steps where blocks are", 5),
 }
 """Loops whose compilation takes seconds: what they do, and how many [s], on one core that has nothing else to do
-(`scripts/measure/speed.py`). All others take a second or less."""
+(`scripts/measure/speed.py`). All others take two seconds or less."""
 WITHOUT = "numba is not installed; the loops run as plain Python, thirty times slower, thousands in explicit steps"
 NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
 

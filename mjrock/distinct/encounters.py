@@ -88,11 +88,11 @@ class Encounters:
     def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
         blocks = masonry.blocks
         self.count, self.group = len(blocks), len(masonry.joints)
-        self.names, self.sizes, self.free = masonry.names, np.array([block.size for block in blocks]), masonry.free
+        self.names, self.sizes = masonry.names, np.array([block.size for block in blocks])
         body, drawn = free_numbers(blocks), np.array(masonry.centroids, dtype=float)
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
-        self.blocks = Blocks(still, self.sizes, np.array(self.free), body, fixed, np.full(self.count, -1))
+        self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
         self.finder = Finder(blocks, drawn)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T

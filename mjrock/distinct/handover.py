@@ -90,9 +90,8 @@ class Pairs(NamedTuple):
 
 
 @inlined
-def turned(poses: Poses, block: int, a: Vector) -> Vector:
-    """A vector of a block in the axes of the world."""
-    change = poses.change[block]
+def changed(change: Array, a: Vector) -> Vector:
+    """A vector after a rotation, given by the rotation less 1."""
     if len(a) == 2:
         return (
             a[0] + change[0, 0] * a[0] + change[0, 1] * a[1],
@@ -106,19 +105,15 @@ def turned(poses: Poses, block: int, a: Vector) -> Vector:
 
 
 @inlined
+def turned(poses: Poses, block: int, a: Vector) -> Vector:
+    """A vector of a block in the axes of the world."""
+    return changed(poses.change[block], a)
+
+
+@inlined
 def turned_back(poses: Poses, block: int, a: Vector) -> Vector:
     """A vector of the world in the axes of a block."""
-    change = poses.change[block]
-    if len(a) == 2:
-        return (
-            a[0] + change[0, 0] * a[0] + change[1, 0] * a[1],
-            a[1] + change[0, 1] * a[0] + change[1, 1] * a[1],
-        )
-    return (
-        a[0] + change[0, 0] * a[0] + change[1, 0] * a[1] + change[2, 0] * a[2],
-        a[1] + change[0, 1] * a[0] + change[1, 1] * a[1] + change[2, 1] * a[2],
-        a[2] + change[0, 2] * a[0] + change[1, 2] * a[1] + change[2, 2] * a[2],
-    )
+    return changed(poses.change[block].T, a)
 
 
 @inlined

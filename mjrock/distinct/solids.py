@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.hull import unlike_ways
+from ..geometry.hull import prism, unlike_ways
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..quantities import Array, Integers
@@ -101,16 +101,13 @@ def _begins(tables: Iterable[Array | Integers]) -> Integers:
 
 def solids_of(blocks: Sequence[Polygon | Polyhedron], half: float) -> list[Solid | Polyhedron]:
     """Blocks in space: those of the plane as prisms of some half length [m]."""
-    return [prism(block, half) if isinstance(block, Polygon) else block for block in blocks]
+    return [solid_of(block, half) if isinstance(block, Polygon) else block for block in blocks]
 
 
-def prism(block: Polygon, half: float) -> Solid:
+def solid_of(block: Polygon, half: float) -> Solid:
     """A block of the plane as a prism from y = -half to half. (`Polyhedron.prism` searches its corners for a hull.)"""
-    n, across = len(block.corners), np.array([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0)])
-    corners, normals = np.repeat(half * across, n, axis=0), np.zeros((n, 3))
-    corners[:n, ::2] = corners[n:, ::2] = block.corners
+    across, normals = np.array([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0)]), np.zeros((len(block.corners), 3))
     normals[:, ::2] = block.normals
-    sides = tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
-    faces = (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *sides)
+    corners, faces = prism(block.corners, 2 * half)
     edges = np.concatenate([across[1:], unlike_ways(normals[:, ::-1] * (1.0, 1.0, -1.0))])
     return Solid(corners, faces, np.concatenate([across, normals]), edges, 2 * half * block.area)

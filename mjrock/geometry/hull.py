@@ -10,6 +10,8 @@ import scipy
 
 from ..quantities import Array
 
+Faces = tuple[tuple[int, ...], ...]
+"""Numbers of the corners of each face, counterclockwise as seen from outside."""
 FLAT = 1e-5
 """Distance from the plane of a face up to which a vertex belongs to it, over the extent of the points [-]."""
 THINNEST = 1e-4
@@ -113,6 +115,14 @@ def area_vector(ring: Array) -> Array:
     about = ring - ring[0]
     summed: Array = 0.5 * np.cross(about, np.roll(about, -1, axis=0)).sum(axis=0)
     return summed
+
+
+def prism(outline: Array, length: float) -> tuple[Array, Faces]:
+    """Corners and faces of a convex outline x, z, counterclockwise with z upwards, over a length along y about 0."""
+    n, (x, z) = len(outline), outline.T
+    corners = np.concatenate([np.column_stack([x, np.full(n, y), z]) for y in (-0.5 * length, 0.5 * length)])
+    sides = tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
+    return corners, (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *sides)
 
 
 def unlike_ways(ways: Array) -> Array:

@@ -239,8 +239,8 @@ def picture(**own: Check) -> Checked:
         def checked(*given: Any, ax: Axes | None = None, **options: Any) -> Any:
             if ax is not None:
                 given = (ax, *given)
-            elif on_axes and given and not isinstance(given[0], Axes):
-                given = (own_axes(given[0]), *given)
+            elif on_axes and not (given and isinstance(given[0], Axes)):
+                given = (own_axes(next(iter((*given, *options.values())), None)), *given)
             for name, value in signature.bind(*given, **options).arguments.items():
                 check = own.get(name) or CHECKS.get(name)
                 if check is not None and not (value is None and signature.parameters[name].default is None):

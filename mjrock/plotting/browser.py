@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from ..result.bodies import bodies_of, frames_at, in_space
 from ..result.response import Response
 from ..result.ties import held_by
 from .arguments import kind, picture
-from .forces import CRACKED, NOTHING, Acting, Moving
+from .forces import CRACKED, NOTHING, Acting, Moving, edges_of
 from .perspective import GROUND
 from .section import FORCE
 from .solids import TINTS
@@ -123,10 +122,9 @@ class Page:
             group, colour = "blocks", TINTS[i % len(TINTS)]
             if body.fixed:
                 group, colour = ("supports", SUPPORT) if body.moves else ("ground", GROUND)
-            fans = [(face[0], *pair) for face in body.faces for pair in pairwise(face[1:])]
             mesh = self.k3d.mesh(
                 body.corners.astype(np.float32),
-                np.array(fans, dtype=np.uint32),
+                np.array(body.triangles, dtype=np.uint32),
                 color=_number(colour),
                 name=body.name,
                 group=group,
@@ -156,8 +154,8 @@ class Page:
         damage = np.nan_to_num(self.response.forces.damage[self.samples])
         for i in np.flatnonzero((damage > NOTHING).any(axis=0)):
             joint = self.case.masonry.joints[i]
-            outline = self._placed(joint.below, outline_of(joint))
-            edges = np.stack([outline, np.roll(outline, -1, axis=1)], axis=2)
+            ends = edges_of(outline_of(joint))
+            edges = self._placed(joint.below, ends.reshape(-1, 3)).reshape(-1, *ends.shape)
             edges[damage[:, i] <= NOTHING] = edges[0, 0, 0]
             self._lines(joint.name, "cracks", edges, CRACKED)
 

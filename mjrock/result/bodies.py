@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ..geometry.frames import PLANE
+from ..geometry.hull import Faces, prism
 from ..geometry.poses import rotations
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import laden
@@ -15,8 +17,6 @@ from ..problem.masonry.polygon import Polygon
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_within
 
-Faces = tuple[tuple[int, ...], ...]
-"""Numbers of the corners of each face."""
 SHORT = 1e-6
 """Half the time over which the velocity of a support is taken [s]."""
 
@@ -44,6 +44,11 @@ class Body(NamedTuple):
     fixed: bool
     moves: bool
 
+    @property
+    def triangles(self) -> list[tuple[int, ...]]:
+        """Numbers of the corners of triangles that make up the faces."""
+        return [(face[0], *pair) for face in self.faces for pair in pairwise(face[1:])]
+
     def turned(self, vectors: Array) -> Array:
         """Vectors of the body at rest, shape (m, 3), as they are turned, shape (n, m, 3)."""
         return np.asarray(vectors @ rotations(self.pose).swapaxes(1, 2))
@@ -68,14 +73,6 @@ def frames_at(t: Array, fps: float) -> Integers:
 def in_space(vectors: Array) -> Array:
     """Vectors of the plane x, z with y = 0, shape (..., 3); those of space as they are."""
     return vectors if vectors.shape[-1] == 3 else np.insert(vectors, 1, 0.0, axis=-1)
-
-
-def prism(outline: Array, length: float) -> tuple[Array, Faces]:
-    """Corners and faces of a convex outline x, z, counterclockwise with z upwards, over a length along y about 0."""
-    n, (x, z) = len(outline), outline.T
-    corners = np.concatenate([np.column_stack([x, np.full(n, y), z]) for y in (-0.5 * length, 0.5 * length)])
-    sides = tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
-    return corners, (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *sides)
 
 
 def bodies_of(case: Case | MasonryCase, t: Array, pose: Array, velocity: Array) -> list[Body]:

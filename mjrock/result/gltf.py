@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import struct
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -68,9 +67,8 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body]) -> Path:
     samplers, channels = list[dict[str, Any]](), list[dict[str, Any]]()
     times = numbers.add(t - t[0], "SCALAR")
     for node, body in enumerate(bodies):
-        fans = [(face[0], *pair) for face in body.faces for pair in pairwise(face[1:])]
         at = numbers.add(upright(body.corners), "VEC3")
-        indices = numbers.add(np.ravel(fans), "SCALAR", whole=True)
+        indices = numbers.add(np.ravel(body.triangles), "SCALAR", whole=True)
         part = {"attributes": {"POSITION": at}, "indices": indices, "material": int(body.fixed)}
         meshes.append({"name": body.name, "primitives": [part]})
         places, turned = upright(body.rest + body.pose[:, :3]), turns(body.pose[:, 3:])

@@ -19,7 +19,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 import mjrock as mr
 from scripts.shared import cli
@@ -100,14 +99,13 @@ CASES = {
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Crack, and print the table."""
-    args = cli.parser(__doc__, "mortar").parse_args(argv)
-    rows: list[list[object]] = []
-    for name in tqdm(list(CASES)[:1] if args.quick else CASES, desc="walls", disable=None, leave=False):
+
+    def both(name: str) -> tuple[float, float]:
         wall, expected = CASES[name]()
-        found = first_crack(wall, expected)
-        rows.append([name, f"{expected:.4f}", f"{found:.4f}", f"{found / expected - 1:+.1%}"])
-    header = ["wall", "first crack at [g], closed form", "explicit steps", "error"]
-    cli.report(cli.folder(args.out) / "mortar", cli.table(header, rows), header, rows)
+        return expected, first_crack(wall, expected)
+
+    args = cli.parser(__doc__, "mortar").parse_args(argv)
+    cli.beside_closed_forms(args, "mortar", "wall", "first crack at [g]", list(CASES), both)
 
 
 if __name__ == "__main__":

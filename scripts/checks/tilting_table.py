@@ -13,7 +13,6 @@ import sys
 from collections.abc import Sequence
 
 import numpy as np
-from tqdm import tqdm
 
 import mjrock as mr
 from scripts.shared import cli
@@ -56,15 +55,14 @@ def tangent(masonry: mr.Masonry, expected: float) -> float:
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Tilt, and print the table."""
-    args = cli.parser(__doc__, "tilting_table").parse_args(argv)
-    rows: list[list[object]] = []
-    for name in tqdm(list(CASES)[:1] if args.quick else CASES, desc="tables", disable=None, leave=False):
+
+    def both(name: str) -> tuple[float, float]:
         masonry, closed = CASES[name]
         expected = mr.collapse_multiplier(masonry).multiplier if closed is None else closed
-        found = tangent(masonry, expected)
-        rows.append([name, f"{expected:.4f}", f"{found:.4f}", f"{found / expected - 1:+.2%}"])
-    header = ["masonry", "tan of the angle, closed form", "explicit steps", "error"]
-    cli.report(cli.folder(args.out) / "tilting_table", cli.table(header, rows), header, rows)
+        return expected, tangent(masonry, expected)
+
+    args = cli.parser(__doc__, "tilting_table").parse_args(argv)
+    cli.beside_closed_forms(args, "tilting_table", "masonry", "tan of the angle", list(CASES), both)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,8 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
+from tqdm import tqdm
+
 # The package is imported where it is needed: `speed.py` times versions of it that have other modules.
 
 
@@ -63,6 +65,31 @@ def report(stem: Path, text: str, header: Sequence[str] = (), rows: Iterable[Seq
         write_text(stem.with_suffix(".csv"), csv_text(header, rows))
     write_text(stem.with_suffix(".txt"), text + "\n")
     print(text)
+
+
+def beside_closed_forms(
+    args: argparse.Namespace,
+    stem: str,
+    what: str,
+    quantity: str,
+    cases: Sequence[str],
+    both: Callable[[str], tuple[float, float]],
+) -> None:
+    """Print and write a table of some cases: the closed form, what was found, and its error.
+
+    Args:
+        args: of the script; `quick` takes the first case alone.
+        stem: name of the files, without ending.
+        what, quantity: what a case is, and what is compared.
+        cases: their names.
+        both: the closed form of a case and what was found.
+    """
+    rows: list[list[object]] = []
+    for name in tqdm(cases[:1] if args.quick else cases, desc=stem, disable=None, leave=False):
+        expected, found = both(name)
+        rows.append([name, f"{expected:.4f}", f"{found:.4f}", f"{found / expected - 1:+.1%}"])
+    header = [what, f"{quantity}, closed form", "found", "error"]
+    report(folder(args.out) / stem, table(header, rows), header, rows)
 
 
 def seconds(call: Callable[[], object]) -> float:

@@ -25,7 +25,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, SEEN, UNIT, WINDOWS
+from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, SEEN, UNIT, WINDOWS, motions
 
 JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 2}
 BONDS = {
@@ -60,11 +60,7 @@ def pushed(masonry: mr.Masonry, most: float) -> tuple[float, float]:
 
 def shaken(masonry: mr.Masonry, duration: float) -> mr.Response:
     """The façade under the three motions."""
-    motions: dict[str, Any] = {
-        name: mr.GroundMotion.synthetic(peak=peak, duration=SHAKEN, seed=seed)
-        for seed, (name, peak) in enumerate(PEAKS.items(), 1)
-    }
-    return mr.solve_explicit(mr.MasonryCase(masonry, duration, **motions), output_step=0.01)
+    return mr.solve_explicit(mr.MasonryCase(masonry, duration, **motions(PEAKS, SHAKEN)), output_step=0.01)
 
 
 def drawn(answers: dict[str, mr.Response]) -> Figure:

@@ -76,10 +76,8 @@ def motions(run: Run) -> dict[str, Any]:
         study = two_storeys.FULL
         record = mr.GroundMotion.synthetic(16.0, study.shaken, seed=1, ground_frequency=two_storeys.SOIL)
         return {"motion": record.scaled(factor)}
-    return {
-        name: mr.GroundMotion.synthetic(peak, duration=6.0, seed=seed).scaled(factor)
-        for seed, (name, peak) in enumerate(facade_in_space.PEAKS.items(), 1)
-    }
+    three = facade_in_space.motions(facade_in_space.PEAKS, 6.0)
+    return {name: motion.scaled(factor) for name, motion in three.items()}
 
 
 def case_of(run: Run) -> mr.MasonryCase:

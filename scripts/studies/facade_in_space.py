@@ -46,13 +46,17 @@ def facade(height: float = HEIGHT, points: int = 2) -> mr.Masonry:
     return mr.Masonry.facade(LENGTH, height, DEPTH, UNIT, openings=openings, points=points, **JOINTS)
 
 
+def motions(peaks: dict[str, float], duration: float) -> dict[str, Any]:
+    """Three synthetic motions with their largest accelerations [m/s2], as `MasonryCase` takes them."""
+    return {
+        name: mr.GroundMotion.synthetic(peak=peak, duration=duration, seed=seed)
+        for seed, (name, peak) in enumerate(peaks.items(), 1)
+    }
+
+
 def shaken(masonry: mr.Masonry, duration: float) -> mr.Response:
     """The facade under the three motions."""
-    motions: dict[str, Any] = {
-        name: mr.GroundMotion.synthetic(peak=peak, duration=6.0, seed=seed)
-        for seed, (name, peak) in enumerate(PEAKS.items(), 1)
-    }
-    return mr.solve_explicit(mr.MasonryCase(masonry, duration, **motions), output_step=0.01)
+    return mr.solve_explicit(mr.MasonryCase(masonry, duration, **motions(PEAKS, 6.0)), output_step=0.01)
 
 
 def cost(height: float, points: int) -> list[object]:

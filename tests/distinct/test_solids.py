@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct.solids import prism
+from mjrock.distinct.solids import solid_of
 from mjrock.geometry.hull import area_vector
 
 SIDES = {
@@ -19,7 +19,7 @@ SIDES = {
 @pytest.mark.parametrize("of", SIDES)
 def test_a_prism_is_the_hull_of_its_corners(of):
     block, half = mr.Polygon(SIDES[of]), 0.35
-    solid, hull = prism(block, half), mr.Polyhedron(prism(block, half).corners)
+    solid, hull = solid_of(block, half), mr.Polyhedron(solid_of(block, half).corners)
     assert sorted(map(sorted, solid.faces)) == sorted(map(sorted, hull.faces))
     for face, normal in zip(solid.faces, solid.normals, strict=True):  # counterclockwise as seen from outside
         turned = area_vector(solid.corners[list(face)])

@@ -27,11 +27,13 @@ def test_pictures_on_axes_have_it_first():
 @pytest.mark.parametrize("masonry", [FLAT, DEEP], ids=["plane", "space"])
 def test_blocks_are_drawn_with_and_without_an_axes(masonry, tmp_path):
     given = Figure().add_subplot(projection="3d" if masonry.in_space else None)
-    first, named, own = (
+    first, named, own, all_named = (
         plotting.blocks(given, masonry),
         plotting.blocks(masonry, ax=given),
         plotting.blocks(masonry),
+        plotting.blocks(masonry=masonry),
     )
+    assert all_named.name == given.name
     assert first is named is given
     assert isinstance(own, Axes)
     assert own is not given
