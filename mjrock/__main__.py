@@ -7,9 +7,13 @@ import importlib
 import sys
 from collections.abc import Sequence
 
-COMMANDS = {"inspect": ".anymodel.command", "status": ".study.status"}
+COMMANDS = {"inspect": ".anymodel.command", "status": ".study.status", "view": ".engine.replay"}
 """Where the function `answer` of each command is, which takes its arguments and returns a text."""
-HELP = {"inspect": "contacts of a MuJoCo model in physical units", "status": "how far a campaign is, from its store"}
+HELP = {
+    "inspect": "contacts of a MuJoCo model in physical units",
+    "status": "how far a campaign is, from its store",
+    "view": "a model and its answer in MuJoCo's viewer",
+}
 
 
 def parser() -> argparse.ArgumentParser:

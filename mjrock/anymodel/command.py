@@ -6,8 +6,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-import mujoco
-
+from ..engine.replay import load
 from ..files import write_text
 from ..result.table import csv_text
 from .inspect import inspect_contacts
@@ -43,9 +42,8 @@ def answer(argv: Sequence[str]) -> str:
     args = parser().parse_args(argv)
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is not a file")
-    read = mujoco.MjModel.from_binary_path if args.model.suffix == ".mjb" else mujoco.MjModel.from_xml_path
     keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
-    model = read(str(args.model))
+    model = load(args.model)
     require_known(model, [*args.geom, *args.body, *(args.pair or ())])
     found = inspect_contacts(
         model, candidates=not args.pairs, contacts=args.contacts, keyframe=keyframe, load=args.load
