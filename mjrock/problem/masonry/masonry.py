@@ -40,11 +40,12 @@ from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
+from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
-from .mesh_files import compas_text, obj_text, read_compas, read_obj, read_stl
+from .mesh_files import obj_text, read_obj, read_stl
 from .meshes import Mesh, blocks_of
 from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
@@ -581,7 +582,8 @@ class Masonry:
         scale: float = 1.0,
         **options: Any,
     ) -> Self:
-        """Blocks of the JSON file of a COMPAS model, such as a `BlockModel` of compas_dem. Its supports are fixed.
+        """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, or an `Assembly` of
+        compas_assembly. Its supports are fixed.
 
         Args:
             path: of the file.
