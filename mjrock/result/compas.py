@@ -10,7 +10,6 @@ import json
 from typing import Any
 
 import numpy as np
-from scipy.optimize import nnls
 
 from ..geometry.poses import rotations
 from ..problem.masonry.case import MasonryCase
@@ -126,5 +125,7 @@ def at_corners(corners: Array, eccentricity: Array) -> Array:
     wanted = np.append(1.0, eccentricity / np.abs(corners).max())
     shares = np.linalg.lstsq(conditions, wanted)[0]
     if shares.min() < 0:
+        from scipy.optimize import nnls  # half a second, which nobody else waits for
+
         shares = nnls(conditions, wanted)[0]
     return np.asarray(shares / shares.sum())
