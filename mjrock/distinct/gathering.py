@@ -1,4 +1,4 @@
-"""Forces that are kept at a sample: of joints, of fixed blocks and of links.
+"""Forces that are kept at a sample: of joints, of fixed blocks, of links and of what actuators drive.
 
 A row keeps the force along its normal and that of its friction in the last step. They are gathered when all forces of
 the step have acted, those of rigid friction and of touches too.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined
-from ..geometry.vectors import Vector, components, increase, moment, plus, scaled, spin_components
+from ..geometry.vectors import Vector, components, increase, moment, plus, put, scaled, spin_components
 from ..quantities import Array
 from .contact import meeting, where_friction_rubs
 from .friction import as_vector, last_friction
@@ -29,15 +29,27 @@ def whole_friction(system: System, line: Row, axes: tuple[int, ...]) -> Vector:
 
 @inlined
 def add_moment(load: Array, factor: float, place: Vector, force: Vector) -> None:
-    """Add a force at a place to a force and its moment about the origin of the world [N, N m]."""
+    """Add a force to a force and its moment [N, N m], about the origin of the place, which is that of the world or the
+    centroid of a body."""
     increase(load, scaled(factor, force))
     increase(load[len(force) :], scaled(factor, moment(place, force)))
+
+
+@inlined
+def keep_burden(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
+    """Keep what weight, ground motion and links do to the blocks of actuators, before any contact acts on them."""
+    guided = samples.guided[row]
+    for i in range(len(guided)):
+        body = system.bodies[system.actuators[i].body]
+        put(guided[i], components(body.force, axes))
+        put(guided[i][len(axes) :], spin_components(body.moment, axes))
 
 
 @inlined
 def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...]) -> None:
     """Keep the forces of the last step at a sample, where there is room for them."""
     loads, held, pulled, ties = samples.loads[row], samples.held[row], samples.pulled[row], len(system.ties)
+    guided = samples.guided[row]
     if len(held) == 0:
         return
     for p in range(len(system.lines)):
@@ -59,5 +71,10 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
             add_moment(loads[line.group], line.sense, place, force)
         if line.fixed >= 0:
             increase(held[line.fixed], force)
+        for i in range(len(guided)):
+            if system.actuators[i].body == line.body:
+                add_moment(guided[i], 1.0, meet.arm, force)
+            elif system.actuators[i].body == line.face:
+                add_moment(guided[i], -1.0, meet.face_arm, force)
     for i in range(len(pulled)):
         pulled[i] = system.ties[i].pulled if i < ties else system.dampers[i - ties].pulled

@@ -29,7 +29,7 @@ from ..scene.ground import Ground, mean_acceleration
 from .bonds import bonded_energy, hold_bonds
 from .contact import press_lines, settle_touches
 from .friction import book_rubbing, note_slips, stick
-from .gathering import keep_forces
+from .gathering import keep_burden, keep_forces
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
 from .slowing import oppose, slow_down
@@ -266,6 +266,8 @@ def make_steps(
             push = plus(push, scaled(0.5 * before / kick, clock.pushed))
         start_forces(system, books, push, before, axes)
         pull_links(system, books, n * h, before, axes)
+        if sampled:
+            keep_burden(system, samples, row, axes)
         hold_bonds(system, books, before, axes)
         sticking, touched = press_lines(system, books, before, kick, clock.lead, axes)
         if sampled or looked:

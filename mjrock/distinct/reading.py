@@ -132,7 +132,7 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
         dry = [bond is None for bond in run.case.masonry.bonds]
         damage = np.where(dry, np.nan, samples.damage / lines)
     loads = samples.pose, samples.loads, samples.held
-    gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, damage)
+    gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, samples.guided, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
 
 

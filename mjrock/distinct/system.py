@@ -119,8 +119,9 @@ class Samples(NamedTuple):
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
         pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
-        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints). All four have
-            no columns where no forces are kept.
+        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints).
+        guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
+            (samples, actuators, nv). All five have no columns where no forces are kept.
     """
 
     pose: Array
@@ -136,6 +137,7 @@ class Samples(NamedTuple):
     held: Array
     pulled: Array
     damage: Array
+    guided: Array
 
     @classmethod
     def room(
@@ -155,14 +157,15 @@ class Samples(NamedTuple):
         kept = (books.dampers, books.ties, books.broken, books.dashpots)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         accounts.append(np.zeros((count, actuators)))
-        accounts += [np.zeros((count, 0, *size)) for size in ((freedom.nv,), (freedom.translations,), (), ())]
+        sizes: tuple[tuple[int, ...], ...] = ((freedom.nv,), (freedom.translations,), (), (), (freedom.nv,))
+        accounts += [np.zeros((count, 0, *size)) for size in sizes]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, looks), *accounts)
 
-    def with_forces(self, joints: int, blocks: int, links: int) -> Samples:
-        """The same with room for the forces of so many joints, fixed blocks and links."""
-        parts, counts = (self.loads, self.held, self.pulled, self.damage), (joints, blocks, links, joints)
-        room = [np.zeros((len(part), n, *part.shape[2:])) for part, n in zip(parts, counts, strict=True)]
-        return self._replace(loads=room[0], held=room[1], pulled=room[2], damage=room[3])
+    def with_forces(self, joints: int, blocks: int, links: int, actuators: int) -> Samples:
+        """The same with room for the forces of so many joints, fixed blocks, links and actuators."""
+        counts = {"loads": joints, "held": blocks, "pulled": links, "damage": joints, "guided": actuators}
+        parts = {name: (n, getattr(self, name)) for name, n in counts.items()}
+        return self._replace(**{name: np.zeros((len(old), n, *old.shape[2:])) for name, (n, old) in parts.items()})
 
     def taken(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all looks."""

@@ -114,9 +114,11 @@ class Forces:
         links: what each tie, damper or other link pulls with, negative where it pushes [N], shape (n,), by its name.
         reactions: forces on the masonry by each fixed block, moved or not, along x and z and in space x, y and z [N],
             shape (n, 2) or (n, 3), by its name: of all its contacts, whether of joints or found where blocks are, and
-            of the links that are anchored on it. "anchors" is that of all links anchored on no block and of
-            actuators without their guides. Of a wall those
-            of "base", "side" and "anchors".
+            of the links that are anchored on it. "anchors" is that of all links anchored on no block, and of actuators
+            and their guides. Of a wall those of "base", "side" and "anchors".
+        guides: what the guide of an actuator does to its block, by the name of the block: the vertical force [N], zero
+            where the block may rise, and the moment about its centroid, positive with theta [N m], shape (n, 2), in
+            space about x, y and z, shape (n, 4). It balances all other forces on the block.
         damage: share of its bond that each joint has lost [-], shape (n, joints), NaN where it is dry.
     """
 
@@ -126,6 +128,7 @@ class Forces:
     eccentricity: Array
     links: Mapping[str, Array]
     reactions: Mapping[str, Array]
+    guides: Mapping[str, Array]
     damage: Array
 
     @property
@@ -147,6 +150,10 @@ class Forces:
             columns |= {
                 f"reaction {axis} of {name} [N]": force[:, i] for i, axis in enumerate("xz" if d == 2 else "xyz")
             }
+        for name, held in self.guides.items():
+            columns[f"vertical force of the guide of {name} [N]"] = held[:, 0]
+            about = ("",) if d == 2 else tuple(f" about {axis}" for axis in "xyz")
+            columns |= {f"moment{a} of the guide of {name} [N m]": held[:, 1 + i] for i, a in enumerate(about)}
         for i, name in enumerate(self.joints):
             columns[f"normal force of {name} [N]"] = self.normal[:, i]
             for what, values, unit in (("shear", self.shear, "N"), ("eccentricity", self.eccentricity, "m")):
@@ -170,6 +177,8 @@ class Gathered(NamedTuple):
         held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
         pulled: what each link pulls with [N], by its name, shape (n,).
         driven: force of each actuator [N], shape (n, actuators), or None without.
+        guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
+            (n, actuators, nv), or None without.
         damage: share of its bond that each joint has lost [-], shape (n, joints), or None without bonds.
     """
 
@@ -179,6 +188,7 @@ class Gathered(NamedTuple):
     held: Array
     pulled: Mapping[str, Array]
     driven: Array | None = None
+    guided: Array | None = None
     damage: Array | None = None
 
 
@@ -198,11 +208,28 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     presses = (normal > 0)[..., None]
     eccentricity = np.where(presses, arm, np.nan) / np.where(presses, normal[..., None], 1.0)
     reactions = {name: gathered.held[:, i].copy() for i, name in enumerate(frames.blocks)}
+    guides = guides_of(case, gathered)
     add_links(case, gathered, reactions)
+    for guide in guides.values():
+        reactions[ANCHORS][:, -1] += guide[:, 0]
     if d == 2:
         shear, eccentricity = shear[..., 0], eccentricity[..., 0]
     damage = np.full(normal.shape, np.nan) if gathered.damage is None else gathered.damage
-    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions, damage)
+    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions, guides, damage)
+
+
+def guides_of(case: Case | MasonryCase, gathered: Gathered) -> dict[str, Array]:
+    """What guides do to the blocks of actuators, see `Forces`: they balance all else that acts on them."""
+    guides: dict[str, Array] = {}
+    if isinstance(case, Case) or gathered.guided is None:
+        return guides
+    d = 3 if case.masonry.in_space else 2
+    for i, actuator in enumerate(case.actuators.values()):
+        name, upwards = case.masonry.names[actuator.block], -gathered.guided[:, i, d - 1]
+        if actuator.guide.rising or (actuator.guide.turning and name not in guides):
+            upwards = upwards if actuator.guide.rising else np.zeros_like(upwards)
+            guides[name] = np.column_stack([upwards, -gathered.guided[:, i, d:]])
+    return guides
 
 
 def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str, Array]) -> None:
@@ -221,14 +248,15 @@ def add_links(case: Case | MasonryCase, gathered: Gathered, reactions: dict[str,
         reactions[ANCHORS] = reactions.get(ANCHORS, 0.0) + gathered.driven @ ways
 
 
-def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int]:
-    """How many joints, fixed blocks and links a case has.
+def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, int, int]:
+    """How many joints, fixed blocks, links and actuators a case has.
 
     Raises:
         ValueError: if their forces at so many samples do not fit into memory.
     """
     frames = JointFrames.of(case)
-    d, counts = frames.middle.shape[1], (len(frames.names), len(frames.blocks), len(case.links))
-    numbers = samples * (counts[0] * (2 * d - 1) + counts[1] * d + counts[2])
+    d, driven = frames.middle.shape[1], 0 if isinstance(case, Case) else len(case.actuators)
+    counts = len(frames.names), len(frames.blocks), len(case.links), driven
+    numbers = samples * (counts[0] * (2 * d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))
     require_size("the forces of this answer", numbers, "raise output_step, or leave the forces out")
     return counts

@@ -153,3 +153,50 @@ def test_a_wall_of_one_block_takes_no_actuator():
     wall = mr.Block.from_size(0.5, 2.0)
     with pytest.raises(TypeError, match="Actuator"):
         mr.Case(wall, 0.0, 1.0, effects=(mr.Actuator(0, (0.0, 1.0), 1, HISTORY, 1e8),))
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_guide_holds_the_moment_of_the_push_and_its_friction(in_space):
+    """The panel slides without turning: its guide balances the couple of jack and base, of the lever 2h."""
+    driven = actuator(-B, 2 * H, ([0.0, 0.5], [0.0, 0.02]), in_space=in_space, guided="upright")
+    answer, _ = pushed(panel(0.3, in_space=in_space, k_n=1e10), driven, duration=0.5, forces=True)
+    guide = answer.forces.guides["panel"]
+    about, name = (2, " about y") if in_space else (1, "")
+    assert guide.shape == (51, 4 if in_space else 2)
+    np.testing.assert_allclose(guide[40:, about], -answer.actuators["actuator_0"][40:] * 2 * H, rtol=1e-3)
+    assert np.median(guide[40:, about]) == pytest.approx(-0.3 * WEIGHT * 2 * H, rel=2e-3)
+    rest = np.delete(guide, about, axis=1)
+    np.testing.assert_allclose(rest, 0.0, atol=1e-9 * WEIGHT)
+    assert f"moment{name} of the guide of panel [N m]" in answer.csv().splitlines()[0]
+
+
+@pytest.mark.parametrize("k_s", [None, 2e9])
+def test_what_a_guide_presses_down_is_part_of_the_reactions(k_s):
+    """The panel becomes a strut between floor and guided beam: vertical forces balance in every step, with the guide's,
+    and its moment balances all that the strut and the jack do to the beam."""
+    beam = mr.Polygon([(-1.0, 2 * H), (1.0, 2 * H), (1.0, 2.2), (-1.0, 2.2)], density=2000.0, name="beam")
+    masonry = mr.Masonry([*panel(0.9).blocks, beam], k_n=2e9, k_s=k_s, friction=0.9, xi=0.1)
+    jack = mr.Actuator("beam", (-1.0, 2.15), 1, ([0.0, 0.1], [0.0, 2e-3]), 1e8, 2e5, guided="translation")
+    case, h = mr.MasonryCase(masonry, 0.1, effects=(jack, mr.Load(1e4, 2.2, block="beam"))), 2e-5
+    answer = mr.solve_explicit(case, timestep=h, output_step=h, forces=True)
+    guide = answer.forces.guides["beam"]
+    mass = np.array([block.mass for block in masonry.blocks if not block.fixed])
+    place = answer.pose[:, :, :2]
+    change = np.einsum("b,nbd->nd", mass, place[2:] - 2 * place[1:-1] + place[:-2]) / h**2
+    total = sum(answer.reactions.values())[1:-1] - [0.0, mass.sum() * mr.GRAVITY + 1e4]
+    assert np.abs(total - change).max() < 1e-6 * WEIGHT
+    assert guide[:, 0].min() < -WEIGHT  # it presses down
+    forces = answer.forces
+    top = forces.joints.index("panel|beam")
+    middle, axes = forces.frames.placed(case, answer.t, answer.pose)
+    where = middle[:, top] + forces.eccentricity[:, top, None] * axes[:, top, 1]
+    push = forces.normal[:, top, None] * axes[:, top, 0] + forces.shear[:, top, None] * axes[:, top, 1]
+    arm = where - [0.0, 2.1] - answer.pose[:, 1, :2]
+    moment = arm[:, 1] * push[:, 0] - arm[:, 0] * push[:, 1] + answer.actuators["actuator_0"] * 0.05
+    np.testing.assert_allclose(guide[:, 1], -moment, atol=1e-6 * WEIGHT)
+
+
+def test_without_a_guide_there_is_none():
+    driven = actuator(-B, 0.1, ([0.0, 0.1], [0.0, 0.01]))
+    answer, _ = pushed(panel(0.3), driven, duration=0.1, forces=True)
+    assert answer.forces.guides == {}
