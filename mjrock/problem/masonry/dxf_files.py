@@ -13,8 +13,6 @@ from ...quantities import Array, named, shown
 from .mesh_files import bytes_of, plain
 from .polygon import Polygon
 
-METRES = 6
-"""The number of the unit metre in a drawing."""
 SHORT = 1e-9
 """Distance of the ends of a polyline that count as one, over its extent [-]."""
 
@@ -41,6 +39,7 @@ def read_dxf(path: Path) -> tuple[list[Outline], float]:
     try:
         from ezdxf import recover, units
         from ezdxf.disassemble import recursive_decompose
+        from ezdxf.enums import InsertUnits
         from ezdxf.lldxf.const import DXFError
     except ImportError as error:
         raise ImportError(f"{error}; ezdxf reads drawings: pip install 'mjrock[dxf]'") from error
@@ -49,7 +48,7 @@ def read_dxf(path: Path) -> tuple[list[Outline], float]:
         document = recover.readfile(path)[0]
     except (DXFError, OSError, ValueError) as error:
         raise ValueError(f"path = {path} is not a drawing in DXF, or is cut short: {error}") from None
-    unit = units.conversion_factor(document.units, METRES) if document.units else 1
+    unit = units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters) if document.units else 1
     outlines, counts, others = [], Counter[str](), Counter[str]()
     for entity in recursive_decompose(document.modelspace()):  # with what inserted blocks hold, where they are inserted
         if entity.dxftype() not in ("LWPOLYLINE", "POLYLINE"):
