@@ -21,10 +21,10 @@ copyright = "the mjrock developers, Apache-2.0"
 release = version = mjrock.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-extensions += ["sphinx_gallery.gen_gallery"]
+extensions += ["sphinx.ext.viewcode", "sphinx_gallery.gen_gallery"]
 exclude_patterns = ["build", "examples", "figures"]
 default_role = "py:obj"  # docstrings name things in single backticks
-nitpicky = False
+nitpicky = True
 
 myst_heading_anchors = 3
 myst_enable_extensions = ["attrs_inline"]
