@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
 from ..problem.masonry.joints import Joint
-from ..quantities import Array, Integers, require_within, shown
+from ..quantities import Array, Integers, shown
 from ..result.response import Response
 from .section import FORCE, Update
 
@@ -64,17 +64,6 @@ def require_shown(name: str, value: object, response: Response) -> None:
     if value == "cracks" and np.isnan(response.forces.damage).all():
         raise ValueError(f"{name} = 'cracks' needs joints with a bond, and all joints are dry")
     _ = response.forces
-
-
-def sample_at(response: Response, at: float | None) -> int:
-    """Number of the last sample of a response up to a time [s], or of the last of all.
-
-    Raises:
-        ValueError: if the response does not reach that time.
-    """
-    first, last = float(response.t[0]), float(response.t[-1])
-    at = last if at is None else require_within("at", at, first, last, "s")
-    return int(np.searchsorted(response.t, at * (1 + 1e-12), side="right")) - 1
 
 
 class Moving(NamedTuple):

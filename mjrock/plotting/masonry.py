@@ -14,9 +14,10 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..quantities import Array, require_array, require_kind, require_within
 from ..result.response import Response
+from ..result.samples import sample_at
 from .arguments import anything, picture
 from .bodies import ends_of, require_masonry, required_limits, window
-from .forces import Moving, forces_on, require_shown, sample_at
+from .forces import Moving, forces_on, require_shown
 from .perspective import fill, solids
 from .solids import Solids
 
@@ -72,7 +73,7 @@ def blocks(
     acting: tuple[Response, Moving, str] | None = None
     if isinstance(masonry, Response) and pose is None:
         run, masonry = masonry, require_masonry("blocks", masonry)
-        sample = sample_at(run, at)
+        sample = sample_at(run.t, at)
         pose, time, supports = run.pose[sample], run.t[sample : sample + 1], run.case.supports
         there = run.pose[sample : sample + 1]
         if forces is not None:

@@ -8,10 +8,11 @@ from numpy.typing import ArrayLike
 from ..problem.wall.case import Case
 from ..quantities import require_kind
 from ..result.response import Response
+from ..result.samples import sample_at
 from . import masonry, section
 from .arguments import anything, picture
 from .bodies import Bodies
-from .forces import Moving, forces_on, require_shown, sample_at
+from .forces import Moving, forces_on, require_shown
 
 
 @picture(limits=anything)
@@ -44,7 +45,7 @@ def thrust(
     if not isinstance(response.case, Case):
         return masonry.blocks(ax, response, at=at, forces="thrust", magnified=magnified, limits=limits)
     require_shown("forces", "thrust", response)
-    sample = sample_at(response, at)
+    sample = sample_at(response.t, at)
     bodies = Bodies.of(response, magnified, limits).at(response.t[sample : sample + 1])
     updates = [section.blocks(ax, bodies), section.surroundings(ax, response.case, bodies)]
     updates.append(forces_on(ax, response, Moving(bodies.t, bodies.poses, bodies.magnify), "thrust"))

@@ -17,6 +17,7 @@ from ..geometry.poses import angle_of, tilt_of
 from ..problem.wall.case import Case
 from ..quantities import Array, require_path
 from .bodies import bodies_of, frames_at, in_space, openings
+from .compas import results_text
 from .ending import Outcome
 from .forces import Forces
 from .gltf import write_gltf
@@ -24,6 +25,7 @@ from .joints import JointMotion
 from .ledger import Ledger
 from .motion import Motion
 from .rocking import Impact, Rocking, displacement_at, farthest, restitution_of
+from .samples import sample_at
 from .table import csv_text
 from .ties import Plastic, TieMotion, motion_of_ties
 from .vtk import texts_of_bodies, texts_of_joints, write_series
@@ -376,6 +378,31 @@ class Response:
                 values["opening"] = openings(self.case.masonry, bodies)
             write_series(folder, "joints", t, texts_of_joints(in_space(middle), values))
         return write_series(folder, "blocks", t, texts_of_bodies(bodies))
+
+    def to_compas(self, path: str | Path, at: float | None = None) -> Path:
+        """Write the blocks in space at a time as `Results` of compas_dem, for its viewer and Rhino plug-in.
+
+        They refer to the model that `masonry.to_compas` writes. Each block has its transformation. With forces=True
+        each joint has its polygon, normal and tangential forces at its corners, which add up to its resultant where
+        that acts, gaps and a status: noctc, stick or slide.
+
+        Args:
+            path: where to, a .json.
+            at: time [s]; None is the last. The last sample up to it is taken.
+
+        Returns:
+            The path that was written.
+
+        Raises:
+            ValueError: for a wall or blocks in the plane, or a time outside the run.
+            OSError: if the file cannot be written.
+        """
+        if self.rocking is not None or not self.in_space:
+            raise ValueError("case = a wall or blocks in the plane, which have no such file; take Polyhedron.prism")
+        k = sample_at(self.t, at)
+        bodies = bodies_of(self.case, self.t[[k]], self.pose[[k]], self.velocity[[k]])
+        text = results_text(self.case, bodies, float(self.t[k]), self.kept_forces, k)
+        return write_text(require_path("path", path), text)
 
     @property
     def bodies(self) -> tuple[str, ...]:

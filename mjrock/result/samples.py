@@ -30,6 +30,21 @@ def thinned(count: int, stride: int) -> Integers:
     return np.unique(np.append(np.arange(0, count, stride), count - 1))
 
 
+def sample_at(t: Array, at: float | None) -> int:
+    """Number of the last of some samples up to a time [s], or of the last of all.
+
+    Args:
+        t: times of the samples [s], shape (n,).
+        at: the time, or None.
+
+    Raises:
+        ValueError: if the samples do not reach that time.
+    """
+    first, last = float(t[0]), float(t[-1])
+    at = last if at is None else require_within("at", at, first, last, "s")
+    return int(np.searchsorted(t, at * (1 + 1e-12), side="right")) - 1
+
+
 @inlined
 def cubic(width: float, y0: float, v0: float, y1: float, v1: float) -> tuple[float, float]:
     """Coefficients of s^2 and s^3 of the cubic y0 + v0 s + ... that has the values y and the rates v at both ends.

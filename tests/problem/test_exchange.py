@@ -224,3 +224,63 @@ def test_arguments_are_checked(tmp_path):
         mr.Masonry.from_obj(tmp_path / "none.obj")
     with pytest.raises(ValueError, match="blocks in the plane have no such file"):
         mr.Masonry.stack([mr.Block(0.3, 1.0)], 1e8).to_obj(tmp_path / "a.obj")
+
+
+def assembly(masonry):
+    """Blocks as compas_assembly 0.7 writes them: the nodes of a graph."""
+    nodes = {}
+    for i, block in enumerate(masonry.polyhedra):
+        places = [dict(zip("xyz", place, strict=True)) for place in block.vertices]
+        mesh = {"vertex": {str(k): place for k, place in enumerate(places)}}
+        mesh["face"] = {str(k): list(face) for k, face in enumerate(block.faces)}
+        node = {"block": {"dtype": "compas_assembly.datastructures/Block", "data": mesh}}
+        nodes[str(i)] = node | ({"is_support": True} if block.fixed else {})
+    graph = {"dtype": "compas.datastructures/Graph", "data": {"node": nodes, "edge": {}}}
+    content = {"attributes": {"name": "Assembly"}, "graph": graph}
+    return json.dumps({"dtype": "compas_assembly.datastructures/Assembly", "data": content})
+
+
+def test_an_assembly_keeps_its_joints(tmp_path):
+    masonry = mr.Masonry.from_compas(written(tmp_path / "assembly.json", assembly(FACADE)), xi=0)
+    assert [(j.below, j.above) for j in masonry.joints] == [(j.below, j.above) for j in FACADE.joints]
+    np.testing.assert_allclose([j.area for j in masonry.joints], [j.area for j in FACADE.joints])
+    assert [block.fixed for block in masonry.blocks] == [block.fixed for block in FACADE.blocks]
+    assert masonry.names[:2] == ("block_0", "block_1")
+
+
+def test_a_problem_that_holds_its_model(tmp_path):
+    model = json.loads(FACADE.to_compas(tmp_path / "a.json").read_text())
+    problem = {"dtype": "compas_dem.problem/Problem", "data": {"name": "Problem", "model": model}}
+    assert same(mr.Masonry.from_compas(written(tmp_path / "p.json", json.dumps(problem)), xi=0), FACADE)
+
+
+def test_models_that_compas_writes_itself(tmp_path):
+    """Through the classes of compas_dem, whose own contacts are as many and as large as the joints."""
+    pytest.importorskip("compas_dem", reason="needs compas_dem")
+    import compas
+
+    column = mr.Masonry.column(0.5, 1.5, 3)
+    model = compas.json_load(column.to_compas(tmp_path / "a.json"))
+    model.compute_contacts(tolerance=1e-6, minimum_area=1e-6)
+    areas = sorted(contact.size for contact in model.contacts())
+    assert areas == pytest.approx([joint.area for joint in column.joints], rel=1e-9)
+    compas.json_dump(model, tmp_path / "b.json")
+    again = mr.Masonry.from_compas(tmp_path / "b.json")
+    assert same(again, column)
+    assert [joint.name for joint in again.joints] == [joint.name for joint in column.joints]
+
+
+def test_assemblies_that_compas_assembly_writes(tmp_path):
+    pytest.importorskip("compas_assembly", reason="needs compas_assembly")
+    import compas
+    from compas.geometry import Box, Frame
+    from compas_assembly.datastructures import Assembly, Block
+
+    made = Assembly()
+    for i in range(3):
+        place = Frame([0, 0, 0.2 + 0.4 * i], [1, 0, 0], [0, 1, 0])
+        made.add_block(Block.from_shape(Box(1.0, 0.5, 0.4, place)), is_support=i == 0)
+    compas.json_dump(made, tmp_path / "assembly.json")
+    masonry = mr.Masonry.from_compas(tmp_path / "assembly.json")
+    assert [joint.area for joint in masonry.joints] == pytest.approx([0.5, 0.5])
+    assert [block.fixed for block in masonry.blocks] == [True, False, False]

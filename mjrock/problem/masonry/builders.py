@@ -38,11 +38,11 @@ def rectangle(
     return Polygon(corners, density=density, length=length, fixed=fixed, name=name)
 
 
-def ground_under(left: float, right: float, height: float, length: float) -> Polygon:
-    """Fixed ground with its surface at z = 0, under what stands on it between two x, of a height [m]."""
+def ground_under(left: float, right: float, height: float, length: float, level: float = 0.0) -> Polygon:
+    """Fixed ground with its surface at a level [m], under what stands on it between two x, of a height [m]."""
     wide = right - left
     beyond = max(BEYOND * height, 0.5 * wide)
-    return rectangle(left - beyond, right + beyond, -DEEP * wide, 0.0, 2000.0, length, True, "ground")
+    return rectangle(left - beyond, right + beyond, level - DEEP * wide, level, 2000.0, length, True, "ground")
 
 
 def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:

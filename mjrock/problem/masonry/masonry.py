@@ -38,13 +38,15 @@ from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
-from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
+from .builders import MOST_BLOCKS, arch_of, bonded_wall, ground_under, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
+from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
+from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
-from .mesh_files import compas_text, obj_text, read_compas, read_obj, read_stl
+from .mesh_files import obj_text, read_obj, read_stl
 from .meshes import Mesh, blocks_of
 from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
@@ -581,7 +583,8 @@ class Masonry:
         scale: float = 1.0,
         **options: Any,
     ) -> Self:
-        """Blocks of the JSON file of a COMPAS model, such as a `BlockModel` of compas_dem. Its supports are fixed.
+        """Blocks of a JSON file of COMPAS: a `BlockModel` of compas_dem, a problem that holds one, or an `Assembly` of
+        compas_assembly. Its supports are fixed.
 
         Args:
             path: of the file.
@@ -592,6 +595,52 @@ class Masonry:
             ValueError: as `from_obj` does.
         """
         return cls._read(read_compas, path, fixed, ground, density, scale, options)
+
+    @classmethod
+    def from_dxf(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: OfLayer = 2000.0,
+        length: OfLayer = 1.0,
+        scale: float | None = None,
+        **options: Any,
+    ) -> Self:
+        """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
+
+        x of the drawing is x, and y points upwards. A block has the name of its layer and a number, `stone_0`, by which
+        functions of the joint know it. Inserted blocks of the drawing are taken too, and all else is left out.
+
+        Args:
+            path: of the file.
+            fixed: layers, and names of blocks, that are fixed.
+            ground: whether fixed ground is put under the lowest point.
+            density: mass density [kg/m3], 100 to 30000; or one for each layer, {"stone": 2400.0, "brick": 1800.0}.
+            length: out of the plane [m], 1e-3 to 1000, or one for each layer.
+            scale: length of a unit of the drawing [m], 1e-6 to 1e3; None takes what its header says, or m.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ImportError: if ezdxf is missing.
+            ValueError: if the file is not valid, for a polyline that is open, has arcs or is not convex, or a block
+                that touches no other; the message names it. Or as `Masonry` does.
+        """
+        fixed, path = _names(fixed), require_path("path", path)
+        ground = require_flag("ground", ground)
+        outlines, unit = read_dxf(path)
+        unit = unit if scale is None else require_within("scale", scale, 1e-6, 1e3, "m")
+        try:
+            blocks = polygons_of(outlines, fixed, density, length, unit)
+            if ground:
+                corners = np.concatenate([block.corners for block in blocks])
+                low, high = corners.min(axis=0), corners.max(axis=0)
+                below = ground_under(low[0], high[0], high[1] - low[1], max(block.length for block in blocks), low[1])
+                blocks.insert(0, below)
+            return cls(blocks, **options)._touching()
+        except ValueError as error:
+            raise ValueError(f"path = {path}: {error}") from None
 
     def to_obj(self, path: AnyPath) -> Path:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
@@ -623,10 +672,7 @@ class Masonry:
         options: dict[str, Any],
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
-        if not isinstance(fixed, list | tuple):
-            raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
-        for name in fixed:
-            require_text("fixed", name)
+        fixed = _names(fixed)
         density = require_within("density", density, 100.0, 3e4, "kg/m3")
         scale = require_within("scale", scale, 1e-6, 1e3, "m")
         ground, path = require_flag("ground", ground), require_path("path", path)
@@ -636,18 +682,16 @@ class Masonry:
             if ground:
                 corners = np.concatenate([block.corners for block in blocks])
                 blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
-            masonry = cls(blocks, **options)
-            masonry._require_touching()
+            return cls(blocks, **options)._touching()
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
-        return masonry
 
     def _require_space(self) -> None:
         if not self.in_space:
             raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
 
-    def _require_touching(self) -> None:
-        """Raise a ValueError with the names of the blocks that are not fixed and have no joint, and the nearest gap."""
+    def _touching(self) -> Self:
+        """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap."""
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]
         if loose:
@@ -660,3 +704,13 @@ class Masonry:
                 f"{self.tolerance:g} m; between the bounds of {self.names[i]} and {self.names[int(gaps.argmin())]} "
                 f"there are {gaps.min():.3g} m"
             )
+        return self
+
+
+def _names(fixed: Sequence[str]) -> Sequence[str]:
+    """Names of what is fixed, checked."""
+    if not isinstance(fixed, list | tuple):
+        raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
+    for name in fixed:
+        require_text("fixed", name)
+    return fixed

@@ -1,17 +1,14 @@
-"""Files of meshes: Wavefront OBJ, STL, and the JSON of a COMPAS model.
+"""Files of meshes: Wavefront OBJ and STL.
 
 What reads a file raises a ValueError with the path, the line where there is one, and what is wrong.
 """
 
 from __future__ import annotations
 
-import json
 import struct
-import uuid
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -71,7 +68,7 @@ def read_obj(path: Path) -> list[Mesh]:
     places, meshes = np.array(vertices), []
     for i, ((thing, group), ring) in enumerate(faces.items()):
         name = thing if thing and things[thing] == 1 else "_".join(part for part in (thing, group) if part)
-        meshes.append(Mesh(_plain(name, f"body_{i}"), *used(places, ring)))
+        meshes.append(Mesh(plain(name, f"body_{i}"), *used(places, ring)))
     return meshes
 
 
@@ -92,7 +89,7 @@ def read_stl(path: Path) -> list[Mesh]:
         words = line.split()
         kind = words[0].lower() if words else ""
         if kind == "solid":
-            name, corners, is_open = _plain(" ".join(words[1:]), f"body_{len(meshes)}"), [], True
+            name, corners, is_open = plain(" ".join(words[1:]), f"body_{len(meshes)}"), [], True
         elif kind == "vertex":
             try:
                 corners.append(_triple(words[1:]))
@@ -118,49 +115,10 @@ def _triple(words: Sequence[str]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _plain(name: str, otherwise: str) -> str:
+def plain(name: str, otherwise: str) -> str:
     """A name that a block can have."""
     name = name.strip().replace("|", "_")
     return otherwise if name in ("", "world") else name
-
-
-def read_compas(path: Path) -> list[Mesh]:
-    """The elements of a COMPAS model, each of which is a mesh, with their supports and densities of their materials."""
-    try:
-        model = json.loads(text_of(path))
-        content = model["data"]
-        elements = content["elements"]
-        pairs = list(elements.items() if isinstance(elements, dict) else enumerate(elements))
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise ValueError(f"path = {path} is not JSON, or is cut short: {error}") from None
-    except (KeyError, TypeError):
-        raise ValueError(f"path = {path} is not a COMPAS model: it has no data.elements") from None
-    materials = content.get("materials") or {}
-    meshes = []
-    for key, element in pairs:
-        try:
-            meshes.append(_element(element["data"], materials))
-        except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
-            raise ValueError(
-                f"path = {path}: the element {key} is not a block with a mesh: {type(error).__name__} {error}"
-            ) from None
-    if not meshes:
-        raise ValueError(f"path = {path} is a COMPAS model without elements")
-    return meshes
-
-
-def _element(element: dict[str, Any], materials: dict[str, Any]) -> Mesh:
-    """A block of a COMPAS model."""
-    shape = element["geometry"]["data"]
-    order = {key: i for i, key in enumerate(shape["vertex"])}
-    places = np.array([[float(vertex[axis]) for axis in "xyz"] for vertex in shape["vertex"].values()])
-    faces = [tuple(order[str(vertex)] for vertex in face) for face in shape["face"].values()]
-    if element.get("transformation"):
-        matrix = np.array(element["transformation"]["data"]["matrix"], dtype=float)
-        places = places @ matrix[:3, :3].T + matrix[:3, 3]
-    density = materials.get(str(element.get("material")), {}).get("data", {}).get("density")
-    name = _plain(str(element.get("name") or ""), "block")
-    return Mesh(name, places, faces, bool(element.get("is_support", False)), density)
 
 
 def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
@@ -177,51 +135,3 @@ def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
         lines += ["f " + " ".join(str(before + i) for i in face) for face in block.faces]
         before += len(block.vertices)
     return "\n".join(lines) + "\n"
-
-
-def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
-    """Blocks as the JSON of a COMPAS model, without interactions. The same blocks give the same text."""
-    densities = dict.fromkeys(block.density for block in blocks)
-
-    def key(kind: str, name: object) -> str:
-        return str(uuid.uuid5(uuid.NAMESPACE_URL, f"{kind} {name}"))
-
-    def held(kind: str, data: dict[str, Any], guid: str) -> dict[str, Any]:
-        return {"dtype": kind, "data": data, "guid": guid}
-
-    elements: dict[str, Any] = {}
-    for block, name in zip(blocks, names, strict=True):
-        mesh = {
-            "attributes": {},
-            "default_vertex_attributes": {"x": 0.0, "y": 0.0, "z": 0.0},
-            "default_edge_attributes": {},
-            "default_face_attributes": {},
-            "vertex": {str(i): dict(zip("xyz", place, strict=True)) for i, place in enumerate(block.vertices)},
-            "face": {str(i): list(face) for i, face in enumerate(block.faces)},
-            "facedata": {},
-            "edgedata": {},
-            "max_vertex": len(block.vertices) - 1,
-            "max_face": len(block.faces) - 1,
-        }
-        stone = key("density", block.density)
-        inside: dict[str, Any] = {"transformation": None, "features": [], "name": name, "material": stone}
-        inside |= {"geometry": {"dtype": "compas.datastructures/Mesh", "data": mesh}, "is_support": block.fixed}
-        guid = key("block", name)
-        elements[guid] = held("compas_dem.elements/Block", inside, guid)
-    stones = {
-        guid: held("compas_dem.material/Stone", {"name": "Stone", "density": density}, guid)
-        for guid, density in ((key("density", density), density) for density in densities)
-    }
-    children = [{"name": "ElementNode", "element": element} for element in elements]
-    graph = {
-        "attributes": {},
-        "default_node_attributes": {"x": 0.0, "y": 0.0, "z": 0.0, "element": None},
-        "default_edge_attributes": {"modifiers": None, "contacts": None},
-        "node": {str(i): {"element": element} for i, element in enumerate(elements)},
-        "edge": {str(i): {} for i in range(len(elements))},
-        "max_node": len(elements) - 1,
-    }
-    content: dict[str, Any] = {"transformation": None, "elements": elements, "materials": stones, "graph": graph}
-    content["tree"] = {"attributes": {}, "root": {"name": "root", "children": children}}
-    model = {"dtype": "compas_dem.models/BlockModel", "data": content, "inheritance": ["compas_model.models/Model"]}
-    return json.dumps(model, indent=1) + "\n"
