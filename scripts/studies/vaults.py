@@ -32,8 +32,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     figure = Figure(figsize=(13, 3.6), layout="constrained")
     lines = []
     grid = figure.add_gridspec(1, 3, width_ratios=[2.2, 1, 1])
-    for place, (name, each) in zip(grid, masonry.items(), strict=True):
-        ax = figure.add_subplot(place, projection="3d" if each.in_space else None)
+    for i, (name, each) in enumerate(masonry.items()):
+        ax = figure.add_subplot(grid[i], projection="3d" if each.in_space else None)
         plotting.blocks(ax, each, joints=False)
         ax.set_title(name)
         bears = mr.collapse_multiplier(each).multiplier

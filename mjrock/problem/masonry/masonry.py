@@ -400,7 +400,7 @@ class Masonry:
         length: float = 1.0,
         **options: Any,
     ) -> Self:
-        """Equal arches side by side on piers: a bridge of several spans, or with `abutments=False` an arch on buttresses.
+        """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
 
         Args:
             radius, thickness, span_angle, voussoirs: of each arch, as of `arch`.
