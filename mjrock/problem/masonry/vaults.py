@@ -44,7 +44,8 @@ def bridge_of(
         begin, end = 0 if ends and i == 0 else 1, None if ends and i == spans - 1 else -1
         for block in blocks[begin:end]:
             name = block.name if spans == 1 or block.fixed else f"span_{i}_{block.name}"
-            polygons.append(replace(block, vertices=np.add(block.corners, (i * apart, level)), name=name))
+            moved = np.add(block.corners, (i * apart, level))
+            polygons.append(Polygon(moved, density, length, block.fixed, name))
     for i in range(ends, spans + 1 - ends):
         right = i * apart - springing[0]
         left = right - wide
