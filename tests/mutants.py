@@ -30,7 +30,6 @@ MARKS = b"\n@compiled\n", b"\n@inlined\n"
 """What stands before a compiled function."""
 OTHERS = (
     "engine/solref.py",
-    "engine/run.py",
     "scene/masonry.py",
     "scene/rest.py",
     "result/history.py",
@@ -77,6 +76,7 @@ OWN = {
     "result/ledger.py": ("ledger",),
     **{f"result/{name}.py": ("files_of_motion",) for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties_that_break", "friction_damper", "masonry_effects"),
+    "engine/run.py": ("marks", "end_of_run", "ledger"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
     "problem/masonry/polygon.py": ("polygon",),
