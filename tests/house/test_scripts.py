@@ -68,6 +68,7 @@ WRITES = {
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
     "throughput": {"throughput.txt"},
+    "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
