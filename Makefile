@@ -88,6 +88,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/corner_block.py --out docs/figures
 	$(BIN)/python scripts/studies/law_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
+	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py
