@@ -74,8 +74,8 @@ class Push:
     def peak(self) -> float:
         """The largest force either way [N] or multiplier [-], of points whose force of inertia is below 5 % of it.
 
-        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry. Under a
-        force that grows nothing holds them back, so that no point after the first blow counts.
+        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry. Under
+        a force that grows nothing holds them back, so that no point after the first blow counts.
         """
         return float(np.abs(self.force[self._peak_at]))
 
