@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, require_kind, require_path, require_text, shown
-from .code_spectrum import CodeSpectrum, FloorSpectrum
+from .code_spectrum import CodeSpectrum, FloorSpectrum, SpectrumOfCode
 from .motion import GroundMotion
 from .spectrum import factor_to_spectrum, response_spectrum
 
@@ -33,9 +33,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         """The first component of each record."""
         return [components[0] for components in self.values()]
 
-    def scaled_to(
-        self, spectrum: ArrayLike | CodeSpectrum | FloorSpectrum, periods: ArrayLike, damping: float = 0.05
-    ) -> RecordSet:
+    def scaled_to(self, spectrum: ArrayLike | SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> RecordSet:
         """The set with each record scaled to a spectrum, all components of a record by one factor.
 
         Args:
@@ -48,7 +46,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
         return RecordSet(scaled)
 
-    def mean_over(self, spectrum: CodeSpectrum | FloorSpectrum, periods: ArrayLike, damping: float = 0.05) -> Array:
+    def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
 
         Raises:
@@ -133,7 +131,7 @@ def _together(names: Sequence[str], kinds: Sequence[str]) -> dict[str, list[str]
 def scaled_together(
     motions: Sequence[GroundMotion],
     periods: ArrayLike,
-    target: ArrayLike | CodeSpectrum | FloorSpectrum,
+    target: ArrayLike | SpectrumOfCode,
     damping: float = 0.05,
 ) -> tuple[GroundMotion, ...]:
     """The components of a record scaled by one factor to a spectrum, a vertical one by the same.
