@@ -113,6 +113,11 @@ class Masonry:
     Warns:
         Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
             so large or small that they are probably not in m, and for faces that rounded vertices have split.
+
+    Examples:
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
+        >>> len(arch.blocks), len(arch.joints)
+        (19, 18)
     """
 
     blocks: Sequence[Polygon | Polyhedron]
