@@ -108,9 +108,10 @@ def required_faces(radius: float, thickness: float, least: float) -> tuple[float
 
 
 def arch_of(
-    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float
+    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float, ground: bool
 ) -> list[Polygon]:
-    """Equal voussoirs between two fixed abutments, from left to right, see `Masonry.arch`."""
+    """Equal voussoirs between two fixed abutments, from left to right, and ground below, see `Masonry.arch`."""
+    require_flag("ground", ground)
     inner, outer = required_faces(radius, thickness, 0.01)
     span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
     count = require_whole("voussoirs", voussoirs, 1, 1000)
@@ -129,7 +130,12 @@ def arch_of(
         down = float(thickness) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
         corners = [inner * at, outer * at, outer * at + down, inner * at + down]
         polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
-    return [polygons[-2], *polygons[:-2], polygons[-1]]
+    blocks = [polygons[-2], *polygons[:-2], polygons[-1]]
+    if ground:
+        corners = np.concatenate([block.vertices for block in blocks])
+        (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+        blocks.append(ground_under(left, right, high - low, length, low))
+    return blocks
 
 
 def bonded_wall(

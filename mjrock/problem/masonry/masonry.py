@@ -365,6 +365,7 @@ class Masonry:
         *,
         density: float = 2000.0,
         length: float = 1.0,
+        ground: bool = False,
         **options: Any,
     ) -> Self:
         """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
@@ -376,12 +377,14 @@ class Masonry:
             voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
             density: mass density [kg/m3], 100 to 30000.
             length: length out of the plane [m], 1e-3 to 1000.
+            ground: whether fixed ground lies under the lowest point of the abutments, two heights beyond them. Without
+                it voussoirs that leave the arch fall on, and explicit steps name them.
             options: further arguments of `Masonry`.
 
         Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
+            TypeError, ValueError: for a value outside its range, or as `Masonry` does.
         """
-        return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length), **options)
+        return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length, ground), **options)
 
     @classmethod
     def running_bond(
