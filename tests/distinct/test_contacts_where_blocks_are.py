@@ -124,7 +124,7 @@ def test_a_beam_that_is_thrown_over_a_sill_stays_above_it():
 def test_random_neighbours_with_a_gap_meet_and_keep_their_momentum(seed):
     """Any gap, size and speed, in space with a spin about the vertical, off the middle of the other."""
     rng = np.random.default_rng(seed)
-    gap, speed, off, long = rng.uniform(1e-4, 0.02), rng.uniform(0.5, 3.0), rng.uniform(-0.3, 0.3), rng.uniform(0.4, 1.2)
+    gap, speed, off, long = rng.uniform((1e-4, 0.5, -0.3, 0.4), (0.02, 3.0, 0.3, 1.2))
     ground = BOX((20, 20, 1), (0, 0, -0.5), fixed=True)
     blocks = [BOX((long, 0.5, 0.4), (-0.5 * long, 0, 0.2)), BOX((0.6, 0.5, 0.4), (0.3 + gap, off, 0.2))]
     masonry = mr.Masonry([ground, *blocks], k_n=1e9, friction=0.0, xi=0.05)
@@ -174,6 +174,19 @@ def test_a_block_tips_where_its_weight_passes_the_edge_of_any_step(step, beyond,
     assert bool(run.fallen) == falls
 
 
+@pytest.mark.parametrize("k_n", [1e9, 4e9])
+def test_a_unit_that_falls_flat_overlaps_by_what_its_joint_yields(k_n):
+    """v sqrt(m / k), as a spring stops it, of its height: 1 % at 3.2 m/s on 1e9 N/m3, half of it on four times that."""
+    high, speed, drop = 0.2, 2.0, 0.05
+    masonry = mr.Masonry([GROUND, box(-0.2, 0.2, 0.0, high)], k_n=k_n, k_s=k_n, friction=0.6, xi=0.0)
+    case = mr.MasonryCase(masonry, 0.05)
+    start = np.array([[0.0, drop, 0.0]]), np.array([[0.0, -speed, 0.0]])
+    run = mr.solve_explicit(case, start=start, output_step=1.5e-4 / np.sqrt(k_n / 1e9))
+    stopped = np.sqrt(speed**2 + 2 * mr.GRAVITY * drop) * np.sqrt(2000.0 * high / k_n)
+    assert -run.pose[:, 0, 1].min() == pytest.approx(stopped, rel=0.02)
+
+
+@pytest.mark.slow
 def test_voussoirs_of_an_arch_that_falls_lie_on_its_ground():
     """Without ground they fall on, and are named."""
     shaken = mr.GroundMotion.sine(8.0, 1.0)
