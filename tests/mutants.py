@@ -104,6 +104,11 @@ EQUIVALENT = {
     "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
+    **{
+        f"joint_law.py: row = Law(k[i], {numbers})": "at rest no dashpot, shear spring or friction of the row is read"
+        for numbers in ("1, 0.0, 0.0", "0.0, 1, 0.0", "0.0, 0.0, 1")
+    },
+    "joint_law.py: k_s: Any = 1": "a law that is given its friction alone has no shear spring",
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }

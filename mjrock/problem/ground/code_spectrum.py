@@ -157,6 +157,10 @@ class FloorSpectrum:
         return float(self(0.0))
 
 
+SpectrumOfCode = CodeSpectrum | FloorSpectrum
+"""The spectrum of a code, on the ground or on a floor."""
+
+
 def code_spectrum(
     code: str,
     *,

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import require_kind, require_path, require_text, shown
-from .code_spectrum import CodeSpectrum, FloorSpectrum
+from .code_spectrum import SpectrumOfCode
 from .motion import GroundMotion
 from .spectrum import factor_to_spectrum
 
@@ -91,7 +91,7 @@ def _together(names: Sequence[str], kinds: Sequence[str]) -> dict[str, list[str]
 def scaled_together(
     motions: Sequence[GroundMotion],
     periods: ArrayLike,
-    target: ArrayLike | CodeSpectrum | FloorSpectrum,
+    target: ArrayLike | SpectrumOfCode,
     damping: float = 0.05,
 ) -> tuple[GroundMotion, ...]:
     """The components of a record scaled by one factor to a spectrum, a vertical one by the same.

@@ -52,6 +52,7 @@ from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
+from .vaults import Span, barrel_of, bridge_of
 
 AnyPath = str | PathLike[str]
 FAR = 30.0
@@ -385,6 +386,69 @@ class Masonry:
             TypeError, ValueError: for a value outside its range, or as `Masonry` does.
         """
         return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length, ground), **options)
+
+    @classmethod
+    def bridge(
+        cls,
+        radius: float,
+        thickness: float,
+        span_angle: float = math.pi,
+        voussoirs: int = 17,
+        *,
+        spans: int = 1,
+        pier_width: float,
+        pier_height: float,
+        abutments: bool = True,
+        density: float = 2000.0,
+        length: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
+
+        Args:
+            radius, thickness, span_angle, voussoirs: of each arch, as of `arch`.
+            spans: how many arches, 1 to 50. Voussoirs are `span_0_voussoir_0` and so on, of one span `voussoir_0`.
+            pier_width: between the springings of two arches [m], at least twice the width of a springing, once of one
+                span. A pier is one block, `pier_1` that between the first two arches.
+            pier_height: from the ground up to the springings [m], 0.01 to 1000.
+            abutments: whether the outer arches end on fixed abutments; otherwise on piers of the same width.
+            density: mass density [kg/m3], 100 to 30000.
+            length: length out of the plane [m], 1e-3 to 1000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        arch = Span(radius, thickness, span_angle, voussoirs)
+        return cls(bridge_of(spans, arch, (pier_width, pier_height), abutments, density, length), **options)
+
+    @classmethod
+    def barrel_vault(
+        cls,
+        radius: float,
+        thickness: float,
+        length: float,
+        unit: float,
+        span_angle: float = math.pi,
+        courses: int = 17,
+        *,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A barrel vault in space between two fixed abutments, its courses in running bond along y.
+
+        Args:
+            radius, thickness, span_angle: of its section, as of `arch`.
+            length: along y [m], 0.01 to 1000.
+            unit: length of a voussoir [m], 0.01 to the length; units are made to fit.
+            courses: voussoirs of the section, 1 to 1000. `voussoir_2_0` is the first of the third course.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(barrel_of(Span(radius, thickness, span_angle, courses), length, unit, density), **options)
 
     @classmethod
     def running_bond(
