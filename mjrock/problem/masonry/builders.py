@@ -45,6 +45,13 @@ def ground_under(left: float, right: float, height: float, length: float, level:
     return rectangle(left - beyond, right + beyond, level - DEEP * wide, level, 2000.0, length, True, "ground")
 
 
+def ground_below_all(blocks: Sequence[Polygon]) -> Polygon:
+    """Fixed ground with its surface at the lowest point of some blocks, see `ground_under`."""
+    corners = np.concatenate([block.corners for block in blocks])
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    return ground_under(left, right, high - low, max(block.length for block in blocks), low)
+
+
 def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
     """Rectangular blocks one on the other, centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
     require_flag("ground", ground)
@@ -108,10 +115,9 @@ def required_faces(radius: float, thickness: float, least: float) -> tuple[float
 
 
 def arch_of(
-    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float, ground: bool
+    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float
 ) -> list[Polygon]:
-    """Equal voussoirs between two fixed abutments, from left to right, and ground below, see `Masonry.arch`."""
-    require_flag("ground", ground)
+    """Equal voussoirs between two fixed abutments, from left to right, see `Masonry.arch`."""
     inner, outer = required_faces(radius, thickness, 0.01)
     span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
     count = require_whole("voussoirs", voussoirs, 1, 1000)
@@ -130,12 +136,7 @@ def arch_of(
         down = float(thickness) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
         corners = [inner * at, outer * at, outer * at + down, inner * at + down]
         polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
-    blocks = [polygons[-2], *polygons[:-2], polygons[-1]]
-    if ground:
-        corners = np.concatenate([block.vertices for block in blocks])
-        (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
-        blocks.append(ground_under(left, right, high - low, length, low))
-    return blocks
+    return [polygons[-2], *polygons[:-2], polygons[-1]]
 
 
 def bonded_wall(

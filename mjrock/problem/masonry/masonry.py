@@ -38,7 +38,7 @@ from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
-from .builders import MOST_BLOCKS, arch_of, bonded_wall, ground_under, side_of, stacked
+from .builders import MOST_BLOCKS, arch_of, bonded_wall, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
 from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
@@ -385,7 +385,8 @@ class Masonry:
         Raises:
             TypeError, ValueError: for a value outside its range, or as `Masonry` does.
         """
-        return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length, ground), **options)
+        blocks = arch_of(radius, thickness, span_angle, voussoirs, density, length)
+        return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
 
     @classmethod
     def bridge(
@@ -701,10 +702,7 @@ class Masonry:
         try:
             blocks = polygons_of(outlines, fixed, density, length, unit)
             if ground:
-                corners = np.concatenate([block.corners for block in blocks])
-                low, high = corners.min(axis=0), corners.max(axis=0)
-                below = ground_under(low[0], high[0], high[1] - low[1], max(block.length for block in blocks), low[1])
-                blocks.insert(0, below)
+                blocks.insert(0, ground_below_all(blocks))
             return cls(blocks, **options)._touching()
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
