@@ -101,7 +101,14 @@ def apply_inverse_inertia(body: Row, a: Vector) -> Vector:
 @inlined
 def spin_from_moment(body: Row, a: Vector) -> Vector:
     """I^-1 a, in the axes of the world at the pose."""
-    return in_world(body, apply_inverse_inertia(body, in_body(body, a)))
+    if len(a) == 1:
+        return apply_inverse_inertia(body, a)
+    inverse = body.inverse_in_world
+    return (
+        inverse[0, 0] * a[0] + inverse[0, 1] * a[1] + inverse[0, 2] * a[2],
+        inverse[0, 1] * a[0] + inverse[1, 1] * a[1] + inverse[1, 2] * a[2],
+        inverse[0, 2] * a[0] + inverse[1, 2] * a[1] + inverse[2, 2] * a[2],
+    )
 
 
 @inlined
@@ -115,7 +122,7 @@ def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
 
 @inlined
 def take_turn(body: Row, axes: tuple[int, ...]) -> None:
-    """Bring R - 1 and the angular velocity of a body up to date with its pose."""
+    """Bring R - 1, in space the inverse inertia, and the angular velocity of a body up to date with its pose."""
     turn = body.turn
     if len(axes) == 2:
         half = math.sin(0.5 * body.angle)
@@ -125,6 +132,9 @@ def take_turn(body: Row, axes: tuple[int, ...]) -> None:
         turn[0, 0], turn[0, 1], turn[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
         turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
         turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
+        for i in range(3):
+            axis = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
+            put(body.inverse_in_world[i], in_world(body, apply_inverse_inertia(body, in_body(body, axis))))
         put(body.spin, spin_from_moment(body, momentum_of(body, axes)))
 
 
@@ -140,11 +150,10 @@ def kick_spin(body: Row, kick: float, axes: tuple[int, ...]) -> None:
 
 
 @inlined
-def strike_spin(body: Row, impulse: float, lever: Vector, spin: Vector) -> None:
-    """Let an impulse act [N s] that turns a body by a lever, with the spin that a unit impulse gives to it."""
-    if len(lever) == 3:
-        increase(body.momentum, scaled(impulse, lever))
-    increase(body.spin, scaled(impulse, spin))
+def turn_momentum(body: Row, change: Vector) -> None:
+    """Change the angular momentum of a body, which only those of space keep [N m s]."""
+    if len(change) == 3:
+        increase(body.momentum, change)
 
 
 @inlined
@@ -158,7 +167,8 @@ def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
     """Let an impulse act at an arm from the centroid of a body [N s]."""
     lever = moment(arm, impulse)
     kick_place(body, impulse)
-    strike_spin(body, 1.0, lever, spin_from_moment(body, lever))
+    turn_momentum(body, lever)
+    increase(body.spin, spin_from_moment(body, lever))
 
 
 @inlined
