@@ -149,6 +149,8 @@ def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: flo
         return np.asarray(inverse @ stiffness)
 
     loads = np.append(_traces(rates(np.ones(sides.bodies.shape))), 0.0)[sides.bodies]  # zero for fixed blocks
+    if loads.sum(axis=0).max(initial=0.0) <= 4:  # no trace of a split is more than the largest sum over both blocks
+        return np.ones(len(along))
     split = rates(np.where(loads > 0, loads / np.maximum(loads.sum(axis=0), 1e-300), 1.0))
     doubtful, share = np.flatnonzero(_traces(split) > 4), np.ones(len(inverse) + 1)
     power = split[doubtful]

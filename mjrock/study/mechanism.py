@@ -167,8 +167,16 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
             [m] of a spectrum.
         confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
 
+    Returns:
+        The `MechanismCheck`, which prints in a line and as a table.
+
     Raises:
         TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
+
+    Examples:
+        >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
+        >>> str(check).startswith('<MechanismCheck: starts at 0.1')
+        True
     """
     require_wall("case", case, "collapse_multiplier")
     if not isinstance(demand, GroundMotion) and not takes(demand, 2):

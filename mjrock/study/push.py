@@ -130,6 +130,9 @@ def push(
             cyclic push has to.
         start: the `end` of the answer of an earlier push.
 
+    Returns:
+        The `Push`: displacement [m] and force [N] or multiplier [-], their `peak`, and the `answer` at the end.
+
     Raises:
         TypeError, ValueError: for a value outside its range, or masonry that does not stand.
     """

@@ -51,12 +51,20 @@ def solve_analytical(
             evenly spaced, and the last is the end of the run.
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
 
+    Returns:
+        The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, `impacts` and `peaks`.
+
     Raises:
         ValueError: for a tolerance or step out of range, a side stop from which the wall does not rebound, or a
             vertical motion that lifts the wall off its base.
     Warns:
         Implausible: if the restitution was made for another wall or another side stop.
         UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
+
+    Examples:
+        >>> answer = mr.solve_analytical(case, e)
+        >>> answer.outcome.value
+        'at rest'
     """
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution)

@@ -45,6 +45,13 @@ def ground_under(left: float, right: float, height: float, length: float, level:
     return rectangle(left - beyond, right + beyond, level - DEEP * wide, level, 2000.0, length, True, "ground")
 
 
+def ground_below_all(blocks: Sequence[Polygon]) -> Polygon:
+    """Fixed ground with its surface at the lowest point of some blocks, see `ground_under`."""
+    corners = np.concatenate([block.corners for block in blocks])
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    return ground_under(left, right, high - low, max(block.length for block in blocks), low)
+
+
 def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
     """Rectangular blocks one on the other, centred on x = 0, the lowest on z = 0, over the ground or fixed itself."""
     require_flag("ground", ground)

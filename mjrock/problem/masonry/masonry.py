@@ -38,7 +38,7 @@ from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
-from .builders import MOST_BLOCKS, arch_of, bonded_wall, ground_under, side_of, stacked
+from .builders import MOST_BLOCKS, arch_of, bonded_wall, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
 from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
@@ -113,6 +113,11 @@ class Masonry:
     Warns:
         Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
             so large or small that they are probably not in m, and for faces that rounded vertices have split.
+
+    Examples:
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
+        >>> len(arch.blocks), len(arch.joints)
+        (19, 18)
     """
 
     blocks: Sequence[Polygon | Polyhedron]
@@ -366,6 +371,7 @@ class Masonry:
         *,
         density: float = 2000.0,
         length: float = 1.0,
+        ground: bool = False,
         **options: Any,
     ) -> Self:
         """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
@@ -377,12 +383,15 @@ class Masonry:
             voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
             density: mass density [kg/m3], 100 to 30000.
             length: length out of the plane [m], 1e-3 to 1000.
+            ground: whether fixed ground lies under the lowest point of the abutments, two heights beyond them. Without
+                it voussoirs that leave the arch fall on, and explicit steps name them.
             options: further arguments of `Masonry`.
 
         Raises:
-            ValueError: for a value outside its range, or as `Masonry` does.
+            TypeError, ValueError: for a value outside its range, or as `Masonry` does.
         """
-        return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length), **options)
+        blocks = arch_of(radius, thickness, span_angle, voussoirs, density, length)
+        return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
 
     @classmethod
     def bridge(
@@ -698,10 +707,7 @@ class Masonry:
         try:
             blocks = polygons_of(outlines, fixed, density, length, unit)
             if ground:
-                corners = np.concatenate([block.corners for block in blocks])
-                low, high = corners.min(axis=0), corners.max(axis=0)
-                below = ground_under(low[0], high[0], high[1] - low[1], max(block.length for block in blocks), low[1])
-                blocks.insert(0, below)
+                blocks.insert(0, ground_below_all(blocks))
             return cls(blocks, **options)._touching()
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None

@@ -28,6 +28,11 @@ class Damper(Anchored):
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> damper = mr.Damper(height=4.0, c=2e4)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(damper,)).effects[0].c
+        20000.0
     """
 
     label: ClassVar[str] = "damper"

@@ -33,6 +33,11 @@ class Thrust(Effect):
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> push = mr.Thrust(height=4.0, force=2e3)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(push,)).effects[0].force
+        2000.0
     """
 
     label: ClassVar[str] = "thrust"
@@ -80,6 +85,11 @@ class Load(Effect):
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> roof = mr.Load(force=5e3, height=4.2, offset=0.1)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(roof,)).effects[0].force
+        5000.0
     """
 
     label: ClassVar[str] = "load"

@@ -36,6 +36,11 @@ class Tie(Anchored):
 
     Raises:
         ValueError: for a value outside its range, or an `ultimate` without a finite strength.
+
+    Examples:
+        >>> tie = mr.Tie(height=3.8, stiffness=20e6, strength=40e3)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(tie,)).effects[0].strength
+        40000.0
     """
 
     label: ClassVar[str] = "tie"
