@@ -36,7 +36,7 @@ from ..problem.masonry.joint_law import shear_limit
 from ..quantities import Array, Integers
 from .rows import Row, Rows
 from .system import Books, Supports, System
-from .turning import in_body, in_world, kick_place, spin_from_moment, turn_momentum
+from .turning import in_body, in_world, kick_place, spin_from_many, turn_momentum
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -157,14 +157,14 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
         row, way = system.ways[first + i], way_along(normal, i)
         row.body, row.face, row.support = line.body, line.face, line.support
         lever = moment(arm, way)
-        spin = spin_from_moment(body, lever)
+        spin = spin_from_many(body, lever)
         put(row.way, way)
         put(row.lever, lever)
         put(row.spin, spin)
         row.compliance = yielding(body, way) + dot(lever, spin)
         if on_face:
             lever = moment(face_arm, way)
-            spin = spin_from_moment(face, lever)
+            spin = spin_from_many(face, lever)
             put(row.lever_on_face, lever)
             put(row.spin_of_face, spin)
             row.compliance += yielding(face, way) + dot(lever, spin)

@@ -101,6 +101,21 @@ def apply_inverse_inertia(body: Row, a: Vector) -> Vector:
 @inlined
 def spin_from_moment(body: Row, a: Vector) -> Vector:
     """I^-1 a, in the axes of the world at the pose."""
+    return in_world(body, apply_inverse_inertia(body, in_body(body, a)))
+
+
+@inlined
+def take_inverse_inertia(body: Row, axes: tuple[int, ...]) -> None:
+    """Keep I^-1 in the axes of the world at the pose, where many moments are to turn a body of space."""
+    if len(axes) == 3:
+        for i in range(3):
+            axis = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
+            put(body.inverse_in_world[i], spin_from_moment(body, axis))
+
+
+@inlined
+def spin_from_many(body: Row, a: Vector) -> Vector:
+    """The same as `spin_from_moment`, of one of many moments."""
     if len(a) == 1:
         return apply_inverse_inertia(body, a)
     inverse = body.inverse_in_world
@@ -122,7 +137,7 @@ def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
 
 @inlined
 def take_turn(body: Row, axes: tuple[int, ...]) -> None:
-    """Bring R - 1, in space the inverse inertia, and the angular velocity of a body up to date with its pose."""
+    """Bring R - 1 and the angular velocity of a body up to date with its pose."""
     turn = body.turn
     if len(axes) == 2:
         half = math.sin(0.5 * body.angle)
@@ -132,9 +147,6 @@ def take_turn(body: Row, axes: tuple[int, ...]) -> None:
         turn[0, 0], turn[0, 1], turn[0, 2] = -2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
         turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), -2 * (x * x + z * z), 2 * (y * z - w * x)
         turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), -2 * (x * x + y * y)
-        for i in range(3):
-            axis = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
-            put(body.inverse_in_world[i], in_world(body, apply_inverse_inertia(body, in_body(body, axis))))
         put(body.spin, spin_from_moment(body, momentum_of(body, axes)))
 
 

@@ -77,10 +77,10 @@ def waited(name: str) -> list[object]:
     return [name, blocks, lines, f"{stats['timestep'] * 1e6:.1f}", f"{case.duration:g}", f"{spent:.1f}", f"{whole:.0f}"]
 
 
-def floors(folder: Path, rounds: int) -> dict[str, list[float]]:
+def floors(folder: Path, names: Sequence[str], rounds: int) -> dict[str, list[float]]:
     """Nanoseconds a line and step of plain C, one loop and vectors, of the sprung walls."""
     found = {}
-    for name in STEPS:
+    for name in names:
         if not name.startswith("wall") or name.endswith("rigid") or not step_floor.is_there():
             continue
         setup = setup_of(case_of(name, 1.0), None, None)
@@ -137,7 +137,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         there = speed.ROOT if args.quick else speed.unpacked(args.before, Path(folder))
         versions = speed.Version(there, TASKS), speed.Version(speed.ROOT, TASKS)
         try:
-            text, rows = step_table(versions, floors(Path(folder), rounds), names, rounds)
+            text, rows = step_table(versions, floors(Path(folder), names, rounds), names, rounds)
             if not (args.quick or args.steps_only):
                 text += "\n\n" + start_tables(versions, rounds, Path(folder))
         finally:
