@@ -119,7 +119,8 @@ def _require_solvable(case: Case, e: Restitution) -> None:
     for name, link in case.links.items():
         if not link.law.holds:
             raise ValueError(
-                f"rocking theory has no dampers, and {name} is one; simulate, solve_explicit and solve_compliant do"
+                f"rocking theory has links that only pull, and {name} is none; "
+                "simulate, solve_explicit and solve_compliant take it"
             )
     if case.restoring.outer.P <= 0:
         raise ValueError(
