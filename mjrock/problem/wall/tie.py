@@ -138,7 +138,7 @@ class Tie(Anchored):
         E = require_within("elastic_modulus of the bar", elastic_modulus, 5e10, 3e11, "Pa")
         stiffness = count * E * area_of_bar(diameter) / length
         least = min(strengths, key=lambda name: strengths[name])
-        return cls(height, stiffness, length=length, **{"strength": strengths[least], "governed_by": least} | options)
+        return cls(height, stiffness, length=length, strength=strengths[least], governed_by=least, **options)
 
     @property
     def rise(self) -> float:
