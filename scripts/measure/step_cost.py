@@ -52,7 +52,7 @@ def long_case(name: str) -> tuple[mr.MasonryCase, float]:
     if name.startswith("façade"):
         masonry = mr.Masonry.facade(4.0, 3.0, 1.0, (0.5, 0.25), k_n=K_SPACE, k_s=K_SPACE)
         return mr.MasonryCase(masonry, 0.5, motion=record), 10.0
-    blocks = [block for block in shear_wall.blocks_of(shear_wall.COURSES) if block.name != "top"]
+    blocks = [block for block in shear_wall.wall_of(shear_wall.Setting()).blocks if block.name != "beam"]
     masonry = mr.Masonry(blocks, k_n=62.7e9, k_s=27.5e9, friction=0.75, xi=0.02, frequency=2e3 * math.pi)
     return mr.MasonryCase(masonry, 0.02, motion=record), 1.0
 

@@ -24,7 +24,7 @@ from mjrock import plotting
 from mjrock.quantities import Array
 from scripts.shared import cli
 
-WIDTH, COURSES, HALF, COURSE, THICK = 0.99, 16, 0.11, 1.0 / 16, 0.1
+WIDTH, COURSES, BRICK, THICK = 0.99, 16, (0.22, 1.0 / 16), 0.1
 TOP = 4e-3
 MEASURED = {0.2: 18, 0.4: 34, 0.7: 48, 1.0: 57, 1.4: 54, 1.8: 48, 2.2: 42, 2.6: 38, 3.0: 35}
 """Force of the test [kN] by the displacement of the beam [mm], digitised by others, +-8 kN."""
@@ -50,40 +50,28 @@ class Setting(NamedTuple):
     k_s: float = 27.5e9
 
 
-def rectangle(left: float, low: float, width: float, height: float, name: str, fixed: bool = False) -> mr.Polygon:
-    """A block of the wall, or a beam."""
-    corners = [(left, low), (left + width, low), (left + width, low + height), (left, low + height)]
-    return mr.Polygon(corners, density=1900.0, length=THICK, fixed=fixed, name=name)
-
-
-def blocks_of(courses: int) -> list[mr.Polygon]:
-    """Half bricks between two beams. The name of a half begins with its course and its brick."""
-    blocks = [rectangle(-0.2, -0.2, WIDTH + 0.4, 0.2, "base", fixed=True)]
-    for i in range(courses):
-        for j in range(9):
-            brick = (j + i % 2) // 2
-            blocks.append(rectangle(j * HALF, i * COURSE, HALF, COURSE, f"c{i}_{brick}_{j}"))
-    return [*blocks, rectangle(-0.2, courses * COURSE, WIDTH + 0.4, 0.2, "top", fixed=True)]
-
-
 def kind_of(joint: mr.Joint) -> str:
     """Whether a joint lies within a brick."""
-    first, second = (name.split("_")[:2] for name in joint.name.split("|"))
-    return "brick" if first == second and len(first) == 2 else "mortar"
+    first, second = joint.name.split("|")
+    return "brick" if first[:-1] == second[:-1] else "mortar"
 
 
 def wall_of(setting: Setting, courses: int = COURSES) -> mr.Masonry:
     """The wall between its beams."""
-    bonds = {"mortar": setting.mortar, "brick": SPLITS if setting.splits else mr.Bond(1e9, 1e9, 1e9, 1e9)}
-    return mr.Masonry(
-        blocks_of(courses),
+    return mr.Masonry.shear_wall(
+        WIDTH,
+        courses * BRICK[1],
+        BRICK,
+        THICK,
+        1900.0,
+        halves=SPLITS if setting.splits else mr.Bond(1e9, 1e9, 1e9, 1e9),
+        bond=setting.mortar,
         k_n=lambda joint: {"mortar": setting.k_n, "brick": BRICK_N}[kind_of(joint)],
         k_s=lambda joint: {"mortar": setting.k_s, "brick": BRICK_S}[kind_of(joint)],
         friction=lambda joint: {"mortar": 0.75, "brick": 1.0}[kind_of(joint)],
         xi=setting.xi,
         frequency=2 * np.pi * 1000,
         points=setting.points,
-        bond=lambda joint: bonds[kind_of(joint)],
     )
 
 
@@ -99,10 +87,10 @@ def loading(setting: Setting, courses: int, top: float) -> tuple[Array, Array, A
 def sheared(setting: Setting, courses: int = COURSES, top: float = TOP) -> tuple[mr.MasonryResponse, Array, Array]:
     """The answer, the displacement of the beam [m] and the force that it takes [N] at the samples."""
     t, dx, dz = loading(setting, courses, top)
-    case = mr.MasonryCase(wall_of(setting, courses), float(t[-1]), supports={"top": (t, dx, dz)}, settled=False)
+    case = mr.MasonryCase(wall_of(setting, courses), float(t[-1]), supports={"beam": (t, dx, dz)}, settled=False)
     answer = mr.solve_explicit(case, forces=True, ledger=True)
     moved = np.interp(answer.t, t, dx)
-    force = np.convolve(np.pad(answer.reactions["top"][:, 0], 7, mode="edge"), np.ones(15) / 15, "valid")
+    force = np.convolve(np.pad(answer.reactions["beam"][:, 0], 7, mode="edge"), np.ones(15) / 15, "valid")
     return answer, moved, force
 
 

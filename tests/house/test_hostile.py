@@ -293,6 +293,10 @@ CALLS = OF_NUMBERS | {
         mr.Masonry.running_bond,
         {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
     ),
+    "Masonry.shear_wall": (
+        mr.Masonry.shear_wall,
+        {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
+    ),
     "MasonryCase": (
         mr.MasonryCase,
         {

@@ -38,7 +38,7 @@ from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
-from .builders import MOST_BLOCKS, arch_of, bonded_wall, ground_below_all, side_of, stacked
+from .builders import MOST_BLOCKS, arch_of, between_beams, bonded_wall, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
 from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
@@ -483,10 +483,40 @@ class Masonry:
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        require_kind("halves", halves, Bond, type(None))
-        if halves is not None:
-            options["bond"] = Halved(options.get("bond"), halves)
+        options = _halved(halves, options)
         return cls(bonded_wall(length, height, unit, thickness, density, halves is not None), **options)
+
+    @classmethod
+    def shear_wall(
+        cls,
+        length: float,
+        height: float,
+        unit: tuple[float, float],
+        thickness: float = 1.0,
+        density: float = 2000.0,
+        *,
+        halves: Bond | None = None,
+        **options: Any,
+    ) -> Self:
+        """A wall in running bond between a fixed base and a loading beam, as laboratories press and shear it.
+
+        Args:
+            length, height, unit, thickness, density, halves: as of `running_bond`.
+            options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond`, and "beam".
+                Base and beam are fixed and reach a fifth of the length beyond the wall. The case leads the beam by
+                `supports={"beam": (t, dx, dz)}`; it does not turn: dz presses the wall and dx shears it.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+
+        Examples:
+            >>> wall = mr.Masonry.shear_wall(0.8, 0.4, (0.2, 0.1), thickness=0.1)
+            >>> wall.names[0], wall.names[-1], len(wall.free)
+            ('base', 'beam', 18)
+        """
+        options = _halved(halves, options)
+        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
+        return cls(between_beams(wall[1:]), **options)
 
     @classmethod
     def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:
@@ -775,6 +805,12 @@ class Masonry:
                 f"there are {gaps.min():.3g} m"
             )
         return self
+
+
+def _halved(halves: Bond | None, options: dict[str, Any]) -> dict[str, Any]:
+    """Arguments of masonry whose units are divided by a bond, or not."""
+    require_kind("halves", halves, Bond, type(None))
+    return options if halves is None else options | {"bond": Halved(options.get("bond"), halves)}
 
 
 def _names(fixed: Sequence[str]) -> Sequence[str]:
