@@ -188,7 +188,7 @@ def pushover(
             yield come on top.
 
     Returns:
-        The curve: `rotation` [rad] and `multiplier` [-], and where ties yield and break.
+        The curve, with `rotation` [rad] and `multiplier` [-], and where ties yield and break.
 
     Raises:
         ValueError: for a value outside its range, or if the contacts do not fit the case or cannot carry it.

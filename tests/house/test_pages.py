@@ -146,7 +146,7 @@ def test_the_church_example_goes_from_records_to_a_report(capsys):
     names = runpy.run_path(str(DOCS / "examples" / "07_church_facade.py"))
     assert [len(components) for components in names["records"].values()] == 7 * [2]
     T, target = names["periods"], names["spectrum"](names["periods"])
-    for components in names["scaled"]:
+    for components in names["scaled"].values():
         means = [mr.response_spectrum(motion, T).Sa for motion in components]
         assert np.exp(np.log(np.sqrt(means[0] * means[1]) / target).mean()) == pytest.approx(1.0)
     checks, fits = names["checks"], names["fits"]

@@ -16,7 +16,7 @@ from ...quantities import keep, require_within, shown
 from .damper import Damper
 from .effect import Anchored, Effect
 from .friction_damper import FrictionDamper
-from .in_space import HIGHEST, LATER, Point, keep_place, point_or_none, written
+from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, written
 from .tie import Tie
 
 
@@ -45,8 +45,8 @@ class Thrust(Effect):
     height: float = None  # type: ignore[assignment]
     force: float = None  # type: ignore[assignment]
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    direction: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         if (given := point_or_none("direction of the thrust", self.direction)) is not None:
@@ -98,7 +98,7 @@ class Load(Effect):
     height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "load")
@@ -141,7 +141,7 @@ class AddedMass(Effect):
     height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "added mass")

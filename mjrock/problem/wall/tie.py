@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from ...quantities import keep, require_array, require_real, require_whole, require_within
 from .effect import Anchored, LinkLaw
-from .in_space import HIGHEST, LATER, Point, keep_place
+from .in_space import HIGHEST, IN_SPACE, LATER, Point, keep_place
 
 GOVERNING = ("bar", "punching", "bearing")
 """What the strength of a tie with an anchor plate may be that of."""
@@ -58,9 +58,9 @@ class Tie(Anchored):
     anchor_height: float | None = None
     block: int = 0
     ultimate: float | None = None
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
     governed_by: str | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
