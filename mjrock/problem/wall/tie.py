@@ -76,7 +76,7 @@ class Tie(Anchored):
             raise ValueError(
                 f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
             )
-        if self.governed_by not in (None, *GOVERNING):
+        if self.governed_by is not None and not (isinstance(self.governed_by, str) and self.governed_by in GOVERNING):
             raise ValueError(f"governed_by of the tie = {self.governed_by!r} is none of {', '.join(GOVERNING)}")
         if self.anchor_height is not None:
             anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
