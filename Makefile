@@ -49,6 +49,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
 	$(BIN)/python scripts/paper/figure3.py --out docs/figures
 	$(BIN)/python scripts/studies/animate.py --out docs/figures
+	$(BIN)/python scripts/models/stack_before_and_after.py --out docs/figures
 	$(BIN)/python scripts/paper/table2.py --out docs/figures
 	$(BIN)/python scripts/measure/convergence.py --out docs/figures
 	$(BIN)/python scripts/paper/layouts.py --out docs/figures
@@ -87,6 +88,7 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/corner_block.py --out docs/figures
 	$(BIN)/python scripts/studies/law_in_space.py --out docs/figures
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
+	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py

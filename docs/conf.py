@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import re
 import sys
+import types
 from pathlib import Path
 
 import matplotlib
@@ -21,10 +24,16 @@ copyright = "the mjrock developers, Apache-2.0"
 release = version = mjrock.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-extensions += ["sphinx_gallery.gen_gallery"]
+extensions += ["sphinx.ext.viewcode", "sphinx_gallery.gen_gallery"]
 exclude_patterns = ["build", "examples", "figures"]
-default_role = "py:obj"  # docstrings name things in single backticks
-nitpicky = False
+default_role = "literal"  # docstrings and examples name things in single backticks
+nitpicky = True  # a name that leads nowhere is an error
+# The site is built without a network, so that names of other packages lead nowhere; nor do types that are not in the
+# reference, such as parts of a public class.
+nitpick_ignore_regex = [
+    ("py:class", r"(numpy|matplotlib|collections|concurrent|pathlib|os|typing|mujoco|pandas)\b.*"),
+    ("py:class", r"mjrock\.[\w.]+"),
+]
 
 myst_heading_anchors = 3
 myst_enable_extensions = ["attrs_inline"]
@@ -62,13 +71,39 @@ html_copy_source = False
 html_show_sourcelink = False
 templates_path: list[str] = []
 
-MARKS = re.compile(r"(`[^`]*`)|([|*])")
+LISTED = re.findall(r"^\.\. auto\w+:: (mjrock[\w.]*)$", (HERE / "api.md").read_text("utf-8"), re.MULTILINE)
+PUBLIC = {name.rpartition(".")[2]: name for name in LISTED}
+"""Where the reference has each public name."""
+MARKS = re.compile(r"(``[^`]*``)|`([^`]*)`|([|*])")
 """Text between backticks, or a mark that reStructuredText would take for its own."""
 
 
+DESCRIBED = (types.FunctionType, classmethod, staticmethod, property, functools.cached_property)
+"""Members of a class that the reference has; its fields stand in the text of the class."""
+
+
+def linked(text: str) -> str:
+    """Code of a docstring: a link where it is a public name or a method of one, and else as it is written."""
+    name, _, member = text.partition(".")
+    full = PUBLIC.get(name)
+    thing = functools.reduce(getattr, full.split(".")[1:], mjrock) if full else None
+    if full is None or (member and not isinstance(inspect.getattr_static(thing, member, None), DESCRIBED)):
+        return f"``{text}``"
+    return f":py:obj:`{text} <{full}{'.' * bool(member)}{member}>`"
+
+
+def written(found: re.Match[str]) -> str:
+    """Code as a link or as it is, and a mark as a letter."""
+    literal, code, mark = found.groups()
+    return literal or (f"\\{mark}" if mark else linked(" ".join(code.split())))
+
+
 def plain(app: object, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
-    """Keep |e| and 2**53 in docstrings as they are written."""
-    lines[:] = [MARKS.sub(lambda found: found[1] or "\\" + found[2], line) for line in lines]
+    """Make links of public names, and keep |e| and 2**53 in docstrings as they are written."""
+    text = MARKS.sub(written, "\n".join(lines))
+    if what in ("attribute", "property", "data"):
+        text = re.sub(r"\A([^\n`]*):[ ]", r"\1:\n", text)  # napoleon would take what is before it for a type
+    lines[:] = text.split("\n")
 
 
 def compile_loops() -> None:

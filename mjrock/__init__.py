@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from .problem.damping.stiffness import joint_stiffness, layered_stiffness, measured_stiffness, wall_stiffness
     from .problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum, code_spectrum
     from .problem.ground.motion import GroundMotion
-    from .problem.ground.record_sets import records_in, scaled_together
+    from .problem.ground.record_sets import RecordSet, records_in, scaled_together
     from .problem.ground.spectrum import ResponseSpectrum, response_spectrum, scaled_to_sa, scaled_to_spectrum
     from .problem.masonry.actuator import Actuator
     from .problem.masonry.bond import BONDS, Bond
@@ -98,7 +98,7 @@ __all__ = [
     "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
     "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
     "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
-    "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Push", "Response",
+    "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response",
     "ResponseSpectrum", "Restitution", "RigidImpact", "RockingSpectrum", "Scene", "Sensitivity", "SideStop",
     "SimulationError", "SpaceJoint", "StiffnessRange", "Store", "Thrust", "Tie", "__version__", "as_theory",
     "automatic_timestep", "calibrate", "campaign", "code_spectrum", "collapse_multiplier", "compare", "contact_for",

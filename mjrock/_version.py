@@ -1,3 +1,3 @@
 """The version, recorded in every generated model. The build reads it from here."""
 
-__version__ = "0.2.0.dev0"
+__version__ = "1.0.0"

@@ -137,7 +137,7 @@ def _imported_numba() -> Any:
 
 
 def _register(numba: Any, function: Callable[..., Any]) -> None:
-    numba.extending.register_jitable(forceinline=True)(function)
+    numba.extending.register_jitable(forceinline=True, no_cfunc_wrapper=True)(function)
 
 
 def __getattr__(name: str) -> Any:
@@ -174,7 +174,7 @@ def compiled(function: Function) -> Function:
     numba = _numba()
     if numba is None:
         return function
-    dispatcher = numba.njit(nogil=True, error_model="numpy", _nrt=False)(function)
+    dispatcher = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)(function)
     if dispatcher is not function:  # it is with NUMBA_DISABLE_JIT=1
         with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
             dispatcher._cache = globals()["_Cache"](function)

@@ -30,7 +30,6 @@ MARKS = b"\n@compiled\n", b"\n@inlined\n"
 """What stands before a compiled function."""
 OTHERS = (
     "engine/solref.py",
-    "engine/run.py",
     "scene/masonry.py",
     "scene/rest.py",
     "result/history.py",
@@ -63,7 +62,8 @@ OWN = {
     "geometry/poses.py": ("scene_in_space",),
     **{f"distinct/{name}.py": ("explicit", "explicit_in_space", "encounters", "books_close") for name in STEPS},
     "distinct/touches.py": ("touches_inside_a_step", "books_close"),
-    **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py", "result/forces.py")},
+    **{name: ("forces",) for name in ("distinct/gathering.py", "engine/forces.py")},
+    "result/forces.py": ("joint_frames", "forces"),
     "distinct/slowing.py": ("push",),
     **{name: ("bonds", "bonded_masonry") for name in ("distinct/bonds.py", "problem/masonry/bond_law.py")},
     "distinct/links.py": ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit"),
@@ -76,6 +76,7 @@ OWN = {
     "result/ledger.py": ("ledger",),
     **{f"result/{name}.py": ("files_of_motion",) for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties_that_break", "friction_damper", "masonry_effects"),
+    "engine/run.py": ("marks", "end_of_run", "ledger"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
     "problem/masonry/polygon.py": ("polygon",),
@@ -103,6 +104,14 @@ SWAPPED = {
 EQUIVALENT = {
     "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else given": (
         "a row that presses with less than a newton takes nothing that shows"
+    ),
+    **{
+        f"joint_law.py: row = Law(k[i], {numbers})": "at rest no dashpot, shear spring or friction of the row is read"
+        for numbers in ("1, 0.0, 0.0", "0.0, 1, 0.0", "0.0, 0.0, 1")
+    },
+    "joint_law.py: k_s: Any = 1": "a law that is given its friction alone has no shear spring",
+    "forces.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
+        "joints on what is fixed have no arm that is read"
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",

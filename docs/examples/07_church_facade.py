@@ -29,12 +29,15 @@ for name, components in records.items():
 
 # %%
 # The spectrum of the site by NTC 2018, for life safety. Both components of a record are scaled by one factor, so that
-# their geometric mean fits the spectrum from 0.1 to 3 s. The first component is taken across the wall.
+# their geometric mean fits the spectrum from 0.1 to 3 s. `mean_over` is the mean of all components over the spectrum of
+# the site, which the code bounds. The first component is taken across the wall.
 spectrum = mr.code_spectrum("NTC 2018", ag=2.45, F0=2.45, Tc=0.34, soil="C")  # m/s2, -, s
 periods = np.linspace(0.1, 3.0, 40)  # s
-scaled = [mr.scaled_together(components, periods, spectrum) for components in records.values()]
-across = [components[0] for components in scaled]
-figure = plotting.single(lambda ax: plotting.spectra(ax, across, periods, spectrum))
+scaled = records.scaled_to(spectrum, periods)
+share = scaled.mean_over(spectrum, periods)
+print(f"the mean is {share.min():.2f} to {share.max():.2f} of the spectrum")
+figure = plotting.spectra(scaled, periods, spectrum).figure
+across = scaled.first
 
 # %%
 # The wall is of rubble, and the side walls reach up to 8.5 m. The stiffness of its base follows from the masonry and a

@@ -30,9 +30,9 @@ from ..geometry.vectors import (
     spun,
     vector,
 )
-from ..problem.masonry.joint_law import normal_force, stored
+from ..problem.masonry.joint_law import normal_force, shear_limit, stored
 from .faces import is_beside, pulled_inside
-from .friction import along_face, as_vector, carried, last_friction, list_rigid, sprung_friction
+from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction
 from .rows import POINT, Row, Rows
 from .system import Books, Supports, System
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
@@ -209,6 +209,7 @@ def press_lines(
         elif line.friction > 0:
             books.active[active] = p
             list_rigid(system, line, (len(axes) - 1) * active, meet.normal, meet.arm, meet.face_arm)
+            begin(system, line, (len(axes) - 1) * active, shear_limit(line, push), kick, axes)
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))
         rubbed -= dot(mean, slip)

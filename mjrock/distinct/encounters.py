@@ -138,7 +138,8 @@ class Encounters:
         """Where all blocks are."""
         blocks, still, d = self.blocks, self.blocks.poses, len(system.axes)
         moved, change, moves = np.zeros((self.count, d)), np.zeros((self.count, d, d)), blocks.support >= 0
-        moved[blocks.free], change[blocks.free] = system.bodies["place"], rotations(system.bodies)
+        bodies = np.asarray(system.bodies)  # whose columns are found faster than those of a record array
+        moved[blocks.free], change[blocks.free] = bodies["place"], rotations(bodies)
         moved[moves] = system.supports.moved[blocks.support[moves]]
         return Poses(still.drawn, moved, change)
 
@@ -146,9 +147,10 @@ class Encounters:
         """Velocity of each block, and the largest of a corner about its centroid [m/s], (blocks, d) and (blocks,)."""
         free, support = self.blocks.free, self.blocks.support
         velocity, about, moves = np.zeros((self.count, len(system.axes))), np.zeros(self.count), support >= 0
-        velocity[free] = system.bodies["velocity"]
+        bodies = np.asarray(system.bodies)
+        velocity[free] = bodies["velocity"]
         velocity[moves] = system.supports.moving[support[moves]]
-        about[free] = np.linalg.norm(system.bodies["spin"], axis=1) * self.sizes[free]
+        about[free] = np.linalg.norm(bodies["spin"], axis=1) * self.sizes[free]
         return velocity, about
 
     def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, float]:
@@ -172,7 +174,10 @@ class Encounters:
         known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
         found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
         until, soon = self._until(found, velocity, about)
-        system = self._renewed(system, books, poses, found.only(soon), np.append(worn[wear.pairs], ~stays), h)
+        of_gone = np.append(worn[wear.pairs], ~stays)
+        if not (soon.any() or of_gone.any()):
+            return system, books, until
+        system = self._renewed(system, books, poses, found.only(soon), of_gone, h)
         return system, books.with_room(len(system.lines)), until
 
     def _until(self, found: Found, velocity: Array, about: Array) -> tuple[float, Flags]:
@@ -197,7 +202,7 @@ class Encounters:
             h: length of a step [s].
         """
         met, count = self.met, len(self.wear.pairs)
-        lines = np.asarray(system.lines)  # whose columns are found faster than those of a record array
+        lines = np.asarray(system.lines)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
         if len(system.bonds):
@@ -216,9 +221,10 @@ class Encounters:
             new.rows[name] = share * column if name in SHARED else column
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
-        for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
-            joints[name][worn] = 0.0
-        joints["margin"][worn] = np.inf  # no step looks at such a line again
+        if worn.any():
+            for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
+                joints[name][worn] = 0.0
+            joints["margin"][worn] = np.inf  # no step looks at such a line again
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
@@ -239,7 +245,8 @@ class Encounters:
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
-        return shares_within(sides, law, inverse_masses(system.bodies, poses.change[self.blocks.free]), h / STABLE)
+        inverse = inverse_masses(np.asarray(system.bodies), poses.change[self.blocks.free])
+        return shares_within(sides, law, inverse, h / STABLE)
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

@@ -64,6 +64,10 @@ def solve_explicit(
         local_damping: share of the unbalanced force along each axis of a body that acts against its velocity, for slow
             motions of masonry with k_s [-], 0 to 0.9. The account "motion" of the dashpots has what both take.
 
+    Returns:
+        The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, and `impacts`, `peaks` of a
+        wall or `opening`, `fallen` of masonry.
+
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, for a step that is not stable,
             or for a value outside its range.
@@ -72,6 +76,11 @@ def solve_explicit(
     Warns:
         UserWarning: of steps that would take more than some ten seconds, or of a tie drawn out too far.
         Implausible: of a given timestep that is far below what the contacts need.
+
+    Examples:
+        >>> column = mr.Masonry.column(width=0.5, height=2.0, drums=4)
+        >>> mr.solve_explicit(mr.MasonryCase(column, duration=0.1)).outcome.value
+        'at rest'
     """
     watch = Stopwatch()
     require_case(case, contacts)

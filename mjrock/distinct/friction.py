@@ -20,6 +20,7 @@ from ..geometry.vectors import (
     Vector,
     components,
     dot,
+    increase,
     minus,
     moment,
     plus,
@@ -35,7 +36,7 @@ from ..problem.masonry.joint_law import shear_limit
 from ..quantities import Array, Integers
 from .rows import Row, Rows
 from .system import Books, Supports, System
-from .turning import in_body, in_world, kick_place, spin_from_moment, strike_spin
+from .turning import in_body, in_world, kick_place, spin_from_many, turn_momentum
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -156,23 +157,25 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
         row, way = system.ways[first + i], way_along(normal, i)
         row.body, row.face, row.support = line.body, line.face, line.support
         lever = moment(arm, way)
-        spin = spin_from_moment(body, lever)
+        spin = spin_from_many(body, lever)
         put(row.way, way)
         put(row.lever, lever)
         put(row.spin, spin)
         row.compliance = yielding(body, way) + dot(lever, spin)
         if on_face:
             lever = moment(face_arm, way)
-            spin = spin_from_moment(face, lever)
+            spin = spin_from_many(face, lever)
             put(row.lever_on_face, lever)
             put(row.spin_of_face, spin)
             row.compliance += yielding(face, way) + dot(lever, spin)
-        row.stiffness = 1 / row.compliance
+        row.stiffness, row.shared = 1 / row.compliance, 0.0
     if len(normal) == 3:
         a, b = system.ways[first], system.ways[first + 1]
         a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
         if on_face:
             a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
+        area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
+        a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
 
 
 @inlined
@@ -190,20 +193,20 @@ def slip_along(system: System, row: Row, axes: tuple[int, ...]) -> float:
 
 @inlined
 def strike(system: System, row: Row, impulse: float, axes: tuple[int, ...]) -> None:
-    """Let an impulse along a way act on the body of its line and on that of its face [N s]."""
+    """Let an impulse along a way act on the velocities of the body of its line and of that of its face [N s]."""
     body, way = system.bodies[row.body], components(row.way, axes)
     kick_place(body, scaled(impulse, way))
-    strike_spin(body, impulse, spin_components(row.lever, axes), spin_components(row.spin, axes))
+    increase(body.spin, scaled(impulse, spin_components(row.spin, axes)))
     if row.face >= 0:
         face = system.bodies[row.face]
         kick_place(face, scaled(-impulse, way))
-        strike_spin(face, -impulse, spin_components(row.lever_on_face, axes), spin_components(row.spin_of_face, axes))
+        increase(face.spin, scaled(-impulse, spin_components(row.spin_of_face, axes)))
 
 
 @inlined
-def begin(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> float:
-    """Start with the friction of the last step. Returns the most that the face holds [N s]."""
-    limit: float = kick * shear_limit(line, line.push)
+def begin(system: System, line: Row, first: int, held: float, kick: float, axes: tuple[int, ...]) -> None:
+    """Let the ways of a line start with the friction of the last step, as far as the face holds it now [N]."""
+    limit: float = kick * held
     grip = scaled(kick, spin_components(line.grip, axes))
     if line.face >= 0:
         grip = in_world(system.bodies[line.face], grip)
@@ -215,8 +218,6 @@ def begin(system: System, line: Row, first: int, kick: float, axes: tuple[int, .
     for i in range(len(axes) - 1):
         row = system.ways[first + i]
         row.impulse, row.limit = impulses[i], limit
-        strike(system, row, row.impulse, axes)
-    return limit
 
 
 @inlined
@@ -228,9 +229,8 @@ def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
         return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.ways[first + 1]
     other = slip_along(system, b, axes)
-    area = a.compliance * b.compliance - a.coupling * a.coupling
-    along = a.impulse - (b.compliance * slip - a.coupling * other) / area
-    across = b.impulse - (a.compliance * other - a.coupling * slip) / area
+    along = a.impulse - (a.stiffness * slip - a.shared * other)
+    across = b.impulse - (b.stiffness * other - a.shared * slip)
     if along * along + across * across > limit * limit:  # it slips, and friction is against the slip
         half = 0.5 * (a.compliance - b.compliance)
         loosest = 0.5 * (a.compliance + b.compliance) + math.sqrt(half * half + a.coupling * a.coupling)
@@ -260,9 +260,11 @@ def stick(system: System, active: Integers, count: int, kick: float, axes: tuple
     Lines that follow each other share their bodies, and a sweep carries friction through all of them. Dealt out in
     strides they would be a tenth faster, and the sweeps would end farther from where they converge.
     """
-    lines, each, largest = system.lines, len(axes) - 1, 0.0
-    for i in range(count):
-        largest = max(largest, begin(system, lines[active[i]], each * i, kick, axes))
+    each, largest = len(axes) - 1, 0.0
+    for i in range(each * count):
+        row = system.ways[i]
+        largest = max(largest, row.limit)
+        strike(system, row, row.impulse, axes)
     for sweep in range(SWEEPS):
         changed = 0.0
         for turn in range(count):
@@ -271,12 +273,17 @@ def stick(system: System, active: Integers, count: int, kick: float, axes: tuple
         if changed <= SETTLED * largest:
             break
     for i in range(count):
-        keep_rigid(system, lines[active[i]], each * i, kick, axes)
+        keep_rigid(system, system.lines[active[i]], each * i, kick, axes)
 
 
 @inlined
 def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> None:
-    """Keep the friction of a line that sticks rigidly for the next step [N]."""
+    """Keep the friction of a line that sticks rigidly for the next step [N], and what it turns the bodies by."""
+    for i in range(len(axes) - 1):
+        row = system.ways[first + i]
+        turn_momentum(system.bodies[row.body], scaled(row.impulse, spin_components(row.lever, axes)))
+        if row.face >= 0:
+            turn_momentum(system.bodies[row.face], scaled(-row.impulse, spin_components(row.lever_on_face, axes)))
     a = system.ways[first]
     if len(axes) == 2:
         line.grip[0] = a.impulse / kick

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, csr_array, diags_array, vstack
+from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
 from ..compiled import compiled, inlined
@@ -33,7 +33,10 @@ def longest_step(system: System) -> float:
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
     linked = (system.ties, system.dampers, system.actuators)
     rates += [link_rates(links, bodies) for links in linked]
-    lengths, root = csr_array(vstack(rates)), csr_array(block_diag(roots_of_masses(system.bodies)))
+    lengths, root = (
+        csr_array(vstack(rates)),
+        csr_array(block_diag([coo_array(root) for root in roots_of_masses(system.bodies)])),
+    )
 
     def weights(along: str, across: str) -> Array:
         shear = np.where(np.isfinite(lines["k_s"]), lines[across], 0.0)
@@ -149,6 +152,8 @@ def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: flo
         return np.asarray(inverse @ stiffness)
 
     loads = np.append(_traces(rates(np.ones(sides.bodies.shape))), 0.0)[sides.bodies]  # zero for fixed blocks
+    if loads.sum(axis=0).max(initial=0.0) <= 4:  # no trace of a split is more than the largest sum over both blocks
+        return np.ones(len(along))
     split = rates(np.where(loads > 0, loads / np.maximum(loads.sum(axis=0), 1e-300), 1.0))
     doubtful, share = np.flatnonzero(_traces(split) > 4), np.ones(len(inverse) + 1)
     power = split[doubtful]

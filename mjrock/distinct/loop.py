@@ -41,6 +41,7 @@ from .turning import (
     kick_place,
     kick_spin,
     momentum_of,
+    take_inverse_inertia,
     take_turn,
     turn_body,
     turns_within,
@@ -117,6 +118,8 @@ def start_forces(system: System, books: Books, push: Vector, before: float, axes
     for b in range(len(system.bodies)):
         body = system.bodies[b]
         take_turn(body, axes)
+        if len(system.ways) > 0:
+            take_inverse_inertia(body, axes)
         done -= before * body.mass * dot(mean, components(body.velocity, axes))
         put(body.force, scaled(-body.mass, weight))
         put(body.moment, no_spin(axes))

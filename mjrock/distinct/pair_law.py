@@ -48,7 +48,7 @@ class PairLaw(NamedTuple):
 
     Args:
         jointed: numbers of the pairs that have a joint, increasing, shape (p,).
-        of_pair: columns of `SHARED` and area [m2], in the plane length [m], of these pairs, shape (p, 5), and their
+        of_pair: columns of `SHARED` and area [m2], in the plane width [m], of these pairs, shape (p, 5), and their
             friction, shape (p,).
         of_block: likewise of each block as a pair without a joint takes it.
     """
@@ -62,7 +62,7 @@ class PairLaw(NamedTuple):
         """The law of masonry, from the lines of its joints and the number of the joint of each."""
         blocks, joints = len(masonry.blocks), len(masonry.joints)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
-        areas = np.array([getattr(each, "area", each.width) for each in masonry.joints])
+        areas = np.array([each.area if masonry.in_space else each.width for each in masonry.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
         friction = np.zeros(joints)
         friction[joint] = lines["friction"]

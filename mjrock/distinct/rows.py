@@ -78,6 +78,7 @@ def _vector(size: int, *names: str) -> Fields:
 def _body(d: int, s: int) -> Fields:
     flat = [*_number("angle"), *_vector(2, "turn")]
     deep = [*_vector(4, "quaternion"), ("turn", float, (3, 3)), *_vector(3, "momentum")]
+    deep += [("inverse_in_world", float, (3, 3))]  # inverse inertia in the axes of the world at the pose [1/(kg m2)]
     return [
         *_number("mass"),  # [kg]
         *_vector(d, "inverse_mass"),  # along the axes, zero where a guide holds the body [1/kg]
@@ -134,7 +135,7 @@ def _way(d: int, s: int) -> Fields:
         *_vector(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
         *_vector(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
         *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
-        *_number("stiffness"),  # 1 over the compliance [kg]
+        *_number("stiffness", "shared"),  # impulse that stops a slip of 1 m/s along the way, and along the other [kg]
         *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
     ]
 

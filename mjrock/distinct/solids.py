@@ -64,15 +64,12 @@ class Solids(NamedTuple):
 
     def moved(self, place: Array, change: Array) -> Solids:
         """The blocks at centroids [m], shape (blocks, 3), turned from where they are by rotations less 1."""
-
-        def along(vectors: Array, first: Integers) -> tuple[Array, Integers]:
-            block = np.repeat(np.arange(len(place)), np.diff(first))
-            return vectors + np.einsum("nij,nj->ni", change[block], vectors), block
-
-        corners, block = along(self.corners, self.corner)
-        normals, _ = along(self.normals, self.face)
-        ways, _ = along(self.ways, self.way)
-        return self._replace(corners=corners + place[block], normals=normals, ways=ways)
+        firsts = (self.corner, self.face, self.way)
+        block = np.concatenate([np.repeat(np.arange(len(place)), np.diff(first)) for first in firsts])
+        vectors = np.concatenate([self.corners, self.normals, self.ways])
+        vectors += np.einsum("nij,nj->ni", change[block], vectors)
+        corners, normals, ways = np.split(vectors, np.cumsum([len(self.corners), len(self.normals)]))
+        return self._replace(corners=corners + place[block[: len(corners)]], normals=normals, ways=ways)
 
 
 class Poses(NamedTuple):

@@ -105,6 +105,28 @@ def spin_from_moment(body: Row, a: Vector) -> Vector:
 
 
 @inlined
+def take_inverse_inertia(body: Row, axes: tuple[int, ...]) -> None:
+    """Keep I^-1 in the axes of the world at the pose, where many moments are to turn a body of space."""
+    if len(axes) == 3:
+        for i in range(3):
+            axis = (1.0 if i == 0 else 0.0, 1.0 if i == 1 else 0.0, 1.0 if i == 2 else 0.0)
+            put(body.inverse_in_world[i], spin_from_moment(body, axis))
+
+
+@inlined
+def spin_from_many(body: Row, a: Vector) -> Vector:
+    """The same as `spin_from_moment`, of one of many moments."""
+    if len(a) == 1:
+        return apply_inverse_inertia(body, a)
+    inverse = body.inverse_in_world
+    return (
+        inverse[0, 0] * a[0] + inverse[0, 1] * a[1] + inverse[0, 2] * a[2],
+        inverse[0, 1] * a[0] + inverse[1, 1] * a[1] + inverse[1, 2] * a[2],
+        inverse[0, 2] * a[0] + inverse[1, 2] * a[1] + inverse[2, 2] * a[2],
+    )
+
+
+@inlined
 def momentum_of(body: Row, axes: tuple[int, ...]) -> Vector:
     """Angular momentum in the axes of the world [N m s]."""
     if len(axes) == 2:
@@ -140,11 +162,10 @@ def kick_spin(body: Row, kick: float, axes: tuple[int, ...]) -> None:
 
 
 @inlined
-def strike_spin(body: Row, impulse: float, lever: Vector, spin: Vector) -> None:
-    """Let an impulse act [N s] that turns a body by a lever, with the spin that a unit impulse gives to it."""
-    if len(lever) == 3:
-        increase(body.momentum, scaled(impulse, lever))
-    increase(body.spin, scaled(impulse, spin))
+def turn_momentum(body: Row, change: Vector) -> None:
+    """Change the angular momentum of a body, which only those of space keep [N m s]."""
+    if len(change) == 3:
+        increase(body.momentum, change)
 
 
 @inlined
@@ -158,7 +179,8 @@ def strike_body(body: Row, arm: Vector, impulse: Vector) -> None:
     """Let an impulse act at an arm from the centroid of a body [N s]."""
     lever = moment(arm, impulse)
     kick_place(body, impulse)
-    strike_spin(body, 1.0, lever, spin_from_moment(body, lever))
+    turn_momentum(body, lever)
+    increase(body.spin, spin_from_moment(body, lever))
 
 
 @inlined

@@ -157,6 +157,10 @@ def simulate(
             then no peak, and the first is the first that is reached. It does not go with ties that yield.
         method: the constants of the method, see `mjrock.method`, for studies that vary them.
 
+    Returns:
+        The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, and `impacts`, `peaks` of a
+        wall or `opening`, `fallen` of masonry.
+
     Raises:
         ValueError: if the contacts do not fit the case or cannot be represented at this step, if the masonry does not
             stand, for a tie that breaks with a fixed step, or for a value outside its range.
@@ -166,6 +170,11 @@ def simulate(
         UserWarning: if a fixed step is too long to resolve the contacts, if explicit steps would follow masonry of more
             than eight blocks in a fraction of the time, or if a tie without an `ultimate` was drawn out by more than a
             bar or an anchor follows.
+
+    Examples:
+        >>> answer = mr.simulate(case, contacts)
+        >>> answer.outcome.value
+        'at rest'
     """
     watch = Stopwatch()
     require_case(case, contacts)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..quantities import Array
-from .frames import PLANE, Freedom
+from .frames import PLANE, SPACE, Freedom, frames_of
 
 
 def tilt_of(pose: Array) -> Array:
@@ -35,13 +35,8 @@ def rotations(pose: Array) -> Array:
     if pose.shape[-1] == PLANE.nq:
         sine, cosine = np.sin(pose[..., 2]), np.cos(pose[..., 2])
         return np.stack([np.stack([cosine, sine], axis=-1), np.stack([-sine, cosine], axis=-1)], axis=-2)
-    w, x, y, z = np.moveaxis(pose[..., 3:], -1, 0)
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    changes = frames_of(np.ascontiguousarray(pose).ravel(), SPACE)[:, 3:]
+    return np.eye(3) + changes.reshape(*pose.shape[:-1], 3, 3)
 
 
 def at_rest(bodies: int, freedom: Freedom) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
 from ..problem.ground.motion import GroundMotion
+from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
 from ..quantities import GRAVITY
 from ..study.fragility import Fragility
@@ -43,16 +45,25 @@ def mode_legend(figure: Figure) -> None:
     legend_below(figure, handles, list(MODES), len(handles), fontsize=9)
 
 
-@picture(motions=listed(kind(GroundMotion)), periods=finite_row, target=kind(CodeSpectrum, FloorSpectrum))
+def of_records(name: str, value: Any) -> None:
+    """At least one motion, or a set of at least one record."""
+    listed(kind(GroundMotion))(name, value.horizontal if isinstance(value, RecordSet) else value)
+
+
+@picture(motions=of_records, periods=finite_row, target=kind(CodeSpectrum, FloorSpectrum))
 def spectra(
     ax: Axes,
-    motions: Sequence[GroundMotion],
+    motions: Sequence[GroundMotion] | RecordSet,
     periods: ArrayLike,
     target: CodeSpectrum | FloorSpectrum | None = None,
     damping: float = 0.05,
 ) -> Axes:
-    """Pseudo-acceleration of each motion over the period, with their mean and the spectrum that they are scaled to."""
+    """Pseudo-acceleration of each motion over the period, with their mean and the spectrum that they are scaled to.
+
+    Of a set of records it draws the horizontal components.
+    """
     T = np.asarray(periods, dtype=float)
+    motions = motions.horizontal if isinstance(motions, RecordSet) else motions
     found = np.array([response_spectrum(motion, T, damping).Sa for motion in motions]) / GRAVITY
     for i, line in enumerate(found):
         ax.plot(T, line, color="0.7", linewidth=0.7, label="records" if i == 0 else None)

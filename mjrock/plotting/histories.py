@@ -41,7 +41,7 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
     for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
         if abs(limit - 1) > 0.01 and limit < 4 * max(reached):  # one that is far would flatten the motion
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
-            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="bottom")
+            ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="top")
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     said = [

@@ -57,10 +57,10 @@ def blocks(ax: Axes, bodies: Bodies) -> Update:
     return update
 
 
-def frame_view(ax: Axes, bodies: Bodies, room: float = 0.06) -> None:
-    """Set limits that every frame fits into, with `room` around them as a share of the larger side."""
+def frame_view(ax: Axes, bodies: Bodies) -> None:
+    """Set limits that every frame fits into, with a margin."""
     low, high = bodies.extent()
-    margin = room * float((high - low).max())
+    margin = 0.06 * float((high - low).max())
     ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
 
 

@@ -48,9 +48,17 @@ def solve_compliant(
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 0.5 ms. They
             are evenly spaced, and the last is the end of the run.
 
+    Returns:
+        The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, `impacts` and `peaks`.
+
     Raises:
         ValueError: if the contacts do not fit the case, for a tolerance or step out of range, or a tie that yields.
         RuntimeError: if the integration fails.
+
+    Examples:
+        >>> answer = mr.solve_compliant(case, contacts)
+        >>> answer.outcome.value
+        'at rest'
     """
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("contacts", contacts, Contacts)

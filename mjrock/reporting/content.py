@@ -163,6 +163,17 @@ def of_forces(responses: Sequence[Response], names: Sequence[str]) -> TableRows:
     return rows
 
 
+def of_messages(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
+    """The messages, each once with the responses that it is said of: by name up to three of them, else by number."""
+    said: dict[str, list[str]] = {}
+    for response, name in zip(responses, names, strict=True):
+        said.setdefault(response.message, []).append(name)
+    return [
+        f"{', '.join(of) if len(of) <= 3 else f'{len(of)} of {len(names)} responses'}: {message}"
+        for message, of in said.items()
+    ]
+
+
 def masonry_cautions(responses: Sequence[Response], names: Sequence[str]) -> list[str]:
     """What to be careful of in the results of masonry."""
     said = []

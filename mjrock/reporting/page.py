@@ -194,7 +194,7 @@ def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     forces = content.of_forces(responses, names)
     if forces:
         made += "<p></p>" + table(("response", "largest reaction", "largest force of a joint", "of"), forces)
-    return made + listed([f"{name}: {r.message}" for r, name in zip(responses, names, strict=True)], "")
+    return made + listed(content.of_messages(responses, names), "")
 
 
 def at_rest(case: Case | MasonryCase) -> list[str]:

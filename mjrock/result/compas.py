@@ -67,11 +67,11 @@ def _edge(
     normal, *along = below.turned(np.array([joint.normal, *joint.axes]))[0]
     place = (joint.outline - joint.middle) @ joint.axes.T
     pressed, slid = forces.normal[sample, number], forces.shear[sample, number]
-    pushes = pressed > NOTHING * forces.normal.max()
-    shares = at_corners(place, forces.eccentricity[sample, number]) if pushes else np.full(len(place), 1 / len(place))
+    presses = pressed > NOTHING * forces.normal.max()
+    shares = at_corners(place, forces.eccentricity[sample, number]) if presses else np.full(len(place), 1 / len(place))
     parts = [shares * part + 0.0 for part in (pressed, *slid)]
     total = pressed * normal + slid @ along
-    slides = pushes and np.linalg.norm(slid) >= SLIPS * case.masonry.joint_friction[number] * pressed
+    slides = presses and np.linalg.norm(slid) >= SLIPS * case.masonry.joint_friction[number] * pressed
     frame = {"point": corners.mean(axis=0).tolist(), "xaxis": along[0].tolist(), "yaxis": along[1].tolist()}
     where = held("compas.geometry/Frame", frame, guid_of("frame", joint.name))
     points = [
@@ -106,7 +106,7 @@ def _edge(
         "resultant_local": [*slid.tolist(), float(pressed)],
         "force_magnitude": float(np.linalg.norm(total)),
         "gap": ((met - corners) @ normal).tolist(),
-        "status": ["slide" if slides else "stick" if pushes else "noctc"] * len(corners),
+        "status": ["slide" if slides else "stick" if presses else "noctc"] * len(corners),
     }
     return f"{joint.above},{joint.below}", edge
 

@@ -8,7 +8,7 @@ and Iyz of each body, shape (n, 3). In the plane there are none, shape (0, 3).
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import block_diag, csr_array, eye_array
+from scipy.sparse import block_diag, coo_array, csr_array, eye_array
 
 from ..compiled import inlined
 from ..geometry.vectors import Vector, spun
@@ -44,7 +44,9 @@ def principal(mass: Array, inertia: Array) -> tuple[csr_array, Array]:
         return csr_array(eye_array(len(masses))), masses
     moments, axes = np.linalg.eigh(inertia)
     blocks = [block for turn in axes for block in (np.eye(3), turn)]
-    return csr_array(block_diag(blocks)), np.column_stack([mass, mass, mass, moments]).ravel()
+    return csr_array(block_diag([coo_array(block) for block in blocks])), np.column_stack(
+        [mass, mass, mass, moments]
+    ).ravel()
 
 
 @inlined

@@ -167,10 +167,10 @@ def calibrate(
     return Calibration(law, base, side, base_tasks, base_rows, side_tasks, side_rows)
 
 
-def sweep(start: Combination, count: int = 5) -> list[tuple[str, Combination]]:
-    """Combinations that differ from `start` in one parameter, which goes through its range of Table 1."""
+def sweep(start: Combination) -> list[tuple[str, Combination]]:
+    """Combinations that differ from `start` in one parameter, at five values through its range of Table 1."""
     swept: list[tuple[str, Combination]] = []
     ranges = {"R": R_RANGE, "slenderness": SLENDERNESS_RANGE, "k_base": K_N_RANGE, "k_side": K_N_RANGE}
     for name, (low, high) in (ranges | {"amplitude": AMPLITUDE_RANGE}).items():
-        swept += [(name, replace(start, **{name: float(value)})) for value in np.geomspace(low, high, count)]
+        swept += [(name, replace(start, **{name: float(value)})) for value in np.geomspace(low, high, 5)]
     return swept

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..problem.ground.code_spectrum import CodeSpectrum, FloorSpectrum
+from ..problem.ground.code_spectrum import SpectrumOfCode
 from ..problem.ground.motion import GroundMotion
 from ..problem.ground.oscillator import SHORTEST
 from ..problem.ground.spectrum import response_spectrum
@@ -33,7 +33,7 @@ BEHAVIOUR = 2.0
 PERIODS = 60
 """Periods at which the spectrum of a record is looked at, up to the equivalent period."""
 
-Demand = GroundMotion | CodeSpectrum | FloorSpectrum | Callable[[float, float], float]
+Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
 
 
@@ -167,13 +167,21 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
             [m] of a spectrum.
         confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
 
+    Returns:
+        The `MechanismCheck`, which prints in a line and as a table.
+
     Raises:
         TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
+
+    Examples:
+        >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
+        >>> str(check).startswith('<MechanismCheck: starts at 0.1')
+        True
     """
     require_wall("case", case, "collapse_multiplier")
     if not isinstance(demand, GroundMotion) and not takes(demand, 2):
         raise TypeError(f"demand = {shown(demand)} is neither a GroundMotion nor a function S_De(T, xi)")
-    peak = demand.peak if isinstance(demand, GroundMotion | CodeSpectrum | FloorSpectrum) else None
+    peak = demand.peak if isinstance(demand, GroundMotion | SpectrumOfCode) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
     curve = pushover(case)
     if not math.isfinite(curve.end):
@@ -211,7 +219,7 @@ def _asked(demand: Demand, period: float, damping: float) -> float:
     if isinstance(demand, GroundMotion):
         periods = np.geomspace(min(0.05, period), max(period, SHORTEST), PERIODS)
         return float(response_spectrum(demand, periods, damping).Sd.max())
-    if isinstance(demand, CodeSpectrum | FloorSpectrum):
+    if isinstance(demand, SpectrumOfCode):
         return float(demand.displacement(period, damping))
     try:
         asked = require_real("demand(T, xi)", demand(period, damping))

@@ -74,7 +74,8 @@ class Push:
     def peak(self) -> float:
         """The largest force either way [N] or multiplier [-], of points whose force of inertia is below 5 % of it.
 
-        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry.
+        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry. Under
+        a force that grows nothing holds them back, so that no point after the first blow counts.
         """
         return float(np.abs(self.force[self._peak_at]))
 
@@ -86,8 +87,11 @@ class Push:
     @property
     def _peak_at(self) -> int:
         """The point of the peak."""
-        slow = np.abs(self.inertia) <= STRIKING * np.abs(self.force)
-        return int(np.where(slow, np.abs(self.force), -1.0).argmax())
+        borne, inertia = np.abs(self.force), np.abs(self.inertia)
+        slow = inertia <= STRIKING * borne
+        if self.unit == "-":
+            slow &= np.cumsum(inertia > STRIKING * borne.max()) == 0
+        return int(np.where(slow, borne, -1.0).argmax())
 
     def __repr__(self) -> str:
         return (
@@ -125,6 +129,9 @@ def push(
         falls_to: share of the largest force so far at which to stop [-], 0 to 1; 0 goes on to the displacement, as a
             cyclic push has to.
         start: the `end` of the answer of an earlier push.
+
+    Returns:
+        The `Push`: displacement [m] and force [N] or multiplier [-], their `peak`, and the `answer` at the end.
 
     Raises:
         TypeError, ValueError: for a value outside its range, or masonry that does not stand.

@@ -187,8 +187,16 @@ def pushover(
         points: about how many points the whole curve has, 20 to 100000. Rotations at which a tie begins to pull or to
             yield come on top.
 
+    Returns:
+        The curve, with `rotation` [rad] and `multiplier` [-], and where ties yield and break.
+
     Raises:
         ValueError: for a value outside its range, or if the contacts do not fit the case or cannot carry it.
+
+    Examples:
+        >>> curve = mr.pushover(case, contacts)
+        >>> round(float(curve.multiplier.max()), 2)
+        0.14
     """
     require_wall("case", case, "push or collapse_multiplier")
     require_kind("contacts", contacts, Contacts, type(None))

@@ -24,6 +24,8 @@ STARTS: dict[type, tuple[float, ...]] = {
     SideLaw: (0.25, -1.5, -0.5, 2.0, 0.4, 9.0),
 }
 """Where the fit of a form starts."""
+FOLDS = 10
+"""Into how many parts combinations are split to be held out."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ def well_matched(row: Mapping[str, Any]) -> bool:
     return bool(row["lowest"] + width <= row["found"] <= row["highest"] - width)
 
 
-def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int = 10) -> Regression:
+def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row]) -> Regression:
     """Fit a form to the matches that were reached, by least squares on ln xi, robust (soft L1) beyond 10 %.
 
     Predictions are held within the bounds of the search. The pairs of one combination are held out together in the
@@ -79,7 +81,6 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
     Args:
         form: `CornerLaw` or `BedLaw` for the base, `SideLaw` for the side, the paper's `PowerLaw` for either.
         tasks, rows: what was asked and what `completed` returned.
-        folds: into how many parts the combinations are split.
 
     Raises:
         ValueError: if fewer pairs were reached than the form has coefficients to fit.
@@ -95,7 +96,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
     xi = np.array([row["xi"] for _, row in reached])
     combinations = [task.combination for task, _ in reached]
     place = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
-    fold = np.array([place[combination] % folds for combination in combinations])
+    fold = np.array([place[combination] % FOLDS for combination in combinations])
     start = np.array(STARTS[form])
     bounds = BASE_BOUNDS if tasks[0].xi_base is None else SIDE_BOUNDS
     if form is PowerLaw:
@@ -114,7 +115,7 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row], folds: int 
     everything = fit(np.ones(len(xi), dtype=bool), start)
     predicted = predict(everything.x)
     unseen = np.empty_like(xi)
-    for part in range(folds):
+    for part in range(FOLDS):
         if (fold == part).any():
             unseen[fold == part] = predict(fit(fold != part, everything.x).x)[fold == part]
     variance = 2 * everything.cost / (len(xi) - len(names))

@@ -159,6 +159,9 @@ def sensitivity(
             product over the settings.
         options: those of `campaign`, such as `workers`.
 
+    Returns:
+        The `Sensitivity`: `table()`, the `range` of the answer, and what `governs` it.
+
     Raises:
         TypeError: for a build that is not a function, or settings that are not a mapping of names.
         ValueError: for a setting without values, nothing to vary, a measure that is not a column of numbers, and as

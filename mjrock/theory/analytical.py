@@ -51,12 +51,20 @@ def solve_analytical(
             evenly spaced, and the last is the end of the run.
         rest: smallest rebound that is still followed, as a share of the energy of release [-].
 
+    Returns:
+        The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, `impacts` and `peaks`.
+
     Raises:
         ValueError: for a tolerance or step out of range, a side stop from which the wall does not rebound, or a
             vertical motion that lifts the wall off its base.
     Warns:
         Implausible: if the restitution was made for another wall or another side stop.
         UserWarning: if a tie without an `ultimate` was drawn out by more than a bar or an anchor follows.
+
+    Examples:
+        >>> answer = mr.solve_analytical(case, e)
+        >>> answer.outcome.value
+        'at rest'
     """
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution)
@@ -111,7 +119,8 @@ def _require_solvable(case: Case, e: Restitution) -> None:
     for name, link in case.links.items():
         if not link.law.holds:
             raise ValueError(
-                f"rocking theory has no dampers, and {name} is one; simulate, solve_explicit and solve_compliant do"
+                f"rocking theory has links that only pull, and {name} is none; "
+                "simulate, solve_explicit and solve_compliant take it"
             )
     if case.restoring.outer.P <= 0:
         raise ValueError(

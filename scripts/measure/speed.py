@@ -114,9 +114,9 @@ def serve() -> None:
 class Version:
     """A version of the package in a process of its own."""
 
-    def __init__(self, tree: Path) -> None:
+    def __init__(self, tree: Path, script: str = __file__) -> None:
         self.environment = os.environ | {"PYTHONPATH": f"{tree}{os.pathsep}{ROOT}"}
-        command = [sys.executable, __file__, "--serve"]
+        command = [sys.executable, script, "--serve"]
         self.process = subprocess.Popen(
             command, env=self.environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )

@@ -95,6 +95,29 @@ def test_a_block_on_bonds_that_never_break_vibrates_as_on_linear_springs():
     assert 2 * math.pi / period == pytest.approx(math.sqrt(stiffness / mass), rel=1e-6)
 
 
+@pytest.mark.parametrize("base", [HUGE, None])
+def test_blocks_on_bonds_that_never_break_move_as_one_rigid_body(base):
+    """Three cubes on each other beside one block on the same base, 1e6 times as soft as the joints above it.
+
+    What differs is the compliance of the joints between, some 1e-6 of that of the base.
+    """
+    soft = 1e7
+    stiffness = {"k_n": lambda joint: soft if "ground" in joint.name else 1e6 * soft, "xi": 0.0}
+    three = column(lambda joint: base if "ground" in joint.name else HUGE, k_s=stiffness["k_n"], **stiffness)
+    ground, lowest, *_ = three.blocks
+    whole = mr.Polygon([(-0.2, 0), (0.2, 0), (0.2, 1.2), (-0.2, 1.2)], length=lowest.length, name="whole")
+    one = mr.Masonry([ground, whole], k_s=stiffness["k_n"], points=3, bond=base, **stiffness)
+    turn, h = 0.3 if base is None else 0.01, 4e-6
+    answers = [
+        mr.solve_explicit(mr.MasonryCase(masonry, 0.6, velocity=[[turn * z, 0, turn] for z in heights]), timestep=h)
+        for masonry, heights in ((three, (0.2, 0.6, 1.0)), (one, (0.6,)))
+    ]
+    assert (answers[1].opening.max() > 1e-3) == (base is None)
+    moved = [answer.pose - answer.pose[0] for answer in answers]
+    size = np.abs(moved[1][:, 0]).max(axis=0)
+    assert (np.abs(moved[0][:, 1] - moved[1][:, 0]).max(axis=0) < 5e-6 * size).all()
+
+
 @pytest.mark.parametrize("space", [False, True])
 def test_the_ledger_of_masonry_that_cracks_closes_and_names_what_bonds_took(space):
     if space:
@@ -176,3 +199,23 @@ def test_units_in_halves_have_the_mass_of_whole_ones_and_a_bond_within():
     assert len(inner) == 4
     assert all(first[:-1] == second[:-1] for first, second in (name.split("|") for name in inner))
     assert all(bond in (within, between) for bond in halved.bonds)
+
+
+def test_a_bonded_wall_that_cracks_moves_in_the_plane_as_in_space():
+    """A wall of four courses and its blocks as boxes in space, until its joints have cracked and it falls apart."""
+    options = {"k_n": 2e9, "k_s": 1e9, "points": 3, "frequency": 500.0, "bond": mr.Bond(2e3, 2.8e3, 0.05, 0.5)}
+    plane = mr.Masonry.running_bond(0.4, 0.8, (0.4, 0.2), thickness=0.2, **options)
+    boxes = []
+    for block in plane.blocks:
+        low, high = block.corners.min(axis=0), block.corners.max(axis=0)
+        size, middle = (high - low).tolist(), (0.5 * (low + high)).tolist()
+        boxes.append(
+            mr.Polyhedron.box(
+                (size[0], block.length, size[1]), (middle[0], 0, middle[1]), fixed=block.fixed, name=block.name
+            )
+        )
+    flat, deep = (shaken(one, 0.27, 9.0, timestep=2e-5) for one in (plane, mr.Masonry(boxes, **options)))
+    assert len(flat.cracked) > 3
+    assert list(flat.cracked) == list(deep.cracked)
+    gap = np.abs(deep.pose[..., [0, 2]] - flat.pose[..., :2]).max()
+    assert gap < 1e-6 * np.abs(flat.pose - flat.pose[0]).max()

@@ -120,6 +120,49 @@ def test_a_beam_that_is_thrown_over_a_sill_stays_above_it():
     assert run.stats["overlap"] < 0.01
 
 
+@pytest.mark.parametrize("seed", among(range(20), 3, 11))
+def test_random_neighbours_with_a_gap_meet_and_keep_their_momentum(seed):
+    """Any gap, size and speed, in space with a spin about the vertical, off the middle of the other."""
+    rng = np.random.default_rng(seed)
+    gap, speed, off, long = rng.uniform((1e-4, 0.5, -0.3, 0.4), (0.02, 3.0, 0.3, 1.2))
+    ground = BOX((20, 20, 1), (0, 0, -0.5), fixed=True)
+    blocks = [BOX((long, 0.5, 0.4), (-0.5 * long, 0, 0.2)), BOX((0.6, 0.5, 0.4), (0.3 + gap, off, 0.2))]
+    masonry = mr.Masonry([ground, *blocks], k_n=1e9, friction=0.0, xi=0.05)
+    thrown = (speed, 0, 0, 0, 0, rng.uniform(-0.2, 0.2))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.2, velocity=[thrown, STILL]), output_step=2e-3)
+    momentum = np.array([block.mass for block in blocks]) @ run.velocity[:, :, :2]
+    assert run.stats["overlap"] < 0.01
+    assert run.velocity[-1, 1, 0] > 0.1 * speed
+    np.testing.assert_allclose(momentum, np.tile(momentum[0], (len(momentum), 1)), atol=1e-12 * momentum[0, 0])
+
+
+@pytest.mark.parametrize("seed", among(range(20), 5, 14))
+def test_random_caps_that_hop_stay_out_of_their_pier(seed):
+    """With any yaw, spin and offset. A cap lands on its fixed pier, or beside it on the ground."""
+    rng = np.random.default_rng(seed)
+    ground, pier = BOX((20, 20, 1), (0, 0, -0.5), fixed=True), BOX((0.5, 0.4, 1.0), (0, 0, 0.5), fixed=True)
+    cap = BOX((1.2, 0.6, 0.2), (*rng.uniform(-0.1, 0.1, 2), 1.1), name="cap")
+    masonry = mr.Masonry([ground, pier, cap], k_n=1e9, friction=0.6, xi=0.3)
+    thrown = (*rng.uniform(-0.6, 0.6, 2), rng.uniform(2.0, 3.5), *rng.uniform(-0.5, 0.5, 2), rng.uniform(-1.0, 1.0))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 1.6, velocity=[thrown]), ledger=True, output_step=2e-3)
+    assert run.stats["overlap"] < 0.01
+    assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.kinetic.max()
+
+
+@pytest.mark.parametrize("seed", among(range(20), 2, 9))
+def test_random_beams_that_are_thrown_over_a_sill_stay_out_of_it(seed):
+    """Edges of a beam cross those of a sill and of its pier at any angle."""
+    rng = np.random.default_rng(seed)
+    sill, pier = BOX((0.2, 3, 1.0), (0.8, 0, 0.5), fixed=True), BOX((0.2, 0.2, 1.0), (-0.6, 0, 0.5), fixed=True)
+    ground = BOX((20, 20, 1), (0, 0, -0.5), fixed=True)
+    beam = BOX((1.8, 0.1, 0.1), (-0.6 + rng.uniform(-0.1, 0.1), 0, 1.05), name="beam")
+    masonry = mr.Masonry([ground, sill, pier, beam], k_n=1e9, friction=0.5, xi=0.3)
+    thrown = (rng.uniform(0.4, 1.4), rng.uniform(-0.3, 0.3), rng.uniform(0.8, 2.0), *rng.uniform(-0.5, 0.5, 3))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 1.2, velocity=[thrown]), ledger=True, output_step=2e-3)
+    assert run.stats["overlap"] < 0.01
+    assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.kinetic.max()
+
+
 @pytest.mark.parametrize("step", [1.5, 10.0])
 @pytest.mark.parametrize(("beyond", "falls"), [(-0.02, False), (0.02, True)])
 def test_a_block_tips_where_its_weight_passes_the_edge_of_any_step(step, beyond, falls):
@@ -129,6 +172,32 @@ def test_a_block_tips_where_its_weight_passes_the_edge_of_any_step(step, beyond,
     speed = np.sqrt(2 * 0.2 * mr.GRAVITY * (0.5 + beyond))
     run = mr.solve_explicit(mr.MasonryCase(masonry, 3.0, velocity=[(speed, 0, 0)]), output_step=5e-3)
     assert bool(run.fallen) == falls
+
+
+@pytest.mark.parametrize("k_n", [1e9, 4e9])
+def test_a_unit_that_falls_flat_overlaps_by_what_its_joint_yields(k_n):
+    """v sqrt(m / k), as a spring stops it, of its height: 1 % at 3.2 m/s on 1e9 N/m3, half of it on four times that."""
+    high, speed, drop = 0.2, 2.0, 0.05
+    masonry = mr.Masonry([GROUND, box(-0.2, 0.2, 0.0, high)], k_n=k_n, k_s=k_n, friction=0.6, xi=0.0)
+    case = mr.MasonryCase(masonry, 0.05)
+    start = np.array([[0.0, drop, 0.0]]), np.array([[0.0, -speed, 0.0]])
+    run = mr.solve_explicit(case, start=start, output_step=1.5e-4 / np.sqrt(k_n / 1e9))
+    stopped = np.sqrt(speed**2 + 2 * mr.GRAVITY * drop) * np.sqrt(2000.0 * high / k_n)
+    assert -run.pose[:, 0, 1].min() == pytest.approx(stopped, rel=0.02)
+
+
+@pytest.mark.slow
+def test_voussoirs_of_an_arch_that_falls_lie_on_its_ground():
+    """Without ground they fall on, and are named."""
+    shaken = mr.GroundMotion.sine(8.0, 1.0)
+    for ground in (True, False):
+        arch = mr.Masonry.arch(1.0, 0.2, voussoirs=5, k_n=1e9, k_s=1e9, friction=0.6, xi=0.1, ground=ground)
+        run = mr.solve_explicit(mr.MasonryCase(arch, 3.0, motion=shaken), output_step=0.01)
+        lowest = min((run.pose[-1, :, 1] + arch.centroids[arch.free, 1]).tolist())
+        assert run.fallen
+        assert run.stats["overlap"] < 0.01
+        assert (lowest > -0.2) == ground
+        assert ("Below all fixed blocks, past the edge of any ground" in run.message) != ground
 
 
 def test_a_heap_comes_to_rest():

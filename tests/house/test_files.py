@@ -170,6 +170,7 @@ READERS = {
     "from_obj": mr.Masonry.from_obj,
     "from_stl": mr.Masonry.from_stl,
     "from_compas": mr.Masonry.from_compas,
+    "from_dxf": mr.Masonry.from_dxf,
     "Store": mr.Store,
     "campaign": lambda path: mr.campaign([], path),
     "rescue": lambda path: mr.Store.rescue(path, path.with_name("new")),

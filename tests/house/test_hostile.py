@@ -293,6 +293,10 @@ CALLS = OF_NUMBERS | {
         mr.Masonry.running_bond,
         {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
     ),
+    "Masonry.shear_wall": (
+        mr.Masonry.shear_wall,
+        {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
+    ),
     "MasonryCase": (
         mr.MasonryCase,
         {
@@ -408,6 +412,7 @@ def test_every_public_entry_is_tried():
         "calibrate", "GroundMotion", "report",
         "ContactWarning", "InspectedContact", "PairContact", "PairContacts", "ManyContactParameters",
         "MeasuredContact", "SpaceJoint", "Collapse", "CodeSpectrum", "FloorSpectrum", "BONDS", "Push", "records_in",
+        "RecordSet",
     }  # fmt: skip
     tried = {name.split(".")[0].split(",")[0] for name in CALLS}
     assert set(mr.__all__) - elsewhere <= tried

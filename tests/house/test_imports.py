@@ -33,6 +33,32 @@ assert not [name for name in sys.modules if name.startswith(("numba", "scipy.opt
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
 
 
+BLOCKED = "numba", "scipy", "matplotlib", "tqdm", "filelock", "pebble", "pandas"
+
+
+def test_contacts_alone_work_where_only_mujoco_and_numpy_are_installed():
+    """A ball rebounds with half of its speed, with all other dependencies out of reach."""
+    code = f"""
+import sys
+for name in {BLOCKED}:
+    sys.modules[name] = None
+import mujoco
+from mjrock import contact_for, contacts_for, inspect_contacts, measured_contact, contact_parameters, CoulombFriction
+spec = mujoco.MjSpec.from_string('<mujoco><option timestep="1e-4" gravity="0 0 0"/><worldbody><geom name="floor" '
+    'type="plane" size="1 1 1"/><body name="ball" pos="0 0 .2"><freejoint/><geom name="ball" size=".1" mass="2"/>'
+    '</body></worldbody></mujoco>')
+contact_for(spec, "ball", "floor", k=1e5, restitution=0.5).apply(spec)
+model = spec.compile()
+assert abs(inspect_contacts(model)[0].restitution - 0.5) < 1e-3
+data = mujoco.MjData(model)
+data.qvel[2] = -1.0
+for _ in range(3000):
+    mujoco.mj_step(model, data)
+assert abs(data.qvel[2] - 0.5) < 0.01, data.qvel[2]
+"""
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
+
+
 def test_steps_import_no_optimiser():
     """What only filters, hulls and limit analysis take is imported with the first of them."""
     code = """

@@ -13,7 +13,7 @@ DEVICE, LAW = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
 OF_DEVICE = r"FrictionDamper|friction_damper"
 OF_LAW = (
     r"squeeze(:|\[|\b.*frozen)|\b(law|links|self|ties?|sprung)\.push\b|\bresisting\b|\.bearing\b"
-    r"|class Slider\b|import Slider\b|slider_event|\bpushes = "
+    r"|class Slider\b|import Slider\b|slider_event|\bpushes = |\"reach\", \"strength\""
 )
 
 

@@ -67,7 +67,9 @@ WRITES = {
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
+    "vaults": {"vaults.png", "vaults.txt"},
     "throughput": {"throughput.txt"},
+    "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},
     "inspect_contacts": {"inspect_contacts.txt"},
@@ -76,6 +78,8 @@ WRITES = {
     "sketch": {"sketch.png"},
     "first_pictures": {"effects.png", "tutorial.png"},
     "speed": {"speed.txt"},
+    "step_cost": {f"step_cost.{ending}" for ending in ("png", "csv", "txt")},
+    "step_vectors": {f"step_vectors.{ending}" for ending in ("csv", "txt")},
     "thresholds": {"thresholds.txt"},
     "calibrate": {"calibrated.toml", "calibrated_fit.png", "calibrated_residuals_base.png"}
     | {"calibrated_residuals_side.png", "calibration.csv", "calibration.sqlite", "calibration.txt"},
@@ -146,8 +150,20 @@ def main_of(name):
     return importlib.import_module(f"scripts.{SCRIPTS[name].parent.name}.{name}").main
 
 
-LONG = {"speed", "thresholds", "throughput", "calibrate", "work_precision", "validate_law", "fragility"} | {
+LONG = {
+    "speed",
+    "step_cost",
+    "step_vectors",
+    "thresholds",
+    "throughput",
+    "calibrate",
+    "work_precision",
+    "validate_law",
+    "fragility",
+} | {
     "sensitivity",
+    "step_cost",
+    "step_vectors",
     "low_stop",
     "limit_analysis",
     "fragility_coverage",

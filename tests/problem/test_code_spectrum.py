@@ -34,6 +34,17 @@ def test_the_site_of_ntc(soil, S, TC):
     assert pytest.approx(1.4 * S) == ntc(soil, topography="T4").S
 
 
+def test_values_that_another_program_has_printed():
+    """A worked example in the research notes of NOVA, an open program for frames by NTC 2018, section 5.3: a_g 0.25 g,
+    F_0 2.5, T_C* 0.30 s, ground C, T1. It prints C_C, S, the corners and S_e [g] to six digits."""
+    found = ntc("C", ag=0.25 * G, F0=2.5, Tc=0.30)
+    assert pytest.approx(1.562210, abs=1e-6) == found.TC / 0.30
+    assert pytest.approx((1.325, 0.156221, 0.468663, 2.6), abs=1e-6) == (found.S, found.TB, found.TC, found.TD)
+    T = np.array([0.0, 0.1, 0.156221, 0.468663, 1.0, 2.0, 4.0])
+    printed = [0.331250, 0.649309, 0.828125, 0.828125, 0.388111, 0.194056, 0.063068]
+    np.testing.assert_allclose(found(T) / G, printed, atol=2e-6)
+
+
 @pytest.mark.parametrize(
     ("soil", "ag", "S"),
     [("B", 0.05, 1.2), ("C", 0.05, 1.5), ("C", 0.6, 1.0), ("D", 0.05, 1.8), ("D", 0.6, 0.9), ("E", 0.05, 1.6)],

@@ -88,6 +88,20 @@ def test_an_arch():
     assert masonry.joints[0].name == "left_abutment|voussoir_0"
 
 
+def test_the_ground_of_an_arch_lies_under_its_abutments_and_is_no_neighbour_of_its_voussoirs():
+    plain, masonry = (mr.Masonry.arch(5.0, 0.75, math.radians(120), 9, ground=ground) for ground in (False, True))
+    corners = np.concatenate([block.vertices for block in plain.blocks])
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    (x, deep), (to, surface) = np.sort(np.array(masonry.blocks[-1].vertices), axis=0)[[0, -1]]
+    assert masonry.names == (*plain.names, "ground")
+    assert [joint.name for joint in masonry.joints] == [joint.name for joint in plain.joints]
+    assert surface == pytest.approx(low)
+    assert deep < low
+    assert min(left - x, to - right) >= 2 * (high - low)
+    with pytest.raises(TypeError, match="ground = 1"):
+        mr.Masonry.arch(5.0, 0.75, ground=1)
+
+
 @pytest.mark.parametrize(("apart", "joints"), [(9e-4, 1), (-9e-4, 1), (1.1e-3, 0)])
 def test_the_tolerance(apart, joints):
     blocks = [GROUND, box(0, 1, apart, 1 + apart)]

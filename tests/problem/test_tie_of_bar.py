@@ -42,6 +42,33 @@ def test_plates_and_numbers(other, strength):
     assert tie.stiffness == pytest.approx(count * 210e9 * math.pi * 0.012**2 / 8.0)
 
 
+@pytest.mark.parametrize(("plate", "name"), [(0.3, "punching"), ((0.2, 0.1), "bearing"), (1.0, "bar")])
+def test_what_governs_is_kept_and_said(plate, name):
+    tie = mr.Tie.of_bar(**BAR | {"plate": plate})
+    assert tie.governed_by == name
+    assert tie.said.endswith(f" kN ({name})")
+    assert "governed_by" not in repr(mr.Tie(6.0, 1e6))
+    assert mr.Case(mr.Block(0.5, 3.5), 0.0, 1.0, effects=(tie,)).effects == (tie,)
+    with pytest.raises(ValueError, match="governed_by of the tie = 'hope' is none of bar, punching, bearing"):
+        mr.Tie(6.0, 1e6, governed_by="hope")
+
+
+@pytest.mark.parametrize(
+    ("spacing", "strength"),
+    [
+        (0.3, 0.03e6 * 1.2 * (0.9 + 0.3 + 1.2)),
+        (1.0, 0.03e6 * 1.2 * (2.3 + 0.3 + 1.2)),
+        (1.8, 3 * 64.8e3),
+        (5.0, 3 * 64.8e3),
+    ],
+)
+def test_near_plates_punch_as_one_plate(spacing, strength):
+    """Three plates of 0.3 m side by side are a plate of 0.9 m by 0.3 m; from a + b + 2 t = 1.8 m each is alone."""
+    tie = mr.Tie.of_bar(**BAR, number=3, spacing=spacing)
+    assert (tie.strength, tie.governed_by) == (pytest.approx(strength), "punching")
+    assert tie.stiffness == pytest.approx(3 * mr.Tie.of_bar(**BAR).stiffness)
+
+
 @pytest.mark.parametrize(
     ("other", "complaint"),
     [
@@ -51,6 +78,7 @@ def test_plates_and_numbers(other, strength):
         ({"shear_strength": 0.03}, "shear_strength of the masonry = 0.03 Pa is outside"),
         ({"compressive_strength": 2.0}, "compressive_strength of the masonry = 2 Pa is outside"),
         ({"number": 0}, "number of ties = 0 is outside"),
+        ({"number": 2, "spacing": 0.25}, "spacing of the ties = 0.25 m is outside the valid range 0.3 to 1000 m"),
         ({"length": -1.0}, "length of the tie = -1 m is outside"),
     ],
 )

@@ -74,3 +74,32 @@ def test_one_factor_for_all_components():
     np.testing.assert_allclose(factors, factors[0])
     mean = np.exp(np.mean([np.log(mr.response_spectrum(motion, T).Sa) for motion in made[:2]], axis=0))
     assert np.exp(np.log(mean / SPECTRUM(T)).mean()) == pytest.approx(1.0)
+
+
+def test_a_set_is_scaled_record_by_record(tmp_path):
+    """As REXEL selects them: pairs by folder. Each pair has its own factor, and the mean lies on the target in the
+    geometric mean over the periods, but for the scatter of the records."""
+    for i in range(4):
+        for letter in "xy":
+            record = mr.GroundMotion.synthetic(1.0 + i, 8.0, seed=2 * i + (letter == "y"))
+            lines = "\n".join(f"{a:.9g}" for a in record.accel)
+            written(tmp_path / f"00{i}{letter}a.txt", lines + "\n")
+    records = mr.records_in(tmp_path, lambda path: mr.GroundMotion.from_csv(path, "m/s2", dt=0.01), "*.txt")
+    assert [len(components) for components in records.values()] == [2] * 4
+    T = np.geomspace(0.15, 2.0, 10)
+    scaled = records.scaled_to(SPECTRUM, T)
+    assert isinstance(scaled, mr.RecordSet)
+    assert list(scaled) == list(records)
+    for before, after in zip(records.values(), scaled.values(), strict=True):
+        assert after == mr.scaled_together(before, T, SPECTRUM)
+    assert scaled.first == [pair[0] for pair in scaled.values()]
+    own = [mr.response_spectrum(motion, T).Sa for motion in scaled.horizontal]
+    np.testing.assert_allclose(scaled.mean_over(SPECTRUM, T), np.mean(own, axis=0) / SPECTRUM(T))
+    assert np.exp(np.log(scaled.mean_over(SPECTRUM, T)).mean()) == pytest.approx(1.0, abs=0.1)
+
+
+def test_what_a_set_cannot_do():
+    with pytest.raises(ValueError, match="the set has no records"):
+        mr.RecordSet().mean_over(SPECTRUM, [1.0])
+    with pytest.raises(TypeError, match="spectrum"):
+        mr.RecordSet().mean_over([1.0], [1.0])

@@ -2,6 +2,7 @@
 
 import base64
 import re
+from dataclasses import replace
 from io import BytesIO
 
 import pytest
@@ -9,6 +10,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import mjrock as mr
+from mjrock.reporting.content import of_messages
 
 WALL = mr.Block.from_size(0.6, 4.2, 3.0, openings=[mr.Opening(1.0, 2.0)])
 E = mr.Restitution.from_geometry(WALL)
@@ -47,6 +49,14 @@ def test_one_page_with_all_that_it_needs(tmp_path):
         assert said in text
     assert "both polarities" not in text
     assert ANSWER.message in text.replace("&#x27;", "'")
+
+
+def test_equal_messages_are_one_line():
+    runs, names = [ANSWER] * 5, list("abcde")
+    end = ANSWER.message
+    other = replace(ANSWER, message="It falls.")
+    assert of_messages(runs[:2], names[:2]) == [f"a, b: {end}"]
+    assert of_messages([*runs[:4], other], names) == [f"4 of 5 responses: {end}", "e: It falls."]
 
 
 def test_ties_that_broke_are_told_in_one_sentence(tmp_path):

@@ -4,6 +4,7 @@ import pytest
 import mjrock as mr
 from mjrock.engine import run_warnings
 from mjrock.geometry.kinematics import gaps
+from mjrock.result.ledger import StepError, require_no_gain
 from scripts.shared.paper import FIGURE_3, K_N
 
 
@@ -55,6 +56,16 @@ def test_one_that_does_not_close_says_so(one_sided, contacts, monkeypatch):
     with pytest.warns(UserWarning, match=r"does not close: .* have no account; lower accuracy = 0.001") as said:
         mr.simulate(one_sided, contacts, ledger=True)
     assert said[0].filename == __file__  # it points at the call
+
+
+def test_a_gain_of_a_thousandth_is_the_most():
+    """The balance has fallen by 5 J before, which is no excuse for what appears afterwards."""
+    t = np.array([0.0, 1.0, 2.0])
+    require_no_gain(t, np.array([0.0, -5.0, -5.0 + 0.9e-3 * 20.0]), 20.0)
+    with pytest.raises(StepError, match=r"0\.11% of the energy") as refused:
+        require_no_gain(t, np.array([0.0, -5.0, -5.0 + 1.1e-3 * 20.0]), 20.0)
+    assert refused.value.t == 2.0
+    assert refused.value.share == pytest.approx(1.1e-3)
 
 
 def test_order_of_closure(one_sided, contacts):

@@ -129,6 +129,14 @@ def test_a_tie_that_never_comes_so_far_changes_no_digit(wall, contacts, e):
         assert left.plastic == right.plastic
 
 
+def test_a_slack_tie_pulls_nothing(wall, contacts, e):
+    case, _ = kicked(wall, brittle(wall, slack=10.0), 0.6)
+    for solve in (lambda case: mr.solve_analytical(case, e), lambda case: mr.simulate(case, contacts)):
+        tie = solve(case).ties["tie_0"]
+        assert tie.largest_force == 0
+        assert not tie.force.any()
+
+
 def test_the_next_run_of_the_same_wall_has_a_whole_tie(wall, contacts):
     """Compiled models are kept for the next run, and the state of their ties is not."""
     case, _ = kicked(wall, brittle(wall), 0.6)

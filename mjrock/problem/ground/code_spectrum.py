@@ -157,6 +157,10 @@ class FloorSpectrum:
         return float(self(0.0))
 
 
+SpectrumOfCode = CodeSpectrum | FloorSpectrum
+"""The spectrum of a code, on the ground or on a floor."""
+
+
 def code_spectrum(
     code: str,
     *,
@@ -180,11 +184,19 @@ def code_spectrum(
         topography: "T1" to "T4" of NTC 2018, with S_T at the top of the relief. EC8 takes T1 alone.
         damping: damping ratio that is taken where none is given [-], 0.005 to 0.5.
 
+    Returns:
+        The `CodeSpectrum`: called with a period [s] and a damping ratio [-] it gives the acceleration [m/s2].
+
     Raises:
         ValueError: for a code, a soil or a topography that is not known, or a value outside its range.
 
     Warns:
         Implausible: for an a_g below 0.35 m/s2, which is probably in g.
+
+    Examples:
+        >>> spectrum = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B")
+        >>> round(float(spectrum(0.3, 0.05)), 2)
+        6.0
     """
     codes = "NTC 2018", *SITE_EC8
     if not isinstance(code, str) or code not in codes:

@@ -10,19 +10,58 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import require_kind, require_path, require_text, shown
-from .code_spectrum import CodeSpectrum, FloorSpectrum
+from ...quantities import Array, require_kind, require_path, require_text, shown
+from .code_spectrum import CodeSpectrum, FloorSpectrum, SpectrumOfCode
 from .motion import GroundMotion
-from .spectrum import factor_to_spectrum
+from .spectrum import factor_to_spectrum, response_spectrum
 
 COMPONENTS = ("ENZ", "XYZ", "LTV", "XYV"), ("12Z", "123")
 """Letters that tell the components of a record apart in the names of its files: two horizontal ones, the vertical. The
 numbers come second, as they tell stations apart too."""
 
 
+class RecordSet(dict[str, tuple[GroundMotion, ...]]):
+    """Records by name: the components of each, the horizontal ones first, a vertical one last where there is one."""
+
+    @property
+    def horizontal(self) -> list[GroundMotion]:
+        """The horizontal components of all records, at most two of each."""
+        return [motion for components in self.values() for motion in components[:2]]
+
+    @property
+    def first(self) -> list[GroundMotion]:
+        """The first component of each record."""
+        return [components[0] for components in self.values()]
+
+    def scaled_to(self, spectrum: ArrayLike | SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> RecordSet:
+        """The set with each record scaled to a spectrum, all components of a record by one factor.
+
+        Args:
+            spectrum: of a code, or pseudo-accelerations at the periods [m/s2].
+            periods, damping: as `scaled_together` takes them.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or a motion at rest.
+        """
+        scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
+        return RecordSet(scaled)
+
+    def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
+        """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or a set without records.
+        """
+        require_kind("spectrum", spectrum, CodeSpectrum, FloorSpectrum)
+        if not self:
+            raise ValueError("the set has no records")
+        found = [response_spectrum(motion, periods, damping) for motion in self.horizontal]
+        return np.asarray(np.mean([one.Sa for one in found], axis=0) / spectrum(found[0].period, damping))
+
+
 def records_in(
     folder: str | PathLike[str], read: Callable[[Path], GroundMotion] = GroundMotion.from_esm, pattern: str = "*"
-) -> dict[str, tuple[GroundMotion, ...]]:
+) -> RecordSet:
     """The records of a folder, as data bases and REXEL write them: a file for each component.
 
     The names of the files of one record differ in one letter alone, E, N and Z, X, Y and Z, or 1, 2 and 3. The two
@@ -35,7 +74,8 @@ def records_in(
         pattern: which files, such as "*.ASC".
 
     Returns:
-        The components of each record, by the name of its files with ? in place of the letter, in order.
+        The components of each record, by the name of its files with ? in place of the letter, in order. The set has
+        `scaled_to`, which scales it to a spectrum.
 
     Raises:
         OSError: if the folder cannot be read.
@@ -47,13 +87,13 @@ def records_in(
     names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
     if not names:
         raise ValueError(f"{folder} has no file that fits the pattern {shown(pattern)}")
-    records: dict[str, tuple[GroundMotion, ...]] = {}
+    records = RecordSet()
     for key, members in _grouped(names).items():
         motions = tuple(read(files[name]) for name in members)
         if len({motion.header.get("STATION_CODE") for motion in motions}) == 1:
             records[key] = motions
         else:
-            records |= {name: (motion,) for name, motion in zip(members, motions, strict=True)}
+            records.update({name: (motion,) for name, motion in zip(members, motions, strict=True)})
     return records
 
 
@@ -91,7 +131,7 @@ def _together(names: Sequence[str], kinds: Sequence[str]) -> dict[str, list[str]
 def scaled_together(
     motions: Sequence[GroundMotion],
     periods: ArrayLike,
-    target: ArrayLike | CodeSpectrum | FloorSpectrum,
+    target: ArrayLike | SpectrumOfCode,
     damping: float = 0.05,
 ) -> tuple[GroundMotion, ...]:
     """The components of a record scaled by one factor to a spectrum, a vertical one by the same.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, require_kind, require_reals, require_row, require_within
-from .code_spectrum import CodeSpectrum, FloorSpectrum
+from .code_spectrum import SpectrumOfCode
 from .motion import GroundMotion
 from .oscillator import LONGEST, SHORTEST, displacement, steps_of
 
@@ -94,7 +94,7 @@ def scaled_to_sa(motion: GroundMotion, period: float, sa: float, damping: float 
 def scaled_to_spectrum(
     motion: GroundMotion,
     periods: ArrayLike,
-    target: ArrayLike | CodeSpectrum | FloorSpectrum,
+    target: ArrayLike | SpectrumOfCode,
     damping: float = 0.05,
 ) -> GroundMotion:
     """The motion scaled so that the geometric mean of its Sa over that of a target spectrum is one.
@@ -115,11 +115,11 @@ def scaled_to_spectrum(
 
 
 def factor_to_spectrum(
-    motion: GroundMotion, periods: ArrayLike, target: ArrayLike | CodeSpectrum | FloorSpectrum, damping: float
+    motion: GroundMotion, periods: ArrayLike, target: ArrayLike | SpectrumOfCode, damping: float
 ) -> float:
     """The factor of `scaled_to_spectrum` [-]."""
     spectrum = response_spectrum(motion, periods, damping)
-    if isinstance(target, CodeSpectrum | FloorSpectrum):
+    if isinstance(target, SpectrumOfCode):
         target = target(spectrum.period, damping)
     asked = require_row("target", target, "pseudo-acceleration [m/s2]")
     for value in asked:

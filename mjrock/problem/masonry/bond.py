@@ -31,6 +31,11 @@ class Bond:
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> bond = mr.Bond(tension=0.2e6, cohesion=0.3e6, opening_energy=18.0, slip_energy=125.0)
+        >>> len(mr.Masonry.column(0.5, 2.0, 4, k_s=5e9, points=3, bond=bond).bonds)
+        4
     """
 
     tension: float

@@ -26,6 +26,8 @@ BEYOND = 2.0
 """How far the ground reaches beyond what stands on it, over the height of that [-]: what falls over lies on it."""
 SMALLEST_PIECE = 0.1
 """Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
+DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
+"""Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
 MOST_BLOCKS = 5000
 """Most blocks of a wall."""
 
@@ -38,11 +40,18 @@ def rectangle(
     return Polygon(corners, density=density, length=length, fixed=fixed, name=name)
 
 
-def ground_under(left: float, right: float, height: float, length: float) -> Polygon:
-    """Fixed ground with its surface at z = 0, under what stands on it between two x, of a height [m]."""
+def ground_under(left: float, right: float, height: float, length: float, level: float = 0.0) -> Polygon:
+    """Fixed ground with its surface at a level [m], under what stands on it between two x, of a height [m]."""
     wide = right - left
     beyond = max(BEYOND * height, 0.5 * wide)
-    return rectangle(left - beyond, right + beyond, -DEEP * wide, 0.0, 2000.0, length, True, "ground")
+    return rectangle(left - beyond, right + beyond, level - DEEP * wide, level, 2000.0, length, True, "ground")
+
+
+def ground_below_all(blocks: Sequence[Polygon]) -> Polygon:
+    """Fixed ground with its surface at the lowest point of some blocks, see `ground_under`."""
+    corners = np.concatenate([block.corners for block in blocks])
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    return ground_under(left, right, high - low, max(block.length for block in blocks), low)
 
 
 def stacked(blocks: Sequence[Block], ground: bool) -> list[Polygon]:
@@ -162,3 +171,13 @@ def bonded_wall(
                 parts = {f"{name}a": (left, middle), f"{name}b": (middle, right)}
             polygons += [rectangle(*ends, *level, density, thickness, False, part) for part, ends in parts.items()]
     return polygons
+
+
+def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
+    """Units of a wall between a base and a beam, both fixed, see `Masonry.shear_wall`."""
+    corners = np.concatenate([unit.corners for unit in units])
+    (left, low), (right, high) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    deep, beyond, thickness = DEEP_BEAM * (right - left), BEYOND_BEAM * (right - left), units[0].length
+    base = rectangle(left - beyond, right + beyond, low - deep, low, 2000.0, thickness, True, "base")
+    beam = rectangle(left - beyond, right + beyond, high, high + deep, 2000.0, thickness, True, "beam")
+    return [base, *units, beam]

@@ -84,9 +84,17 @@ def collapse_multiplier(
             [N], or with the moment about it, positive where it turns the top to the right [N m], shape (2,) or (3,); in
             space forces along x, y and z, or with three moments, shape (3,) or (6,).
 
+    Returns:
+        The `Collapse`: `multiplier` [-], and the mechanism and the forces of the joints at it.
+
     Raises:
         ValueError: for masonry that falls under its weight, with the names of the blocks, a direction or a load out of
             range, or if no state without dilatancy is found.
+
+    Examples:
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
+        >>> round(float(mr.collapse_multiplier(arch).multiplier), 2)
+        0.23
     """
     require_kind("masonry", masonry, Masonry)
     dilates = require_flag("associated", associated)

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ...quantities import require_increasing, require_row, require_within, shown
+from ...quantities import Array, require_increasing, require_row, require_within, shown
 
 LONGEST = 1e6
 """Latest time of a history [s]."""
 
 History = tuple[tuple[float, ...], tuple[float, ...]]
 """Times [s] and values."""
+
+
+def require_as_many(name: str, rows: Mapping[str, Array]) -> None:
+    """Raise ValueError with the name unless these rows have as many values, see `require_row`."""
+    lengths = [len(row) for row in rows.values()]
+    if len(set(lengths)) > 1:
+        counts = f"{', '.join(map(str, lengths[:-1]))} and {lengths[-1]}"
+        raise ValueError(f"{name}: {', '.join(rows)} have {counts} values; give as many")
 
 
 def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: bool = False) -> History:
@@ -33,8 +42,7 @@ def history_of(name: str, given: Any, largest: float, unit: str, *, from_zero: b
         raise TypeError(f"{name} = {shown(given)} is not (t, values), two rows of numbers")
     t = require_increasing(f"{name}, t", given[0], "time", LONGEST, f"0 to {LONGEST:g} s")
     values = require_row(f"{name}, values", given[1], "number")
-    if len(t) != len(values):
-        raise ValueError(f"{name}: t and values have {len(t)} and {len(values)} numbers; give as many")
+    require_as_many(name, {"t": t, "values": values})
     if t[0] != 0:
         raise ValueError(f"{name}: t begins at {t[0]:g} s; the valid start is 0 s")
     if from_zero and values[0] != 0:

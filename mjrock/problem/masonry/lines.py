@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, csr_array, vstack
+from scipy.sparse import block_diag, coo_array, csr_array, vstack
 
 from ...geometry.convex import spread
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
@@ -172,6 +172,6 @@ def masses_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[Array, csr_array 
     """
     solids = [block for block in blocks if isinstance(block, Polyhedron) and not block.fixed]
     if solids:
-        axes = csr_array(block_diag([part for block in solids for part in (np.eye(3), block.principal[1])]))
+        axes = csr_array(block_diag([coo_array(part) for block in solids for part in (np.eye(3), block.principal[1])]))
         return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), axes
     return np.array([(block.mass, block.mass, block.inertia) for block in blocks if not block.fixed]).ravel(), None

@@ -38,10 +38,11 @@ from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
-from .builders import MOST_BLOCKS, arch_of, bonded_wall, side_of, stacked
+from .builders import MOST_BLOCKS, arch_of, between_beams, bonded_wall, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
 from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
+from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
@@ -51,6 +52,7 @@ from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
+from .vaults import Span, barrel_of, bridge_of
 
 AnyPath = str | PathLike[str]
 FAR = 30.0
@@ -111,6 +113,11 @@ class Masonry:
     Warns:
         Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
             so large or small that they are probably not in m, and for faces that rounded vertices have split.
+
+    Examples:
+        >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
+        >>> len(arch.blocks), len(arch.joints)
+        (19, 18)
     """
 
     blocks: Sequence[Polygon | Polyhedron]
@@ -364,6 +371,7 @@ class Masonry:
         *,
         density: float = 2000.0,
         length: float = 1.0,
+        ground: bool = False,
         **options: Any,
     ) -> Self:
         """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
@@ -375,12 +383,78 @@ class Masonry:
             voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
             density: mass density [kg/m3], 100 to 30000.
             length: length out of the plane [m], 1e-3 to 1000.
+            ground: whether fixed ground lies under the lowest point of the abutments, two heights beyond them. Without
+                it voussoirs that leave the arch fall on, and explicit steps name them.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            TypeError, ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        blocks = arch_of(radius, thickness, span_angle, voussoirs, density, length)
+        return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
+
+    @classmethod
+    def bridge(
+        cls,
+        radius: float,
+        thickness: float,
+        span_angle: float = math.pi,
+        voussoirs: int = 17,
+        *,
+        spans: int = 1,
+        pier_width: float,
+        pier_height: float,
+        abutments: bool = True,
+        density: float = 2000.0,
+        length: float = 1.0,
+        **options: Any,
+    ) -> Self:
+        """Equal arches side by side on piers: a bridge of several spans, or an arch on buttresses.
+
+        Args:
+            radius, thickness, span_angle, voussoirs: of each arch, as of `arch`.
+            spans: how many arches, 1 to 50. Voussoirs are `span_0_voussoir_0` and so on, of one span `voussoir_0`.
+            pier_width: between the springings of two arches [m], at least twice the width of a springing, once of one
+                span. A pier is one block, `pier_1` that between the first two arches.
+            pier_height: from the ground up to the springings [m], 0.01 to 1000.
+            abutments: whether the outer arches end on fixed abutments; otherwise on piers of the same width.
+            density: mass density [kg/m3], 100 to 30000.
+            length: length out of the plane [m], 1e-3 to 1000.
             options: further arguments of `Masonry`.
 
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        return cls(arch_of(radius, thickness, span_angle, voussoirs, density, length), **options)
+        arch = Span(radius, thickness, span_angle, voussoirs)
+        return cls(bridge_of(spans, arch, (pier_width, pier_height), abutments, density, length), **options)
+
+    @classmethod
+    def barrel_vault(
+        cls,
+        radius: float,
+        thickness: float,
+        length: float,
+        unit: float,
+        span_angle: float = math.pi,
+        courses: int = 17,
+        *,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A barrel vault in space between two fixed abutments, its courses in running bond along y.
+
+        Args:
+            radius, thickness, span_angle: of its section, as of `arch`.
+            length: along y [m], 0.01 to 1000.
+            unit: length of a voussoir [m], 0.01 to the length; units are made to fit.
+            courses: voussoirs of the section, 1 to 1000. `voussoir_2_0` is the first of the third course.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(barrel_of(Span(radius, thickness, span_angle, courses), length, unit, density), **options)
 
     @classmethod
     def running_bond(
@@ -409,10 +483,40 @@ class Masonry:
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        require_kind("halves", halves, Bond, type(None))
-        if halves is not None:
-            options["bond"] = Halved(options.get("bond"), halves)
+        options = _halved(halves, options)
         return cls(bonded_wall(length, height, unit, thickness, density, halves is not None), **options)
+
+    @classmethod
+    def shear_wall(
+        cls,
+        length: float,
+        height: float,
+        unit: tuple[float, float],
+        thickness: float = 1.0,
+        density: float = 2000.0,
+        *,
+        halves: Bond | None = None,
+        **options: Any,
+    ) -> Self:
+        """A wall in running bond between a fixed base and a loading beam, as laboratories press and shear it.
+
+        Args:
+            length, height, unit, thickness, density, halves: as of `running_bond`.
+            options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond`, and "beam".
+                Base and beam are fixed and reach a fifth of the length beyond the wall. The case leads the beam by
+                `supports={"beam": (t, dx, dz)}`; it does not turn: dz presses the wall and dx shears it.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+
+        Examples:
+            >>> wall = mr.Masonry.shear_wall(0.8, 0.4, (0.2, 0.1), thickness=0.1)
+            >>> wall.names[0], wall.names[-1], len(wall.free)
+            ('base', 'beam', 18)
+        """
+        options = _halved(halves, options)
+        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
+        return cls(between_beams(wall[1:]), **options)
 
     @classmethod
     def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:
@@ -595,6 +699,49 @@ class Masonry:
         """
         return cls._read(read_compas, path, fixed, ground, density, scale, options)
 
+    @classmethod
+    def from_dxf(
+        cls,
+        path: AnyPath,
+        fixed: Sequence[str] = (),
+        *,
+        ground: bool = False,
+        density: OfLayer = 2000.0,
+        length: OfLayer = 1.0,
+        scale: float | None = None,
+        **options: Any,
+    ) -> Self:
+        """Blocks of a drawing in DXF: its closed polylines, seen from the front. Needs `pip install 'mjrock[dxf]'`.
+
+        x of the drawing is x, and y points upwards. A block has the name of its layer and a number, `stone_0`, by which
+        functions of the joint know it. Inserted blocks of the drawing are taken too, and all else is left out.
+
+        Args:
+            path: of the file.
+            fixed: layers, and names of blocks, that are fixed.
+            ground: whether fixed ground is put under the lowest point.
+            density: mass density [kg/m3], 100 to 30000; or one for each layer, {"stone": 2400.0, "brick": 1800.0}.
+            length: out of the plane [m], 1e-3 to 1000, or one for each layer.
+            scale: length of a unit of the drawing [m], 1e-6 to 1e3; None takes what its header says, or m.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ImportError: if ezdxf is missing.
+            ValueError: if the file is not valid, for a polyline that is open, has arcs or is not convex, or a block
+                that touches no other; the message names it. Or as `Masonry` does.
+        """
+        fixed, path = _names(fixed), require_path("path", path)
+        ground = require_flag("ground", ground)
+        outlines, unit = read_dxf(path)
+        unit = unit if scale is None else require_within("scale", scale, 1e-6, 1e3, "m")
+        try:
+            blocks = polygons_of(outlines, fixed, density, length, unit)
+            if ground:
+                blocks.insert(0, ground_below_all(blocks))
+            return cls(blocks, **options)._touching()
+        except ValueError as error:
+            raise ValueError(f"path = {path}: {error}") from None
+
     def to_obj(self, path: AnyPath) -> Path:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
 
@@ -625,10 +772,7 @@ class Masonry:
         options: dict[str, Any],
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file."""
-        if not isinstance(fixed, list | tuple):
-            raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
-        for name in fixed:
-            require_text("fixed", name)
+        fixed = _names(fixed)
         density = require_within("density", density, 100.0, 3e4, "kg/m3")
         scale = require_within("scale", scale, 1e-6, 1e3, "m")
         ground, path = require_flag("ground", ground), require_path("path", path)
@@ -638,18 +782,16 @@ class Masonry:
             if ground:
                 corners = np.concatenate([block.corners for block in blocks])
                 blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
-            masonry = cls(blocks, **options)
-            masonry._require_touching()
+            return cls(blocks, **options)._touching()
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
-        return masonry
 
     def _require_space(self) -> None:
         if not self.in_space:
             raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
 
-    def _require_touching(self) -> None:
-        """Raise a ValueError with the names of the blocks that are not fixed and have no joint, and the nearest gap."""
+    def _touching(self) -> Self:
+        """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap."""
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]
         if loose:
@@ -662,3 +804,19 @@ class Masonry:
                 f"{self.tolerance:g} m; between the bounds of {self.names[i]} and {self.names[int(gaps.argmin())]} "
                 f"there are {gaps.min():.3g} m"
             )
+        return self
+
+
+def _halved(halves: Bond | None, options: dict[str, Any]) -> dict[str, Any]:
+    """Arguments of masonry whose units are divided by a bond, or not."""
+    require_kind("halves", halves, Bond, type(None))
+    return options if halves is None else options | {"bond": Halved(options.get("bond"), halves)}
+
+
+def _names(fixed: Sequence[str]) -> Sequence[str]:
+    """Names of what is fixed, checked."""
+    if not isinstance(fixed, list | tuple):
+        raise TypeError(f"fixed = {shown(fixed)} is not a list of names")
+    for name in fixed:
+        require_text("fixed", name)
+    return fixed

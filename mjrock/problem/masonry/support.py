@@ -10,6 +10,7 @@ import numpy as np
 
 from ...quantities import Array, require_kind, require_row, shown
 from ..wall.in_space import LATER
+from .histories import require_as_many
 from .masonry import Masonry
 
 FARTHEST = 100.0
@@ -68,10 +69,7 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
             raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted}), which masonry {where} takes")
         pairs = zip(labels, histories, strict=True)
         rows = {label: require_row(f"supports, {name}, {label}", values, "number") for label, values in pairs}
-        lengths = [len(row) for row in rows.values()]
-        if len(set(lengths)) > 1:
-            counts = f"{', '.join(map(str, lengths[:-1]))} and {lengths[-1]}"
-            raise ValueError(f"supports, {name}: {wanted} have {counts} values; give as many")
+        require_as_many(f"supports, {name}", rows)
         if not (np.diff(rows["t"]) > 0).all():
             raise ValueError(f"supports, {name}: t does not increase")
         far = max(float(np.abs(rows[label]).max()) for label in labels[1:])

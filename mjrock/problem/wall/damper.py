@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from ...quantities import keep, require_within
 from .effect import Anchored, LinkLaw
-from .in_space import LATER, Point, keep_place
+from .in_space import IN_SPACE, Point, keep_place
 
 
 @dataclass(frozen=True, repr=False)
@@ -28,6 +28,11 @@ class Damper(Anchored):
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> damper = mr.Damper(height=4.0, c=2e4)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(damper,)).effects[0].c
+        20000.0
     """
 
     label: ClassVar[str] = "damper"
@@ -38,9 +43,9 @@ class Damper(Anchored):
     c: float = None  # type: ignore[assignment]
     length: float = 5.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "damper")

@@ -16,7 +16,7 @@ from ...quantities import keep, require_within, shown
 from .damper import Damper
 from .effect import Anchored, Effect
 from .friction_damper import FrictionDamper
-from .in_space import HIGHEST, LATER, Point, keep_place, point_or_none, written
+from .in_space import HIGHEST, IN_SPACE, Point, keep_place, point_or_none, written
 from .tie import Tie
 
 
@@ -33,6 +33,11 @@ class Thrust(Effect):
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> push = mr.Thrust(height=4.0, force=2e3)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(push,)).effects[0].force
+        2000.0
     """
 
     label: ClassVar[str] = "thrust"
@@ -40,8 +45,8 @@ class Thrust(Effect):
     height: float = None  # type: ignore[assignment]
     force: float = None  # type: ignore[assignment]
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    direction: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         if (given := point_or_none("direction of the thrust", self.direction)) is not None:
@@ -80,6 +85,11 @@ class Load(Effect):
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> roof = mr.Load(force=5e3, height=4.2, offset=0.1)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(roof,)).effects[0].force
+        5000.0
     """
 
     label: ClassVar[str] = "load"
@@ -88,7 +98,7 @@ class Load(Effect):
     height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "load")
@@ -131,7 +141,7 @@ class AddedMass(Effect):
     height: float = None  # type: ignore[assignment]
     offset: float = 0.0
     block: int = 0
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
         keep_place(self, "added mass")

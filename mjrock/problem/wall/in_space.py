@@ -19,6 +19,8 @@ FARTHEST = 1e4
 """Largest coordinate of a point [m]."""
 LATER = {"later": True}
 """Metadata of a field that came later. It is given by keyword. Fingerprints leave it out while it has its default."""
+IN_SPACE = {**LATER, "in space": True}
+"""Metadata of such a field of an effect that only masonry in space takes."""
 
 
 def written(effect: Any) -> str:
@@ -75,6 +77,6 @@ def _height(kind: str, height: float | None, at: Point | None) -> float:
 def require_in_plane(name: str, effect: Any, but: str = "") -> None:
     """Raise a ValueError that names the field, if an effect has one that only masonry in space takes, `but` for one."""
     for entry in fields(effect):
-        if entry.metadata.get("later") and entry.name != but and getattr(effect, entry.name) is not None:
+        if entry.metadata.get("in space") and entry.name != but and getattr(effect, entry.name) is not None:
             given = getattr(effect, entry.name)
             raise ValueError(f"{name}, {entry.name} = {given} is for masonry in space; in the plane give height")

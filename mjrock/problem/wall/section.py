@@ -42,6 +42,11 @@ class Opening:
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> door = mr.Opening(width=1.2, height=2.1)
+        >>> round(mr.Block.from_size(0.55, 9.0, 6.0, openings=[door]).mass)
+        56628
     """
 
     width: float
@@ -86,6 +91,11 @@ class Gable:
 
     Raises:
         ValueError: for a value outside its range.
+
+    Examples:
+        >>> gable = mr.Gable(height=2.0)
+        >>> round(mr.Block.from_size(0.55, 9.0, 6.0, gable=gable).mass)
+        52800
     """
 
     height: float

@@ -8,7 +8,10 @@ from typing import Any, ClassVar
 
 from ...quantities import keep, require_array, require_real, require_whole, require_within
 from .effect import Anchored, LinkLaw
-from .in_space import HIGHEST, LATER, Point, keep_place
+from .in_space import HIGHEST, IN_SPACE, LATER, Point, keep_place
+
+GOVERNING = ("bar", "punching", "bearing")
+"""What the strength of a tie with an anchor plate may be that of."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,9 +36,16 @@ class Tie(Anchored):
         anchor: in space, its other end at rest [m]. None is `length` behind the point, as in the plane.
         anchor_block: of masonry, the block that the other end is fixed to and moves with; None is the ground. In the
             plane the end lies `length` to the left.
+        governed_by: what its strength is that of, "bar", "punching" or "bearing", for sketch and report; `of_bar` sets
+            it. None does not say.
 
     Raises:
         ValueError: for a value outside its range, or an `ultimate` without a finite strength.
+
+    Examples:
+        >>> tie = mr.Tie(height=3.8, stiffness=20e6, strength=40e3)
+        >>> mr.Case(wall, 0.0, 1.0, effects=(tie,)).effects[0].strength
+        40000.0
     """
 
     label: ClassVar[str] = "tie"
@@ -48,9 +58,10 @@ class Tie(Anchored):
     anchor_height: float | None = None
     block: int = 0
     ultimate: float | None = None
-    at: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor: Point | None = field(default=None, kw_only=True, metadata=LATER)
-    anchor_block: int | None = field(default=None, kw_only=True, metadata=LATER)
+    at: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    anchor: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    anchor_block: int | None = field(default=None, kw_only=True, metadata=IN_SPACE)
+    governed_by: str | None = field(default=None, kw_only=True, metadata=LATER)
 
     def __post_init__(self) -> None:
         keep_place(self, "tie")
@@ -65,6 +76,8 @@ class Tie(Anchored):
             raise ValueError(
                 f"strength of the tie = {self.strength:g} N is outside the valid range, which is above 0 N"
             )
+        if self.governed_by is not None and not (isinstance(self.governed_by, str) and self.governed_by in GOVERNING):
+            raise ValueError(f"governed_by of the tie = {self.governed_by!r} is none of {', '.join(GOVERNING)}")
         if self.anchor_height is not None:
             anchored = require_within("height of the anchor", self.anchor_height, -HIGHEST, HIGHEST, "m")
             keep(self, anchor_height=anchored)
@@ -90,14 +103,16 @@ class Tie(Anchored):
         compressive_strength: float,
         elastic_modulus: float = 210e9,
         number: int = 1,
+        spacing: float | None = None,
         **options: Any,
     ) -> Tie:
         """Ties of round steel bars with anchor plates on a wall, from what is known of them.
 
-        The stiffness is E A / L. The strength is the least of three [N]: that of the bar, f_y A; that against punching,
-        f_v0 2 t (a + b + 2 t), of a prism of masonry whose sides run outwards at 45 degrees from the plate, cut at half
-        the thickness t; and that of the masonry under the plate, f_m a b. `strengths_of_bar` has all three. `ultimate`
-        is not known from these: give it for bars that break or pull through.
+        The stiffness is n E A / L. The strength is the least of three [N], and `governed_by` names it: that of the
+        bars, n f_y A; that against punching, n f_v0 2 t (a + b + 2 t), of prisms of masonry whose sides run outwards
+        at 45 degrees from the plate, cut at half the thickness t; and that of the masonry under the plates, n f_m a b.
+        Plates in a row at the `spacing` s may punch as one plate of (n - 1) s + a by b instead, where that is less.
+        `strengths_of_bar` has all three. `ultimate` is not known from these. No clause: usual practice of plates.
 
         Args:
             height: where they hold the wall [m].
@@ -109,18 +124,21 @@ class Tie(Anchored):
             shear_strength: f_v0 of the masonry [Pa], 1e3 to 5e6.
             compressive_strength: f_m of the masonry [Pa], 1e5 to 1e8.
             elastic_modulus: E of the steel [Pa], 5e10 to 3e11.
-            number: of equal ties at this height, 1 to 1000.
+            number: n of equal ties at this height, 1 to 1000.
+            spacing: s of several ties between centres, along the side a [m], from a to 1000; None is far apart.
             options: other fields of `Tie`, such as `slack` and `ultimate`.
 
         Raises:
             TypeError, ValueError: for a value outside its range.
         """
-        strengths = strengths_of_bar(diameter, yield_stress, plate, thickness, shear_strength, compressive_strength)
+        masonry = (thickness, shear_strength, compressive_strength)
+        strengths = strengths_of_bar(diameter, yield_stress, plate, *masonry, number=number, spacing=spacing)
         length = require_within("length of the tie", length, 0.01, 1000.0, "m")
         count = require_whole("number of ties", number, 1, 1000)
         E = require_within("elastic_modulus of the bar", elastic_modulus, 5e10, 3e11, "Pa")
         stiffness = count * E * area_of_bar(diameter) / length
-        return cls(height, stiffness, length=length, strength=count * min(strengths.values()), **options)
+        least = min(strengths, key=lambda name: strengths[name])
+        return cls(height, stiffness, length=length, strength=strengths[least], governed_by=least, **options)
 
     @property
     def rise(self) -> float:
@@ -154,6 +172,8 @@ class Tie(Anchored):
         said += f"k = {self.stiffness / 1e6:g} kN/mm, slack {1e3 * self.slack:g} mm"
         if self.strength < math.inf:
             said += f",\nyields at {self.strength / 1e3:g} kN"
+        if self.governed_by is not None:
+            said += f" ({self.governed_by})"
         return said if self.ultimate is None else f"{said}, breaks at {1e3 * self.ultimate:g} mm"
 
 
@@ -169,8 +189,11 @@ def strengths_of_bar(
     thickness: float,
     shear_strength: float,
     compressive_strength: float,
+    *,
+    number: int = 1,
+    spacing: float | None = None,
 ) -> dict[str, float]:
-    """Strength of one tie by what gives way, see `Tie.of_bar`: its bar, punching and bearing of the masonry [N]."""
+    """Strength of equal ties by what gives way, see `Tie.of_bar`: bars, punching and bearing of the masonry [N]."""
     steel = require_within("yield_stress of the bar", yield_stress, 50e6, 2e9, "Pa")
     a, b = (plate, plate) if isinstance(plate, int | float) else require_array("plate", plate, (2,)).tolist()
     for side in (a, b):
@@ -178,8 +201,11 @@ def strengths_of_bar(
     t = require_within("thickness of the wall", thickness, 0.05, 10.0, "m")
     shear = require_within("shear_strength of the masonry", shear_strength, 1e3, 5e6, "Pa")
     pressed = require_within("compressive_strength of the masonry", compressive_strength, 1e5, 1e8, "Pa")
-    return {
-        "bar": steel * area_of_bar(diameter),
-        "punching": shear * 2 * t * (a + b + 2 * t),
-        "bearing": pressed * a * b,
-    }
+    n = require_whole("number of ties", number, 1, 1000)
+    around = a + b + 2 * t
+    punched = n * around
+    if spacing is not None:
+        apart = require_within("spacing of the ties", spacing, a, 1000.0, "m")
+        punched = min(punched, around + (n - 1) * apart)
+    strengths = (n * steel * area_of_bar(diameter), shear * 2 * t * punched, n * pressed * a * b)
+    return dict(zip(GOVERNING, strengths, strict=True))

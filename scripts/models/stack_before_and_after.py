@@ -1,0 +1,103 @@
+"""A heavy stone on four light ones in MuJoCo, with its default contacts and with contacts in N/m: a moving picture.
+
+    python scripts/models/stack_before_and_after.py --out docs/figures
+
+Prints by how much the stones lie inside each other at the end.
+"""
+
+from __future__ import annotations
+
+import itertools
+import sys
+import warnings
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+import mjrock as mr
+from mjrock.quantities import Array
+from scripts.shared import cli
+
+HALF = np.array([0.15, 0.1, 0.05])
+"""Half extents of a stone [m]."""
+LIGHT, HEAVY = 1.5, 300.0
+"""Masses [kg]."""
+COUNT = 5
+DURATION, FRAME = 1.5, 0.02
+"""[s]"""
+APART = 0.8
+"""Distance of the two stacks in the picture [m]."""
+DROP, HIGHEST = 0.005, np.arange(COUNT) == COUNT - 1
+"""Height from which the highest stone falls [m]."""
+
+
+def stack() -> mujoco.MjSpec:
+    """Stones one on the other, the heavy one on top, which falls by 5 mm."""
+    masses = [LIGHT] * (COUNT - 1) + [HEAVY]
+    size = " ".join(map(str, HALF))
+    bodies = "".join(
+        f'<body pos="0 0 {HALF[2] * (2 * i + 1) + DROP * HIGHEST[i]}"><freejoint/>'
+        f'<geom name="stone{i}" type="box" size="{size}" mass="{mass}"/></body>'
+        for i, mass in enumerate(masses)
+    )
+    return mujoco.MjSpec.from_string(
+        f"""<mujoco><option timestep="2e-4"/><worldbody><geom name="floor" type="plane" size="2 2 1"/>{bodies}
+        </worldbody></mujoco>"""
+    )
+
+
+def after(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """The same stack with contacts of 1e6 N/m and 1e4 N s/m at each of four points."""
+    names = ["floor", *(f"stone{i}" for i in range(COUNT))]
+    joint = {"k": 1e6, "c": 1e4, "friction": 0.6}
+    warnings.simplefilter("ignore", mr.ContactWarning)  # of the restitution, which dashpots so strong leave near zero
+    mr.contacts_for(spec, {(above, below): joint for below, above in itertools.pairwise(names)}).apply(spec)
+    return spec.compile()
+
+
+def followed(model: mujoco.MjModel) -> tuple[Array, Array]:
+    """Times [s] and pose x, z, theta of every stone from where it is drawn, shape (n, stones, 3)."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    rest = data.xipos[1:].copy()
+    times, poses = [], []
+    for frame in range(round(DURATION / FRAME) + 1):
+        while data.time < frame * FRAME - 1e-9:
+            mujoco.mj_step(model, data)
+        turn = np.arctan2(data.xmat[1:, 2], data.xmat[1:, 8])
+        moved = data.xipos[1:] - rest
+        times.append(data.time)
+        poses.append(np.column_stack([moved[:, 0], moved[:, 2], turn]))
+    return np.array(times), np.array(poses)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Draw both."""
+    out = cli.folder(cli.parser(__doc__, "out/stack_before_and_after").parse_args(argv).out)
+    films = [followed(stack().compile()), followed(after(stack()))]
+    lines = []
+    for name, (_, poses) in zip(("default contacts", "contacts of 1e6 N/m"), films, strict=True):
+        sunk = -1000 * (poses[-1, :, 1] + DROP * HIGHEST)
+        lines.append(f"{name}: the stones have sunk by {', '.join(f'{depth:.2f}' for depth in sunk)} mm")
+    box = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * HALF[[0, 2]]
+    rests = [(side * APART / 2, HALF[2] * (2 * i + 1)) for side in (-1, 1) for i in range(COUNT)]
+    poses = np.concatenate([poses for _, poses in films], axis=1)
+    poses[..., 1] += DROP * np.tile(HIGHEST, 2)
+    ground = np.array([(-0.9, -0.06), (0.9, -0.06), (0.9, 0.0), (-0.9, 0.0)])
+    mr.plotting.animate_bodies(
+        films[0][0],
+        [box] * (2 * COUNT),
+        rests,
+        poses,
+        out / "stack_before_and_after.gif",
+        fixed=[ground],
+        title="300 kg on four stones of 1.5 kg: MuJoCo's default, and contacts_for",
+        fps=20,
+        dpi=80,
+    )
+    cli.report(out / "stack_before_and_after", "\n".join(lines))
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(main))
