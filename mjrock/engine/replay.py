@@ -8,7 +8,7 @@ import csv
 import math
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -214,6 +214,17 @@ def load(path: Path) -> mujoco.MjModel:
     return read(str(require_file(path)))
 
 
+@contextlib.contextmanager
+def unwarned() -> Iterator[None]:
+    """Leave out the warnings of MuJoCo, which the window says itself."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda text: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
 def answer(argv: Sequence[str]) -> str:
     """Open the window with the model that is named; the text says until when it was followed.
 
@@ -223,9 +234,8 @@ def answer(argv: Sequence[str]) -> str:
     args = parser().parse_args(argv)
     speed = require_within("speed", args.speed, 1e-3, 1e3)
     model = load(args.model)
-    mujoco.set_mju_user_warning(lambda text: None)  # the window says it
     replay = Replay(model, None if args.answer is None else read_motion(model, args.answer))
-    with contextlib.suppress(KeyboardInterrupt):
+    with unwarned(), contextlib.suppress(KeyboardInterrupt):
         try:
             show(replay, launcher(), speed)
         except RuntimeError as error:

@@ -122,7 +122,7 @@ HISTORY = ([0.0, 1.0], [0.0, 0.1])
         ({"displacement": ([0.5, 1.0], [0.0, 0.02])}, "t begins at 0.5 s; the valid start is 0 s"),
         ({"displacement": ([0.0, 1.0, 0.5], [0.0, 0.1, 0.2])}, "has to increase"),
         ({"displacement": ([0.0, 1.0], [0.0, 40.0])}, "= 40 m is outside"),
-        ({"displacement": ([0.0, 1.0], [0.0])}, "have 2 and 1 numbers"),
+        ({"displacement": ([0.0, 1.0], [0.0])}, "have 2 and 1 values"),
         ({"displacement": 0.1}, "is not \\(t, values\\)"),
         ({"stiffness": 0.0}, "stiffness of the actuator"),
         ({"direction": (0.0, 0.0)}, "has no length"),
