@@ -63,7 +63,10 @@ another_wall.count = 0  # type: ignore[attr-defined]
 
 
 def set_up(blocks: int) -> float:
-    """Processor seconds from nothing to the first explicit step of a wall in running bond; NaN in a version without."""
+    """Processor seconds from nothing to the first explicit step of a wall in running bond; NaN in a version without.
+
+    A version that does not say what its steps took has the first step in it.
+    """
     if not hasattr(mr, "solve_explicit"):
         return math.nan
     set_up.count += 1  # type: ignore[attr-defined]
@@ -71,7 +74,7 @@ def set_up(blocks: int) -> float:
     begun = time.process_time()
     wall = mr.Masonry.running_bond(0.5 * round(blocks / rows), 0.25 * rows, (0.5, 0.25), density=density, k_s=1e10)
     answer = mr.solve_explicit(mr.MasonryCase(wall, 1e-6), output_step=1e-6)
-    return time.process_time() - begun - float(answer.stats["stepping_processor_time"])
+    return time.process_time() - begun - float(answer.stats.get("stepping_processor_time", 0.0))
 
 
 set_up.count = 0  # type: ignore[attr-defined]

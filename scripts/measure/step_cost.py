@@ -4,7 +4,7 @@ Nanoseconds of the processor for a contact line of the plane or a point of space
 façades, whose ground accelerates at once, with sprung and with rigid friction. The earlier version is taken from the
 repository's history and runs in a process of its own, in turn with this one. Then set-up, rocking theory, first runs
 with an empty store, and what large scenes take. Prints the tables, and digests of the answers of this version, and
-writes step_cost.txt, .csv and .png.
+writes step_cost.txt, .csv and .png, step_cost_starts.txt and step_cost_waits.txt, each as soon as it is measured.
 """
 
 from __future__ import annotations
@@ -138,16 +138,18 @@ def main(argv: Sequence[str] | None = None) -> None:
         versions = speed.Version(there, TASKS), speed.Version(speed.ROOT, TASKS)
         try:
             text, rows = step_table(versions, floors(Path(folder), names, rounds), names, rounds)
-            if not (args.quick or args.steps_only):
-                text += "\n\n" + start_tables(versions, rounds, Path(folder))
+            plotting.save(drawn(rows), out / "step_cost.png")
+            cli.report(out / "step_cost", text, HEADER, rows)
+            if args.quick or args.steps_only:
+                return
+            starts = start_table(versions, rounds, Path(folder))
         finally:
             for version in versions:
                 version.close()
-    if not (args.quick or args.steps_only):
-        header = ["scene", "blocks", "lines", "step [us]", "timed [s]", "took [s]", "the whole [s]"]
-        text += "\n\n" + cli.table(header, [waited(name) for name in tqdm(WAITS, disable=None, leave=False)])
-    plotting.save(drawn(rows), out / "step_cost.png")
-    cli.report(out / "step_cost", text, HEADER, rows)
+    cli.report(out / "step_cost_starts", starts)
+    header = ["scene", "blocks", "lines", "step [us]", "timed [s]", "took [s]", "the whole [s]"]
+    waits = cli.table(header, [waited(name) for name in tqdm(WAITS, disable=None, leave=False)])
+    cli.report(out / "step_cost_waits", waits)
 
 
 def step_table(
@@ -165,7 +167,7 @@ def step_table(
     return cli.table(HEADER, rows), rows
 
 
-def start_tables(versions: Sequence[speed.Version], rounds: int, folder: Path) -> str:
+def start_table(versions: Sequence[speed.Version], rounds: int, folder: Path) -> str:
     """Set-up and rocking theory of both versions, and first runs of this one, with an empty store."""
     rows: list[list[object]] = []
     compared(versions, "set-up", SETTLED_IN, 1)
