@@ -40,6 +40,8 @@ RISE = 0.002
 """Growth of the multiplier in a piece [-]."""
 BEYOND = 1.02
 """Multiplier over what is borne from which it does not grow any more [-]."""
+PART = 0.05
+"""Largest motion in a piece, over the displacement at which the push ends, beyond which a piece is cut [-]."""
 HIGHEST = 2.5
 """Largest multiplier of a push [-]."""
 DAMPED = 0.5
@@ -274,16 +276,25 @@ class Forced(Load):
     unit = "-"
 
     def __post_init__(self) -> None:
-        self.held, self.gone = False, 0.0
+        self.held, self.moved, self.cut = False, 0.0, False
 
     @property
     def may_slow(self) -> bool:
         """Until the blocks move on by themselves."""
-        return not self.held
+        return not (self.held or self.cut)
 
     def piece(self, duration: float) -> Piece:
-        """The force grows by RISE, or stays once it is no longer borne."""
-        level = self.level if self.held else self.level + RISE
+        """The force grows by RISE, or stays once it is no longer borne. A piece in which the blocks move far is cut."""
+        rise = 0.0 if self.held else RISE
+        piece = self._grown(duration, rise)
+        self.cut = False
+        while abs(piece.displacement[-1] - self.moved) > PART * self.to and duration > FIRST:
+            duration, rise, self.cut = 0.5 * duration, 0.5 * rise, True
+            piece = self._grown(duration, rise)
+        return piece
+
+    def _grown(self, duration: float, rise: float) -> Piece:
+        level = self.level + rise
         count = math.ceil(duration / LONGEST)
         ramp = np.append(np.linspace(self.level, level, count + 1), level)
         answer = self._answer(duration, motion=GroundMotion(-self.side * GRAVITY * ramp, duration / count))
@@ -297,6 +308,7 @@ class Forced(Load):
     def accept(self, piece: Piece) -> None:
         """Go on, with the force as it is where it was not borne."""
         super().accept(piece)
+        self.moved = float(piece.displacement[-1])
         self.held = piece.level > BEYOND * float(piece.force.mean())
 
     def done(self, piece: Piece) -> str:

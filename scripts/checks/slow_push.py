@@ -21,6 +21,8 @@ from scripts.shared import cli
 
 FAR = 0.01
 """Displacement to which the walls are pushed [m]."""
+INERTIA = 0.0025
+"""Forces of inertia that are allowed, over the largest force [-]."""
 
 
 def drawn(found: dict[int, mr.Push]) -> Figure:
@@ -46,7 +48,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out, found, rows = cli.folder(args.out), dict[int, mr.Push](), list[list[object]]()
     for number in tqdm([1] if args.quick else list(PUBLISHED), desc="walls", disable=None, leave=False):
         masonry, published, begun = wall(number), PUBLISHED[number][1], time.process_time()
-        found[number] = mr.push(masonry, 1, 0.1 * FAR if args.quick else FAR)
+        found[number] = mr.push(masonry, 1, 0.1 * FAR if args.quick else FAR, inertia=0.01 if args.quick else INERTIA)
         peak = found[number].peak
         cells = [number, len(masonry.free), published, f"{peak:.4f}", f"{peak / published - 1:+.1%}"]
         rows.append([*cells, f"{found[number].inertia_share:.2%}", f"{time.process_time() - begun:.0f}"])

@@ -95,6 +95,14 @@ def test_a_force_that_grows_finds_the_multiplier_of_collapse(friction, multiplie
     assert (np.diff(push.displacement) > -1e-6).all()
 
 
+def test_blocks_that_give_way_do_not_run_on():
+    """A quiet push takes long pieces, in which blocks that nothing holds would move by metres."""
+    push = mr.push(panel(0.2, k_n=1e10), -1, 0.02, inertia=0.0025)
+    assert push.peak == pytest.approx(0.2, rel=0.005)
+    assert 0.02 < push.displacement.max() < 0.022
+    assert np.diff(push.displacement).max() < 0.002
+
+
 def test_a_push_to_and_fro_loses_friction_each_way():
     push = mr.push(panel(0.3, k_n=1e10), mr.Actuator("panel", (-B, 0.1), 1, None, 1e8), [0.02, -0.02, 0.01])
     work = float((0.5 * (push.force[1:] + push.force[:-1]) * np.diff(push.displacement)).sum())
