@@ -203,7 +203,8 @@ class Load:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Implausible)  # the motion is that of a piece
             case = MasonryCase(self.masonry, duration, motion=motion, effects=(*self.effects, *driven))
-        return solve_explicit(case, output_step=duration / (POINTS * SAMPLES), start=self.start, **self.options)
+            warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
+            return solve_explicit(case, output_step=duration / (POINTS * SAMPLES), start=self.start, **self.options)
 
     def _inertia(self, answer: Response, way: Array) -> Array:
         """Force of inertia and of the damping of the motion along a direction, in the mean of each point [N]."""
@@ -276,20 +277,19 @@ class Forced(Load):
     unit = "-"
 
     def __post_init__(self) -> None:
-        self.held, self.moved, self.cut = False, 0.0, False
+        self.held, self.moved = False, 0.0
 
     @property
     def may_slow(self) -> bool:
         """Until the blocks move on by themselves."""
-        return not (self.held or self.cut)
+        return not self.held
 
     def piece(self, duration: float) -> Piece:
         """The force grows by RISE, or stays once it is no longer borne. A piece in which the blocks move far is cut."""
         rise = 0.0 if self.held else RISE
         piece = self._grown(duration, rise)
-        self.cut = False
         while abs(piece.displacement[-1] - self.moved) > PART * self.to and duration > FIRST:
-            duration, rise, self.cut = 0.5 * duration, 0.5 * rise, True
+            duration, rise = 0.5 * duration, 0.5 * rise
             piece = self._grown(duration, rise)
         return piece
 
