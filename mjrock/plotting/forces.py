@@ -17,8 +17,10 @@ from .section import FORCE, Update
 
 SHOWN = ("thrust", "bars", "cracks")
 """How forces are shown."""
-WIDEST, BAR, CRACK = 5.0, 2.5, 4.0
-"""Width of the line of thrust at a large force, of a bar, and of a crack that has lost its bond [point]."""
+WIDEST, BAR = 5.0, 2.5
+"""Width of the line of thrust at a large force, and of a bar [point]."""
+CLOSED, CRACK = 0.8, 4.0
+"""Width of the line of a crack that is closed, and of the widest one of a run [point]."""
 CRACKED = "#c0392b"
 """Colour of cracks."""
 LONGEST = 0.12
@@ -83,7 +85,7 @@ class Acting:
     """
 
     def __init__(self, response: Response, bodies: Moving) -> None:
-        self.forces, self.case, self.bodies = response.forces, response.case, bodies
+        self.response, self.forces, self.case, self.bodies = response, response.forces, response.case, bodies
         self.frames = self.forces.frames
         self.sample = np.maximum(np.searchsorted(response.t, bodies.t * (1 + 1e-12), side="right") - 1, 0)
         normal, shear = self.forces.normal[self.sample], self.forces.shear[self.sample]
@@ -91,6 +93,12 @@ class Acting:
         self.along = np.where(normal[..., None] > 0, along, 0.0)
         self.size = np.linalg.norm(self.along, axis=-1)
         self.scale = float(np.median(self.size.max(axis=1))) or 1.0
+
+    @cached_property
+    def widths(self) -> Array:
+        """Widths of the cracks of all joints in the frames [m], shape (frames, joints), 0 of those with their bond."""
+        lost = np.nan_to_num(self.forces.damage) > NOTHING
+        return np.asarray(np.where(lost, self.response.crack_widths, 0.0)[self.sample])
 
     @property
     def extent(self) -> float:
@@ -155,11 +163,13 @@ class Acting:
         return of, np.matmul(off, np.swapaxes(self.frames.axes[of], 1, 2))
 
     def cracks(self, frame: int) -> tuple[Array, Array | float]:
-        """Edges of joints that have lost some of their bond [m], and widths of their lines, as the lost share."""
+        """Edges of joints that have lost some of their bond [m], and widths of their lines, by that of the crack."""
         middle, axes = self.joints(frame)
         of, ends = self.edges
-        lost: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[of]
-        return (middle[of, None] + np.matmul(ends, axes[of]))[lost > NOTHING], CRACK * lost[lost > NOTHING]
+        lost = np.nan_to_num(self.forces.damage[self.sample[frame]])[of] > NOTHING
+        share = self.widths[frame][of] / max(float(self.widths.max()), 1e-300)
+        ends = (middle[of, None] + np.matmul(ends, axes[of]))[lost]
+        return ends, CLOSED + (CRACK - CLOSED) * share[lost]
 
 
 def edges_of(outline: Array) -> Array:
@@ -175,7 +185,10 @@ def forces_on(ax: Axes, response: Response, bodies: Moving, how: str, *, animate
     strokes = Strokes([], colors=colour, zorder=7, animated=animated, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
     said = f"line {WIDEST:g} pt wide" if how == "thrust" else f"bar {LONGEST * acting.extent:.2g} m long"
-    said = f"line {CRACK:g} pt wide: all bond lost" if cracks else f"{said}: {acting.scale / 1e3:.3g} kN"
+    if cracks:
+        said = f"cracked, line {CRACK:g} pt wide: {1e3 * acting.widths.max():.2g} mm open"
+    else:
+        said = f"{said}: {acting.scale / 1e3:.3g} kN"
     if acting.frames.middle.shape[1] == 2:
         ax.set_xlabel(f"{ax.get_xlabel()}\n{said}")
     else:

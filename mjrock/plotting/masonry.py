@@ -54,8 +54,8 @@ def blocks(
             as `answer.pose[-1]`; None draws masonry at rest.
         at: time of the response that is drawn [s]; None is the end.
         forces: "thrust" draws the line of thrust over the blocks, see `thrust`, and "bars" a bar at each joint along
-            its force, as long as that is large, through the place where it acts. "cracks" draws the joints, as
-            thick as they have lost of their bond. All need a response with forces=True, and cracks joints with a bond.
+            its force, as long as that is large, through the place where it acts. "cracks" draws joints that
+            have lost bond, as wide as they are open. All need a response with forces=True, cracks joints with a bond.
         magnified: factor on the pose, to show a small motion, 0 to 1e6.
         joints: whether to draw the joints as lines, in the plane and where no pose is given.
         camera: in space, the elevation and the azimuth that the blocks are seen from [deg], -90 to 90 and -360 to 360;

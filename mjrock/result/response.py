@@ -226,6 +226,15 @@ class Response:
         return self.of_joints.opening
 
     @property
+    def crack_widths(self) -> Array:
+        """Gap of each joint of masonry at its widest line [m], at every sample, shape (n, joints), 0 where all press.
+
+        Of a mortared joint that has cracked it is the width of the crack.
+        """
+        _ = self.of_joints
+        return openings(self.case.masonry, bodies_of(self.case, self.t, self.pose, self.velocity))
+
+    @property
     def sliding(self) -> Array:
         """Largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,)."""
         return self.of_joints.sliding
@@ -298,8 +307,8 @@ class Response:
         The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
         rest [m, m, rad], in space x, y, z and the quaternion, the acceleration of the ground where there is one [m/s2],
         and forces where the run kept them: of each fixed block, joint and link [N], and eccentricities [m]. They are
-        those of `Forces`. No name has a comma: `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits
-        are kept.
+        those of `Forces`. Mortared joints have their damage and the width of their crack too. No name has a comma:
+        `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept.
 
         Raises:
             OSError: if the file cannot be written.
@@ -321,6 +330,12 @@ class Response:
         columns |= {f"force of {name} [N]": force for name, force in self.actuators.items()}
         if self.kept_forces is not None:
             columns |= self.kept_forces.columns()
+            bonded = np.flatnonzero(~np.isnan(self.kept_forces.damage[0]))
+            widths = self.crack_widths[:, bonded] if bonded.size else np.empty((len(self.t), 0))
+            for joint, width in zip(bonded, widths.T, strict=True):
+                name = self.kept_forces.joints[joint]
+                columns[f"damage of {name} [-]"] = self.kept_forces.damage[:, joint]
+                columns[f"crack width of {name} [m]"] = width
         text = csv_text(list(columns), np.column_stack(list(columns.values())).tolist())
         if path is not None:
             write_text(require_path("path", path), text)

@@ -109,7 +109,7 @@ DRAWN = "5 lines"
 
 
 def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
-    """The curve beside the test, and the cracks at the end: lines as thick as the joint has lost of its bond."""
+    """The curve beside the test, and the cracks at the end: lines by the width of the crack."""
     figure = Figure(figsize=(11, 4.6), layout="constrained")
     curve, cracks = figure.subplots(1, 2)
     begun = answer.t > 0.07
@@ -118,7 +118,7 @@ def drawn(answer: mr.MasonryResponse, moved: Array, force: Array) -> Figure:
     curve.set(xlabel="displacement of the beam [mm]", ylabel="force [kN]", ylim=(0, None))
     curve.legend(frameon=False)
     plotting.blocks(cracks, answer, forces="cracks", limits=[(-0.1, WIDTH + 0.1), (-0.05, 1.05)])
-    cracks.set(title="what joints have lost of their bond")
+    cracks.set(title="cracks")
     return figure
 
 

@@ -142,7 +142,28 @@ def test_cracks_are_where_joints_have_lost_their_bond(in_space):
     (strokes,) = (line for line in plotting.blocks(ax, run, forces="cracks").collections if hasattr(line, "ends"))
     assert strokes.ends[..., -1] == pytest.approx(0.0)
     assert np.ptp(strokes.ends[..., 0]) == pytest.approx(1.0)
-    assert list(strokes.get_linewidths()) == pytest.approx([4 * run.forces.damage[-1, 0]] * len(strokes.ends))
+    assert list(strokes.get_linewidths()) == pytest.approx([4.0] * len(strokes.ends))
+    said = f"4 pt wide: {1e3 * run.crack_widths[-1, 0]:.2g} mm open"
+    assert said in (ax.get_xlabel() if not in_space else ax.texts[-1].get_text())
+
+
+def test_a_crack_is_as_wide_as_its_block_has_been_lifted():
+    """The block above the joint that is lost moves with its support; columns of the table say so too."""
+    masonry = mr.Masonry(
+        [GROUND, box(-0.5, 0.5, 0.0, 0.5), box(-0.5, 0.5, 0.5, 1.0, fixed=True)],
+        k_n=1e10, k_s=1e10, xi=0.05,
+        bond=lambda joint: mr.Bond(1e4, 1e4, 1.0, 10.0) if joint.middle[-1] < 0.1 else mr.Bond(1e6, 1e6, 1e3, 1e4),
+    )  # fmt: skip
+    up = ((0.0, 0.01, 0.02), (0.0, 0.0, 0.0), (0.0, 0.001, 0.001))
+    case = mr.MasonryCase(masonry, 0.02, supports={masonry.names[-1]: up}, settled=False)
+    run = mr.solve_explicit(case, forces=True)
+    first, second = run.forces.joints
+    assert run.crack_widths[-1] == pytest.approx([0.001, 0.0], abs=2e-6)
+    assert (run.crack_widths.max(axis=0) <= run.opening + 1e-12).all()  # between samples joints open farther
+    table = run.csv().splitlines()
+    row = dict(zip(table[0].split(","), map(float, table[-1].split(",")), strict=True))
+    assert row[f"crack width of {first} [m]"] == run.crack_widths[-1, 0]
+    assert row[f"damage of {second} [-]"] == run.forces.damage[-1, 1]
 
 
 def test_what_cannot_be_drawn():
