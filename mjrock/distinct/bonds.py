@@ -58,6 +58,8 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
         for name in ("k", "c", "k_s", "c_s", "friction", "margin", "grip"):
             bonds[name][which] = lines[name][which]
         bonds["tension"][which], bonds["cohesion"][which] = bond.tension * area[which], bond.cohesion * area[which]
+        bonds["residual"][which] = masonry.residual_friction[i]
+        bonds["falls"][which] = masonry.joint_friction[i] - masonry.residual_friction[i]
         bonds["torn"][which] = bond.tension / bond.opening_energy
         bonds["worn"][which] = bond.cohesion / bond.slip_energy
         if bond.crushing is not None and bond.crushing_energy is not None:
@@ -113,7 +115,7 @@ def let_go(books: Books, line: Row, bond: Row, axes: tuple[int, ...]) -> None:
         bond.tension = bond.cohesion = bond.secant = bond.worn = 0.0
         line.k, line.c, line.margin = bond.k, bond.c, bond.margin
     if bond.bears == math.inf:
-        line.friction = bond.friction
+        line.friction = bond.residual
         put(line.grip, spin_components(bond.grip, axes))
         put(line.dragged, spin_components(bond.dragged, axes))
         put(bond.grip, no_spin(axes))
@@ -139,6 +141,7 @@ def slide(
     bodies: Rows, line: Row, bond: Row, normal: Vector, slip: Vector, push: float, h: float
 ) -> tuple[Vector, float]:
     """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and what cohesion took [J]."""
+    bond.friction = bond.residual + bond.falls * bond.left
     limit = bonded_limit(bond, push)
     trial = stretched(bodies, line.face, bond.grip, normal, scaled(h, slip))
     grip = shortened(trial, limit / bond.k_s)

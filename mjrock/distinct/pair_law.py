@@ -1,9 +1,10 @@
 """The law of the contact of two blocks beyond their joints.
 
-Two blocks that had a joint keep its stiffness, dashpot and friction, shared among the places where they touch. Two that
-had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more, since a
-block of a wall has joints on two sides. Where faces lie over each other by less than a tenth of the area of such a
-joint, the pair has less in proportion. So blocks that only touch along their edges bear nothing.
+Two blocks that had a joint keep its stiffness, dashpot and friction, that of a mortared joint without its bond, shared
+among the places where they touch. Two that had none take those of the softer block: of its stiffest joint, or of half
+of all its joints if that is more, since a block of a wall has joints on two sides. Where faces lie over each other by
+less than a tenth of the area of such a joint, the pair has less in proportion. So blocks that only touch along their
+edges bear nothing.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ class PairLaw(NamedTuple):
         areas = np.array([each.area if masonry.in_space else each.width for each in masonry.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED), areas])
         friction = np.zeros(joints)
-        friction[joint] = lines["friction"]
+        friction[joint] = np.minimum(lines["friction"], masonry.residual_friction[joint])
         jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
         in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
         least = np.full(len(jointed), np.inf)

@@ -143,6 +143,7 @@ def _way(d: int, s: int) -> Fields:
 def _bond(s: int) -> Fields:
     return [
         *_number("k", "c", "k_s", "c_s", "friction", "margin"),  # of the line without bond; k is 0 for no bond
+        *_number("residual", "falls"),  # friction without bond, and what a whole bond adds to it [-]
         *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
         *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
         *_number("left"),  # what is left of the bond: 1 - D [-]

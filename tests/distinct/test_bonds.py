@@ -1,11 +1,14 @@
 """The law of a bond on one joint that is led along paths, in the plane and in space, straight and turned."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bonded import AREA, K_N, K_S, MORTAR, Led, joint
 from scipy.integrate import solve_ivp
 
 import mjrock as mr
+from mjrock.distinct.setup import setup_of
 
 CRUSHED = mr.Bond(0.25e6, 0.35e6, 18.0, 125.0, 10.5e6, 5e3)
 PLACES = [{}, {"angle": 0.6}, {"space": True}, {"points": 5}]
@@ -71,6 +74,34 @@ def test_a_joint_that_is_sheared_holds_cohesion_and_friction_and_takes_its_fract
     assert plastic == pytest.approx(MORTAR.slip_energy, rel=3e-3)
     tension, slid, crushed, _ = one.taken
     assert (tension, slid, crushed) == pytest.approx((0.0, MORTAR.slip_energy, 0.0), rel=1e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("pressure", [0.3e6, 1.2e6])
+@pytest.mark.parametrize("place", PLACES)
+def test_friction_falls_to_a_residual_with_the_bond(place, pressure):
+    """c e + (mu_r + (mu - mu_r) e) sigma with e = exp(-(c / G_II) s), from mu = 0.75 to mu_r = 0.5."""
+    bond = replace(MORTAR, residual_friction=0.5)
+    one, slip = led(bond, **place), np.append(softening(5e-3, 4000), 5e-3)
+    one.along(path_of(one, 0.0, np.linspace(0, -pressure / K_N, 5)))
+    _, drag = one.along(path_of(one, slip, -pressure / K_N))
+    held = -along(drag)
+    assert held.max() == pytest.approx(MORTAR.cohesion + 0.75 * pressure, rel=2e-3)
+    assert held[-1] == pytest.approx(0.5 * pressure, rel=2e-3)
+    left = np.exp(-MORTAR.cohesion / MORTAR.slip_energy * (slip - held / K_S))
+    law = MORTAR.cohesion * left + (0.5 + 0.25 * left) * pressure
+    slides = np.arange(len(slip)) > held.argmax()
+    np.testing.assert_allclose(held[slides], law[slides], rtol=5e-3)
+    assert (one.system.lines["friction"] == 0.5).all()
+
+
+def test_blocks_that_meet_anew_have_the_residual_friction():
+    masonry = joint(replace(MORTAR, residual_friction=0.5))
+    assert setup_of(mr.MasonryCase(masonry, 1.0, settled=False), None, None).encounters.law.of_pair[1] == [0.5]
+
+
+def test_a_residual_friction_above_that_of_the_joint_is_refused():
+    with pytest.raises(ValueError, match=r"residual_friction of a\|b = 0.8 is outside the valid range 0 to 0.75"):
+        joint(replace(MORTAR, residual_friction=0.8))
 
 
 @pytest.mark.parametrize("place", PLACES)

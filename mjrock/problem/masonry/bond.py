@@ -28,6 +28,8 @@ class Bond:
         slip_energy: fracture energy of slip G_II [J/m2], above 0 to 1e15.
         crushing: compressive strength f_c [Pa], 1e3 to 1e12, or None for a joint that is not crushed.
         crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`.
+        residual_friction: coefficient to which friction falls as the bond is lost [-], 0 to that of the joint. None
+            keeps that of the joint.
 
     Raises:
         ValueError: for a value outside its range.
@@ -44,6 +46,7 @@ class Bond:
     slip_energy: float
     crushing: float | None = None
     crushing_energy: float | None = None
+    residual_friction: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("tension", "cohesion"):
@@ -57,6 +60,8 @@ class Bond:
             keep(self, crushing=require_within("crushing", self.crushing, 1e3, STRONGEST, "Pa"))
             energy = require_within("crushing_energy", self.crushing_energy, 1e-6, TOUGHEST, "J/m2")
             keep(self, crushing_energy=energy)
+        if self.residual_friction is not None:
+            keep(self, residual_friction=require_within("residual_friction", self.residual_friction, 0.0, 10.0))
         if self.cohesion > 0 and self.tension == 0:
             raise ValueError(
                 f"cohesion = {self.cohesion:g} Pa with a tension of 0: cohesion ends where a joint opens; the valid "
@@ -108,19 +113,22 @@ def required_bond(bond: Any) -> OfBond:
     return bond  # type: ignore[no-any-return]
 
 
-def bonds_of(given: OfBond, joints: Sequence[Joint | SpaceJoint], shear: Array) -> tuple[Bond | None, ...]:
+def bonds_of(
+    given: OfBond, joints: Sequence[Joint | SpaceJoint], shear: Array, friction: Array
+) -> tuple[Bond | None, ...]:
     """The bond of each joint, None where it is dry.
 
     Args:
         given: one for all, or a function of the joint.
         joints: the joints.
         shear: k_s of each [N/m3], infinite where it sticks rigidly, shape (joints,).
+        friction: of each [-], shape (joints,).
 
     Raises:
-        ValueError: for a bond on a joint without k_s.
+        ValueError: for a bond on a joint without k_s, or a residual friction above that of the joint.
     """
     found: list[Bond | None] = []
-    for joint, k_s in zip(joints, shear.tolist(), strict=True):
+    for joint, k_s, most in zip(joints, shear.tolist(), friction.tolist(), strict=True):
         bond = given
         if callable(given):
             try:
@@ -133,5 +141,7 @@ def bonds_of(given: OfBond, joints: Sequence[Joint | SpaceJoint], shear: Array) 
             continue
         if not np.isfinite(k_s):
             raise ValueError(f"bond of {joint.name}: k_s = None, and a bond needs a shear stiffness; give k_s in N/m3")
+        if bond.residual_friction is not None:
+            require_within(f"residual_friction of {joint.name}", bond.residual_friction, 0.0, most)
         found.append(bond)
     return tuple(found)

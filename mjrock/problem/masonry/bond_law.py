@@ -5,7 +5,8 @@ and v the plastic closing, what is left of tension and cohesion is
 
     1 - D = exp(-(f_t / G_I) w - (c / G_II) s - (f_c / G_c) v),
 
-so that opening, slip and crushing each harm both. A bond pulls at most f_t (1 - D). Below its largest opening it pulls
+so that opening, slip and crushing each harm both. Friction falls with them, from mu to mu_r + (mu - mu_r) (1 - D). A
+bond pulls at most f_t (1 - D). Below its largest opening it pulls
 along the secant to the origin, and a joint that closes has its whole stiffness. Along the face it holds c (1 - D)
 beside friction. Crushing keeps sqrt(sigma^2 + 9 tau^2) within f_c exp(-(f_c / G_c) v), and a joint that is crushed by v
 is unloaded with a gap of v.

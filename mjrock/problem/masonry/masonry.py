@@ -264,6 +264,14 @@ class Masonry:
         return values_of("friction", self.friction, self.joints)
 
     @cached_property
+    def residual_friction(self) -> Array:
+        """Coefficient of friction of each joint that has lost its bond [-], shape (joints,)."""
+        given = [bond and bond.residual_friction for bond in self.bonds]
+        return np.array(
+            [most if least is None else least for least, most in zip(given, self.joint_friction, strict=True)]
+        )
+
+    @cached_property
     def joint_damping(self) -> Array:
         """xi of each joint [-], shape (joints,)."""
         return values_of("xi", self.xi, self.joints)
@@ -276,7 +284,7 @@ class Masonry:
     @cached_property
     def bonds(self) -> tuple[Bond | None, ...]:
         """The bond of each joint, None where it is dry."""
-        return bonds_of(self.bond, self.joints, self.joint_shear)
+        return bonds_of(self.bond, self.joints, self.joint_shear, self.joint_friction)
 
     @cached_property
     def lines(self) -> Lines:
