@@ -20,7 +20,7 @@ SHOWN = ("thrust", "bars", "cracks")
 WIDEST, BAR = 5.0, 2.5
 """Width of the line of thrust at a large force, and of a bar [point]."""
 CLOSED, CRACK = 0.8, 4.0
-"""Width of the line of a crack that is closed, and of the widest one of a run [point]."""
+"""Width of the line of a closed joint that has lost its bond, and of the widest crack of a run [point]."""
 CRACKED = "#c0392b"
 """Colour of cracks."""
 LONGEST = 0.12
@@ -163,13 +163,14 @@ class Acting:
         return of, np.matmul(off, np.swapaxes(self.frames.axes[of], 1, 2))
 
     def cracks(self, frame: int) -> tuple[Array, Array | float]:
-        """Edges of joints that have lost some of their bond [m], and widths of their lines, by that of the crack."""
+        """Edges of joints that have lost some of their bond [m], and widths of their lines: thin as the lost share where
+        they are closed, and beyond that by the width of the crack."""
         middle, axes = self.joints(frame)
         of, ends = self.edges
-        lost = np.nan_to_num(self.forces.damage[self.sample[frame]])[of] > NOTHING
-        share = self.widths[frame][of] / max(float(self.widths.max()), 1e-300)
-        ends = (middle[of, None] + np.matmul(ends, axes[of]))[lost]
-        return ends, CLOSED + (CRACK - CLOSED) * share[lost]
+        lost: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[of]
+        open_by = self.widths[frame][of] / max(float(self.widths.max()), 1e-300)
+        ends = (middle[of, None] + np.matmul(ends, axes[of]))[lost > NOTHING]
+        return ends, (CLOSED * lost + (CRACK - CLOSED) * open_by)[lost > NOTHING]
 
 
 def edges_of(outline: Array) -> Array:
