@@ -30,10 +30,11 @@ test-oldest: $(OLDEST)/.ready # the everyday tests with the oldest Python and ve
 
 # The everyday tests by PYTHON, away from the checkout. The package is installed from files alone: the wheel that brings what
 # it needs, and over it one that is built from the source distribution.
-test-installed: $(READY)
+test-installed:
 	rm -rf $(INSTALLED)
-	$(BIN)/python -m hatchling build -d $(INSTALLED)/files
 	$(PYTHON) -m venv $(INSTALLED)/venv
+	$(INSTALLED)/venv/bin/python -m pip install --quiet 'hatchling>=1.27'
+	$(INSTALLED)/venv/bin/python -m hatchling build -d $(INSTALLED)/files
 	cp -r tests docs scripts models pyproject.toml README.md CHANGELOG.md $(INSTALLED)
 	cd $(INSTALLED) && venv/bin/python -m pip download --quiet --dest files "$$(ls files/mjrock-*.whl)[test]"
 	cd $(INSTALLED) && venv/bin/python -m pip install --quiet --no-index --find-links files "$$(ls files/mjrock-*.whl)[test]"
