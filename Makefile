@@ -4,8 +4,9 @@ BIN := .venv/bin
 READY := .venv/.ready
 DOCS := .venv/.docs
 OLDEST := .venv-oldest
+INSTALLED := out/installed
 
-.PHONY: demo docs test test-slow test-oldest mutants lint calibrate models figures robots clean stale
+.PHONY: demo docs test test-slow test-oldest test-installed mutants lint calibrate models figures robots clean stale
 
 demo: $(READY)
 	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
@@ -26,6 +27,20 @@ mutants: $(READY) # changes one operator or number of the physics at a time and 
 
 test-oldest: $(OLDEST)/.ready # the everyday tests with the oldest Python and versions that pyproject.toml allows
 	$(OLDEST)/bin/pytest -n auto
+
+# The everyday tests by PYTHON, away from the checkout. The package is installed from files alone: the wheel that brings what
+# it needs, and over it one that is built from the source distribution.
+test-installed:
+	rm -rf $(INSTALLED)
+	$(PYTHON) -m venv $(INSTALLED)/venv
+	$(INSTALLED)/venv/bin/python -m pip install --quiet 'hatchling>=1.27'
+	$(INSTALLED)/venv/bin/python -m hatchling build -d $(INSTALLED)/files
+	cp -r tests docs scripts models pyproject.toml README.md CHANGELOG.md $(INSTALLED)
+	cd $(INSTALLED) && venv/bin/python -m pip download --quiet --dest files "$$(ls files/mjrock-*.whl)[test]"
+	cd $(INSTALLED) && venv/bin/python -m pip install --quiet --no-index --find-links files "$$(ls files/mjrock-*.whl)[test]"
+	cd $(INSTALLED) && venv/bin/python -m pip install --quiet --no-index --no-build-isolation --no-deps --force-reinstall \
+		files/mjrock-*.tar.gz
+	cd $(INSTALLED) && venv/bin/python -m pytest -n auto --ignore tests/house
 
 lint: $(READY)
 	$(BIN)/ruff check .

@@ -39,8 +39,8 @@ GAINS = 0.5
 with 1.09 at 0.9 and with 2.4 at 1.9."""
 NOTHING, SMALL = 0.03, 0.2999
 """Restitutions between which gravity is warned of where no speed is given [-]."""
-MOST_SPEED = 1e4
-"""Largest speed of approach that is looked at [m/s]."""
+LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
+"""Speeds of approach that are looked at [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -363,7 +363,7 @@ def weight_spoilers(contact: PairContact) -> Iterator[str]:
     e = rebound_restitution(contact.xi)
     if contact.speed is not None or contact.gravity <= 0 or not NOTHING < e < SMALL:
         return
-    slow, fast = NOTHING * contact.gravity, MOST_SPEED
+    slow, fast = max(NOTHING * contact.gravity, LEAST_SPEED), MOST_SPEED
     for _ in range(60):
         middle = math.sqrt(slow * fast)
         slow, fast = (slow, middle) if contact.restitution_at(middle) > 0.5 * e else (middle, fast)

@@ -29,6 +29,8 @@ TIED = 0.05
 """A point of which friction leaves less than this share of its freedom along the normal slides as it lands [-]."""
 FIXED = 1e-10
 """A point of which rigid constraints leave less than this share of its freedom cannot approach [-]; it is rounding."""
+FALL_ALIKE = 1e-9
+"""Share of the accelerations of the joints up to which two bodies fall alike [-]."""
 MATTERS = 0.02
 """A constraint that changes the mass by less than this share is left out of what is said [-]."""
 LIMITS = (int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT), int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON))
@@ -111,10 +113,17 @@ def felt(
         mass=mass,
         slides=slides,
         motion=motion,
-        gravity=float(-held.weight @ answer[:, 0]),
+        gravity=_together(-held.weight * answer[:, 0]),
         yielding=tuple(sorted({int(number) for number in held.number[yields]})) if matters else (),
         limits=tuple(int(row) for row in held.row[pressed]) if stops else (),
     )
+
+
+def _together(parts: Array) -> float:
+    """Acceleration with which gravity brings the geoms together [m/s2], from the parts of the joints; exactly zero where
+    all that is left of it is rounding, as for bodies that fall alike."""
+    gravity = float(parts.sum())
+    return gravity if abs(gravity) > FALL_ALIKE * float(np.abs(parts).sum()) else 0.0
 
 
 class PoseConstraints:

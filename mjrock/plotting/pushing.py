@@ -71,9 +71,13 @@ def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> 
 
 
 def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
-    """A triangle where ties of a curve yield and a cross where they break, those at one rotation with one text."""
+    """A triangle where ties of a curve yield and a cross where they break, those at one rotation with one text.
+
+    Texts of ties that yield stand above their place, and texts of ties that break below.
+    """
     for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
-        for what, marker, reached in zip(("yield", "break"), ("v", "x"), curve.ties, strict=True):
+        kinds = (("yield", "v", (4, 4)), ("break", "x", (4, -10)))
+        for (what, marker, beside), reached in zip(kinds, curve.ties, strict=True):
             together: dict[float, list[str]] = {}
             for name, rotation in reached.items():
                 together.setdefault(rotation, []).append(name)
@@ -82,7 +86,7 @@ def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
                 at = rotation, float(curve.multiplier[max(near - 2, 0) : near + 1].max())  # before it falls
                 ax.plot(*at, marker, color=line.get_color(), markersize=6, zorder=5)
                 said = f"{named(names)} {what}{'' if len(names) > 1 else 's'}"
-                ax.annotate(said, at, (4, 4), textcoords="offset points", fontsize=7, color=line.get_color(), zorder=6)
+                ax.annotate(said, at, beside, textcoords="offset points", fontsize=7, color=line.get_color(), zorder=6)
 
 
 def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: Closed) -> None:

@@ -147,7 +147,9 @@ class MechanismCheck:
         return f"<MechanismCheck: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
-def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.35) -> MechanismCheck:
+def mechanism_check(
+    case: Case, demand: Demand | Mapping[str, Demand], *, confidence_factor: float = 1.35
+) -> MechanismCheck:
     """The kinematic check of a wall as a local mechanism, linear and non-linear, by Circolare 2019 n. 7, C8.7.1.2.1.
 
     The push-over curve of the rigid wall becomes the capacity curve a(d) of an equivalent oscillator. Its displacement
@@ -164,7 +166,8 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     Args:
         case: the wall and its effects; its release and its motion play no part.
         demand: a record, a spectrum of `code_spectrum`, or a function S_De(T, xi) that gives the elastic displacement
-            [m] of a spectrum.
+            [m] of a spectrum. It is that of both limit states, or a mapping has one for each, "SLV" and "SLC"; the
+            linear check then takes that of the SLV.
         confidence_factor: FC [-], 1 to 1.35; 1.35 where the strength of the masonry does not enter the curve.
 
     Returns:
@@ -179,9 +182,9 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
         True
     """
     require_wall("case", case, "collapse_multiplier")
-    if not isinstance(demand, GroundMotion) and not takes(demand, 2):
-        raise TypeError(f"demand = {shown(demand)} is neither a GroundMotion nor a function S_De(T, xi)")
-    peak = demand.peak if isinstance(demand, GroundMotion | SpectrumOfCode) else None
+    demands = _by_limit_state(demand)
+    severe = demands["SLV"]
+    peak = severe.peak if isinstance(severe, GroundMotion | SpectrumOfCode) else None
     factor = require_within("confidence_factor", confidence_factor, 1.0, 1.35)
     curve = pushover(case)
     if not math.isfinite(curve.end):
@@ -198,12 +201,24 @@ def mechanism_check(case: Case, demand: Demand, *, confidence_factor: float = 1.
     for name, share in SHARE.items():
         capacity = share * d_0
         period = PERIOD[name] * math.sqrt(capacity / float(np.interp(capacity, d, a)))
-        states[name] = LimitState(capacity, period, _asked(demand, period, DAMPING[name]))
+        states[name] = LimitState(capacity, period, _asked(demands[name], period, DAMPING[name]))
     alpha_0, tied = float(curve.multiplier[0]), None
     if case.pulls:
         tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
     return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
+
+
+def _by_limit_state(demand: Demand | Mapping[str, Demand]) -> Mapping[str, Demand]:
+    """The demand of each limit state."""
+    demands = demand if isinstance(demand, Mapping) else dict.fromkeys(SHARE, demand)
+    if set(demands) != set(SHARE):
+        raise ValueError(f"demand has {', '.join(map(str, demands)) or 'none'}; a mapping needs {' and '.join(SHARE)}")
+    for name, one in demands.items():
+        if not isinstance(one, GroundMotion) and not takes(one, 2):
+            said = f"demand[{name!r}]" if demands is demand else "demand"
+            raise TypeError(f"{said} = {shown(one)} is neither a GroundMotion nor a function S_De(T, xi)")
+    return demands
 
 
 def _masses(case: Case) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import statistics
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -33,8 +34,8 @@ from scripts.studies import shear_wall
 BEFORE = "5c5a262"
 """The version that was measured when the cost of a step was first looked into."""
 TASKS = str(Path(__file__).parent / "steps" / "tasks.py")
-LINE_STEPS = 1e7
-"""Steps times lines that are timed: under a second."""
+LINE_STEPS = 5e7
+"""Steps times lines that are timed: a second or two, some ten with rigid friction in space."""
 SET_UPS = (1000, 2000, 4000)
 SETTLED_IN = 50
 """Blocks of a set-up that warms up."""
@@ -93,7 +94,7 @@ def floors(folder: Path, names: Sequence[str], rounds: int) -> dict[str, list[fl
             ]
             for vectors in (False, True)
         ]
-        found[name] = [min(times) for times in taken]
+        found[name] = [statistics.median(times) for times in taken]
     return found
 
 
@@ -105,9 +106,9 @@ def digest(name: str, steps: int) -> str:
 
 
 def compared(versions: Sequence[speed.Version], task: str, size: int, rounds: int) -> list[float]:
-    """The least seconds of each version for a task, one after the other in each round."""
+    """The median seconds of each version for a task, one after the other in each round."""
     found = [[version.seconds(task, size) for version in versions] for _ in range(rounds)]
-    return [min(times) for times in zip(*found, strict=True)]
+    return [statistics.median(times) for times in zip(*found, strict=True)]
 
 
 def drawn(rows: Sequence[Sequence[object]]) -> Figure:
@@ -159,11 +160,11 @@ def step_table(
     rows: list[list[object]] = []
     for name in tqdm(names, desc="steps", disable=None, leave=False):
         lines = len(setup_of(case_of(name, 1.0), None, None).system.lines)
-        count = max(10, int(LINE_STEPS / lines / (1 if len(names) > 1 else 50)))
+        count = max(10, int(LINE_STEPS / lines / (1 if len(names) > 1 else 250)))
         compared(versions, name, 10, 1)
-        least = [f"{seconds / lines * 1e9:.1f}" for seconds in compared(versions, name, count, rounds)]
+        taken = [f"{seconds / lines * 1e9:.1f}" for seconds in compared(versions, name, count, rounds)]
         plain = [f"{value:.1f}" for value in floor.get(name, [])] or ["", ""]
-        rows.append([name, lines, digest(name, 200), *least, *plain])
+        rows.append([name, lines, digest(name, 200), *taken, *plain])
     return cli.table(HEADER, rows), rows
 
 
@@ -172,8 +173,8 @@ def start_table(versions: Sequence[speed.Version], rounds: int, folder: Path) ->
     rows: list[list[object]] = []
     compared(versions, "set-up", SETTLED_IN, 1)
     for count in SET_UPS:
-        least = compared(versions[count > SET_UPS[1] :], "set-up", count, 1)
-        rows.append([f"set-up of {count} blocks [s]", *[""] * (2 - len(least)), *(f"{value:.2f}" for value in least)])
+        taken = compared(versions[count > SET_UPS[1] :], "set-up", count, 1)
+        rows.append([f"set-up of {count} blocks [s]", *[""] * (2 - len(taken)), *(f"{value:.2f}" for value in taken)])
     for name in THEORY:
         rows.append([f"{name} [ms]", *(f"{value * 1e3:.2f}" for value in compared(versions, name, 0, rounds))])
     for name, run in speed.FIRST_RUNS.items():

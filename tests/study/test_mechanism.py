@@ -57,10 +57,23 @@ def test_a_record_asks_for_its_largest_displacement_up_to_the_period():
     assert twice.demand == pytest.approx(2 * state.demand)
 
 
+def test_each_limit_state_has_a_demand_of_its_own():
+    slv = mr.code_spectrum("NTC 2018", ag=2.56, F0=2.36, Tc=0.347, soil="C", topography="T1")
+    slc = mr.code_spectrum("NTC 2018", ag=3.27, F0=2.40, Tc=0.358, soil="C", topography="T1")
+    both = mr.mechanism_check(CASE, {"SLV": slv, "SLC": slc})
+    one, other = mr.mechanism_check(CASE, slv), mr.mechanism_check(CASE, slc)
+    assert both.states["SLV"].ratio == one.states["SLV"].ratio
+    assert both.states["SLC"].ratio == other.states["SLC"].ratio
+    assert both.peak == one.peak
+    assert both.states["SLC"].ratio < one.states["SLC"].ratio
+
+
 @pytest.mark.parametrize(
     ("call", "complaint"),
     [
         (lambda: mr.mechanism_check(CASE, 3), "demand = 3 of type int is neither a GroundMotion nor a function"),
+        (lambda: mr.mechanism_check(CASE, {"SLV": abs}), "demand has SLV; a mapping needs SLV and SLC"),
+        (lambda: mr.mechanism_check(CASE, {"SLV": 3, "SLC": 3}), r"demand\['SLV'\] = 3 of type int is neither"),
         (lambda: mr.mechanism_check(CASE, abs), "demand = <built-in function abs> .* nor a function"),
         (lambda: mr.mechanism_check(CASE, lambda T, xi: "x"), r"demand\(T, xi\) = 'x' of type str is not a real"),
         (lambda: mr.mechanism_check(CASE, lambda T, xi: 0.1, confidence_factor=2), "confidence_factor = 2 is outside"),

@@ -104,7 +104,7 @@ class Actuator(Effect):
     def said(self) -> str:
         """For sketch and report."""
         far = max(self.displacement[1], key=abs)
-        return f"z = {self.height:g} m,\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:g} kN/mm"
+        return f"z = {self.height:g} m,\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"
 
 
 def _unit(direction: Any, d: int) -> tuple[float, ...]:

@@ -63,5 +63,5 @@ class FrictionDamper(Anchored):
     @property
     def said(self) -> str:
         """For sketch and report."""
-        said = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:g} kN/mm"
+        said = f"z = {self.height:g} m,\nk = {self.stiffness / 1e6:.4g} kN/mm"
         return f"{said}, slips at {self.slip_force / 1e3:g} kN"

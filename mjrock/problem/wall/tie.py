@@ -169,7 +169,7 @@ class Tie(Anchored):
     def said(self) -> str:
         """For sketch and report."""
         said = f"z = {self.height:g} m, {self.length:g} m long,\n"
-        said += f"k = {self.stiffness / 1e6:g} kN/mm, slack {1e3 * self.slack:g} mm"
+        said += f"k = {self.stiffness / 1e6:.4g} kN/mm, slack {1e3 * self.slack:g} mm"
         if self.strength < math.inf:
             said += f",\nyields at {self.strength / 1e3:g} kN"
         if self.governed_by is not None:
