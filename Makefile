@@ -72,6 +72,8 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/checks/sliding.py --out docs/figures
 	$(BIN)/python scripts/checks/limit_analysis.py --out docs/figures
 	$(BIN)/python scripts/checks/slow_push.py --out docs/figures
+	$(BIN)/python scripts/checks/arching.py --out docs/figures
+	$(BIN)/python scripts/studies/shear_wall.py --out docs/figures
 	$(BIN)/python scripts/paper/law_range.py --out docs/figures
 	$(BIN)/python scripts/checks/hard_cases.py --out docs/figures
 	$(BIN)/python scripts/checks/trouble.py --out docs/figures

@@ -1,9 +1,10 @@
-"""First cracks of mortared walls, and masonry on a tilting table in time, against closed forms."""
+"""First cracks and arching of mortared walls, and masonry on a tilting table in time, against closed forms."""
 
+import numpy as np
 import pytest
 
 import mjrock as mr
-from scripts.checks import mortar, tilting_table
+from scripts.checks import arching, mortar, tilting_table
 
 
 @pytest.mark.parametrize(
@@ -12,6 +13,14 @@ from scripts.checks import mortar, tilting_table
 def test_a_mortared_wall_cracks_where_the_closed_form_says(name):
     wall, expected = mortar.CASES[name]()
     assert mortar.first_crack(wall, expected) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.slow
+def test_a_cracked_strip_arches_between_floors_as_the_closed_form_says():
+    found = arching.pushed()
+    shares = np.array(arching.SHARES)
+    np.testing.assert_allclose(arching.forces(found, shares), arching.closed(shares * arching.T), rtol=0.01)
+    assert found.peak == pytest.approx(float(arching.closed(0.0)), rel=0.02)
 
 
 @pytest.mark.slow

@@ -63,6 +63,7 @@ WRITES = {
     "law_in_space": {f"law_in_space.{ending}" for ending in ("png", "csv", "txt")},
     "dome": {f"dome.{ending}" for ending in ("png", "csv", "txt")},
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
+    "arching": {f"arching.{ending}" for ending in ("png", "csv", "txt")},
     "shear_wall": {f"shear_wall.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
