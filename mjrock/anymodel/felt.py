@@ -120,8 +120,8 @@ def felt(
 
 
 def _together(parts: Array) -> float:
-    """Acceleration with which gravity brings the geoms together [m/s2], from the parts of the joints; exactly zero where
-    all that is left of it is rounding, as for bodies that fall alike."""
+    """Acceleration with which gravity brings the geoms together [m/s2], from the parts of the joints; exactly zero
+    where all that is left of it is rounding, as for bodies that fall alike."""
     gravity = float(parts.sum())
     return gravity if abs(gravity) > FALL_ALIKE * float(np.abs(parts).sum()) else 0.0
 

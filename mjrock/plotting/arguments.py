@@ -105,7 +105,7 @@ def mapping(check: Check, least: int = 1) -> Check:
 
     def checked(name: str, value: Any) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
-            raise TypeError(f"{name} = {shown(value)} is not a mapping such as {{\"name\": value}}, of at least {least}")
+            raise TypeError(f'{name} = {shown(value)} is not a mapping like {{"name": value}}, of at least {least}')
         for key, one in value.items():
             require_text(f"a name of {name}", key)
             check(f"{name}[{key!r}]", one)

@@ -163,8 +163,8 @@ class Acting:
         return of, np.matmul(off, np.swapaxes(self.frames.axes[of], 1, 2))
 
     def cracks(self, frame: int) -> tuple[Array, Array | float]:
-        """Edges of joints that have lost some of their bond [m], and widths of their lines: thin as the lost share where
-        they are closed, and beyond that by the width of the crack."""
+        """Edges of joints that have lost some of their bond [m], and widths of their lines: thin as the lost share
+        where they are closed, and beyond that by the width of the crack."""
         middle, axes = self.joints(frame)
         of, ends = self.edges
         lost: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[of]

@@ -277,7 +277,7 @@ class Forced(Load):
     unit = "-"
 
     def __post_init__(self) -> None:
-        self.held, self.moved = False, 0.0
+        self.held, self.cut, self.moved = False, False, 0.0
 
     @property
     def may_slow(self) -> bool:
@@ -287,17 +287,23 @@ class Forced(Load):
     def piece(self, duration: float) -> Piece:
         """The force grows by RISE, or stays once it is no longer borne. A piece in which the blocks move far is cut."""
         rise = 0.0 if self.held else RISE
-        piece = self._grown(duration, rise)
-        while abs(piece.displacement[-1] - self.moved) > PART * self.to and duration > FIRST:
-            duration, rise = 0.5 * duration, 0.5 * rise
+        piece, self.cut = self._grown(duration, rise), False
+        while piece is None or (self._gives_way(piece) and duration > FIRST):
+            duration, rise, self.cut = 0.5 * duration, 0.5 * rise, True
             piece = self._grown(duration, rise)
         return piece
 
-    def _grown(self, duration: float, rise: float) -> Piece:
+    def _gives_way(self, piece: Piece) -> bool:
+        return abs(float(piece.displacement[-1]) - self.moved) > PART * self.to
+
+    def _grown(self, duration: float, rise: float) -> Piece | None:
+        """A piece in which the force grows so far, or None where blocks have fallen before its end."""
         level = self.level + rise
         count = math.ceil(duration / LONGEST)
         ramp = np.append(np.linspace(self.level, level, count + 1), level)
         answer = self._answer(duration, motion=GroundMotion(-self.side * GRAVITY * ramp, duration / count))
+        if len(answer.t) <= POINTS * SAMPLES:
+            return None
         mass = laden(self.masonry, self.effects)[0][list(self.masonry.free)]
         way = self.side * np.eye(3 if self.masonry.in_space else 2)[0]
         inertia = self._inertia(answer, way) / (GRAVITY * mass.sum())
@@ -306,10 +312,10 @@ class Forced(Load):
         return Piece(means(moved), borne, inertia, answer, level)
 
     def accept(self, piece: Piece) -> None:
-        """Go on, with the force as it is where it was not borne."""
+        """Go on, with the force as it is where it was not borne or the blocks gave way."""
         super().accept(piece)
         self.moved = float(piece.displacement[-1])
-        self.held = piece.level > BEYOND * float(piece.force.mean())
+        self.held = self.cut or piece.level > BEYOND * float(piece.force.mean())
 
     def done(self, piece: Piece) -> str:
         """Where the centroid has moved, or nothing gives way."""

@@ -1,14 +1,14 @@
 """A cracked strip that arches between two rigid floors and crushes at its joints, beside a closed form.
 
-Two halves of a wall of the height H and the thickness t turn about their ends as the joint between them is pushed out by
-a displacement u. Rigid halves and joints that bear f_c and no more: both ends of a half are pressed over depths whose
-sum is t - u, since at that rate their overlap grows. The pressure at a joint falls with its shear, as sigma^2 + 9 tau^2
-stays within f_c^2, and the shear over the thrust is (t - u) / H. So the thrust is f (t - u) / 2 with
+Two halves of a wall of the height H and the thickness t turn about their ends as the joint between them is pushed out
+by a displacement u. The halves are rigid, and joints bear f_c and no more. Both ends of a half are then pressed over
+depths whose sum is t - u, since at that rate their overlap grows. The pressure at a joint falls with its shear, as
+sigma^2 + 9 tau^2 stays within f_c^2, and the shear over the thrust is (t - u) / H. So the thrust is f (t - u) / 2 with
 
     f = f_c / sqrt(1 + 9 ((t - u) / H)^2),   and the force that pushes is P = f (t - u)^2 / H.
 
-This is the arching of yield-line practice (McDowell, McKee and Sevin, Arching action theory of masonry walls, Journal of
-the Structural Division 82, 1956) for a block of pressure that is rectangular, with the shear taken into account.
+This is the arching of yield-line practice (McDowell, McKee and Sevin, Arching action theory of masonry walls, Journal
+of the Structural Division 82, 1956) for a block of pressure that is rectangular, with the shear taken into account.
 Joints are nearly rigid, and the strip nearly without weight. Prints the forces and draws the curve.
 """
 
@@ -30,8 +30,8 @@ T, H = 0.12, 2.4
 CRUSHING = 5e6
 """f_c [Pa]."""
 K, K_S, POINTS = 1e12, 2e9, 41
-"""Stiffness of the joints along the normal and the face [N/m3], and lines across each. Where it is as stiff along the face, the
-second-order slip between lines of a joint that turns by theta, their closing times theta, takes up the friction."""
+"""Stiffness of the joints along the normal and the face [N/m3], and lines across each. Where they are as stiff along
+the face, the slip of a joint that closes and turns, its closing times the rotation, takes up the friction."""
 SHARES = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 """Displacements at which forces are compared, over the thickness [-]."""
 
