@@ -297,6 +297,13 @@ CALLS = OF_NUMBERS | {
         mr.Masonry.shear_wall,
         {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},
     ),
+    "Masonry.wallette": (
+        mr.Masonry.wallette,
+        {
+            "length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.25, "density": 2e3, "leaves": 2,
+            "headers": 2, "beam": True,
+        },
+    ),
     "MasonryCase": (
         mr.MasonryCase,
         {

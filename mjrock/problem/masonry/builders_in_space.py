@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
 from ..wall.section import Opening
 from .builders import BEYOND, DEEP, MOST_BLOCKS, SMALLEST_PIECE, required_faces, required_unit
+from .polygon import Polygon
 from .polyhedron import Polyhedron
 
 WHOLE = 1e-6
@@ -255,3 +256,29 @@ def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Recta
         ]
         pieces += [(one, other, start, end) for one, other in pairwise([left, *inner, right])]
     return pieces
+
+
+def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:
+    """Rectangles of a wall of the plane, its base and beam, as boxes in space, see `Masonry.wallette`."""
+    leaves, headers = require_whole("leaves", leaves, 1, 10), require_whole("headers", headers, 0, 1000)
+    middle = 0.5 * float(blocks[0].corners[:, 0].min() + blocks[0].corners[:, 0].max())
+    boxes = []
+    for block in blocks:
+        (left, low), (right, high) = block.corners.min(axis=0).tolist(), block.corners.max(axis=0).tolist()
+        name, thick = str(block.name), block.length
+        deep, count, names = [(0.0, thick)], 1, [name]
+        if block.fixed:
+            deep = [(-thick, 2 * thick)]
+        elif headers and (int(name.split("_")[1]) + 1) % headers == 0:
+            count = max(1, round(2 * (right - left) / unit))
+            names = [f"{name}{'abcdefgh'[i]}" for i in range(count)] if count > 1 else names
+        elif leaves > 1:
+            faces = np.linspace(0.0, thick, leaves + 1).tolist()
+            deep, names = list(pairwise(faces)), [f"{name}_{i}" for i in range(leaves)]
+        along = list(pairwise(np.linspace(left, right, count + 1).tolist()))
+        spans = [(x, y) for x in deep for y in along]
+        for part, ((front, back), (a, b)) in zip(names, spans, strict=True):
+            size = back - front, b - a, high - low
+            centre = -0.5 * (front + back), 0.5 * (a + b) - middle, 0.5 * (low + high)
+            boxes.append(Polyhedron.box(size, centre, block.density, block.fixed, part))
+    return boxes

@@ -39,7 +39,7 @@ from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, between_beams, bonded_wall, ground_below_all, side_of, stacked
-from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, walls_of
+from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .drawing import odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
@@ -525,6 +525,53 @@ class Masonry:
         options = _halved(halves, options)
         wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
         return cls(between_beams(wall[1:]), **options)
+
+    @classmethod
+    def wallette(
+        cls,
+        length: float,
+        height: float,
+        unit: tuple[float, float],
+        thickness: float,
+        density: float = 2000.0,
+        *,
+        leaves: int = 1,
+        headers: int = 0,
+        beam: bool = True,
+        halves: Bond | None = None,
+        **options: Any,
+    ) -> Self:
+        """A wall in running bond in space on a fixed base, as laboratories load it out of its plane.
+
+        Its length runs along y, and its outer face is x = 0, as that of a facade.
+
+        Args:
+            length, height, unit, thickness, density, halves: as of `running_bond`; units of several leaves are whole.
+            leaves: wythes beside each other through the thickness, 1 to 10. The joints between them have the normal x,
+                so that a function of the joint gives them a bond of their own.
+            headers: every so many courses one of headers, half a unit long, that go through all leaves; 0 for none.
+            beam: whether a fixed beam lies on it, which the case leads by `supports={"beam": (t, dx, dy, dz)}`.
+            options: further arguments of `Masonry`. The blocks are "base", the units as of `running_bond` with the
+                number of the leaf or a letter of the header, and "beam".
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+
+        Examples:
+            >>> wall = mr.Masonry.wallette(0.8, 0.4, (0.2, 0.1), 0.2, leaves=2, headers=4)
+            >>> wall.names[1], wall.names[-2], len(wall.free)
+            ('unit_0_0_0', 'unit_3_4', 34)
+        """
+        if halves is not None and (leaves, headers) != (1, 0):
+            raise ValueError(
+                f"halves with leaves = {leaves} and headers = {headers}: units of several leaves are whole"
+            )
+        options = _halved(halves, options)
+        wall = bonded_wall(length, height, unit, thickness, density, halves is not None)
+        blocks = between_beams(wall[1:])
+        return cls(
+            wallette_of(blocks if require_flag("beam", beam) else blocks[:-1], unit[0], leaves, headers), **options
+        )
 
     @classmethod
     def box(cls, size: ArrayLike, *, density: float = 2000.0, **options: Any) -> Self:
