@@ -48,7 +48,8 @@ def long_case(name: str) -> tuple[mr.MasonryCase, float]:
     record = mr.GroundMotion.synthetic(3.0, 10.0, seed=1)
     if name.startswith("1,000 units"):
         k_s = None if "rigid" in name else K_SPACE
-        masonry = mr.Masonry.running_bond(15.0, 8.0, (0.5, 0.25), k_n=K_SPACE, k_s=k_s)
+        bond = mr.BONDS["cement mortar, wall J4D"] if "mortar" in name else None
+        masonry = mr.Masonry.running_bond(15.0, 8.0, (0.5, 0.25), k_n=K_SPACE, k_s=k_s, bond=bond)
         return mr.MasonryCase(masonry, 0.5, motion=record), 10.0
     if name.startswith("façade"):
         masonry = mr.Masonry.facade(4.0, 3.0, 1.0, (0.5, 0.25), k_n=K_SPACE, k_s=K_SPACE)
@@ -60,6 +61,7 @@ def long_case(name: str) -> tuple[mr.MasonryCase, float]:
 
 WAITS = (
     "1,000 units, sprung, 10 s",
+    "1,000 units, mortar, 10 s",
     "1,000 units, rigid, 10 s",
     "façade in space, sprung, 10 s",
     "wall of the size of J4D, dry, 1 s",
