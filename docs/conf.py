@@ -66,6 +66,8 @@ sphinx_gallery_conf = {
 html_theme = "furo"
 html_title = "mjrock"
 html_static_path = ["static"]
+LIVE = HERE / "build" / "live"
+html_extra_path = ["build/live"]
 html_css_files = ["mjrock.css"]
 html_copy_source = False
 html_show_sourcelink = False
@@ -117,7 +119,18 @@ def compile_loops() -> None:
     mjrock.solve_analytical(case, mjrock.Restitution.from_geometry(wall))
 
 
+def write_live_view() -> None:
+    """Write the page that export.md shows: an arch whose support moves away, to be turned and played."""
+    arch = mjrock.Masonry.arch(radius=1.0, thickness=0.25, voussoirs=11, ground=True)
+    t = [0.0, 1.0]
+    spread = {"right_abutment": (t, [0.0, 0.5], [0.0, 0.0])}
+    answer = mjrock.solve_explicit(mjrock.MasonryCase(arch, 2.0, supports=spread), output_step=0.02, forces=True)
+    LIVE.mkdir(parents=True, exist_ok=True)
+    mjrock.plotting.view(answer, LIVE / "arch_view.html")
+
+
 compile_loops()
+write_live_view()
 
 
 def setup(app: object) -> None:
