@@ -114,6 +114,10 @@ EQUIVALENT = {
         "joints on what is fixed have no arm that is read"
     ),
     "rows.py: if inertia.friction[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
+    "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
+    "reading.py: peak_times: Array = field(default_factory=lambda: np.zeros(1))": "masonry has no peaks that are read",
+    "reading.py: early = t[-1] <= case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to "
+    "the duration": "no sample is half a step before the end to the last bit",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""
