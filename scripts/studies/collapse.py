@@ -5,7 +5,7 @@ Prints for each run how many blocks fall, the largest share of a block that lies
 that has no account over what the ground put in, and the time of the processor. Beside it stand the number of fallen
 with half the step, and the least and the most of some seeds: the same motion times 1 + 1e-9 of a random number.
 Prints at last how the heap of the wall lies still: its kinetic energy, and how far a block creeps in ten seconds.
-Writes collapse.csv and collapse.txt.
+Writes collapse.csv, a row when its runs are done, and collapse.txt.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -116,6 +117,18 @@ def creep(duration: float, rest: float) -> tuple[float, float]:
     return float(fallen.ledger.kinetic[-1]), float(ways[on_ground].max())
 
 
+def row(found: dict[Run, Found]) -> list[object]:
+    """The line of a table for the runs of one scene: the first, the one with half the step, the seeds."""
+    (run, first), (_, half), *_ = found.items()
+    scatter = [one.fallen for seed, one in found.items() if seed.step == 1.0]
+    overlap, unaccounted = (max(getattr(one, name) for one in found.values()) for name in ("overlap", "unaccounted"))
+    return [
+        run.name, len(MASONRY[run.name]().free), f"{run.strength:g}", f"{run.duration:g}", first.fallen, half.fallen,
+        f"{min(scatter)} to {max(scatter)}", f"{overlap:.2%}", f"{unaccounted:.1e}", f"{first.kinetic:.1e}",
+        f"{first.took:.3g}",
+    ]  # fmt: skip
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Run the study."""
     parser = cli.parser(__doc__, "collapse")
@@ -134,20 +147,14 @@ def main(argv: Sequence[str] | None = None) -> None:
             scene[0], args.seeds_of_facades
         )
         runs += [Run(*scene), Run(*scene, step=0.5), *(Run(*scene, seed=seed) for seed in range(1, seeds + 1))]
-    with ProcessPoolExecutor(None if len(runs) > 3 else 1) as pool:
-        found = dict(zip(runs, tqdm(pool.map(followed, runs), total=len(runs), delay=3, disable=None), strict=True))
-    rows = []
-    for scene in scenes:
-        first, half = found[Run(*scene)], found[Run(*scene, step=0.5)]
-        every = [one for run, one in found.items() if run[:3] == scene]
-        scatter = [one.fallen for run, one in found.items() if run[:3] == scene and run.step == 1.0]
-        rows.append([
-            scene[0], len(MASONRY[scene[0]]().free), f"{scene[1]:g}", f"{scene[2]:g}", first.fallen, half.fallen,
-            f"{min(scatter)} to {max(scatter)}", f"{max(one.overlap for one in every):.2%}",
-            f"{max(one.unaccounted for one in every):.1e}", f"{first.kinetic:.1e}", f"{first.took:.3g}",
-        ])  # fmt: skip
     header = ["masonry", "units", "strength", "time [s]", "fallen", "half step", "seeds", "largest overlap"]
     header += ["without account [-]", "kinetic at the end [J]", "processor [s]"]
+    rows = list[list[object]]()
+    with ProcessPoolExecutor(None if len(runs) > 3 else 1) as pool:
+        coming = tqdm(pool.map(followed, runs), total=len(runs), delay=3, disable=None)
+        for _, ran in groupby(zip(runs, coming, strict=True), key=lambda one: one[0][:3]):
+            rows.append(row(dict(ran)))
+            cli.write_text(out / "collapse.csv", cli.csv_text(header, rows))  # an interrupted study keeps its rows
     kinetic, way = creep(*((0.4, 0.1) if args.quick else (8.0, REST)))
     said = f"the heap of the wall has {kinetic:.1e} J after its fall; in {REST:g} s more"
     text = f"{cli.table(header, rows)}\n\n{said} no block moves by more than {1e3 * way:.2g} mm"
