@@ -27,6 +27,8 @@ DIMENSION: dict[str, Any] = {"arrowstyle": "|-|,widthA=0.2,widthB=0.2", "color":
 LEADER: dict[str, Any] = {"arrowstyle": "-", "color": "0.6", "linewidth": 0.5, "relpos": (0.0, 0.5)}
 TALLEST, WIDEST, LONGEST = 3.4, 2.6, 5.4
 """Largest height of a drawing, and largest width of the section and of the elevation [inch]."""
+POINTS = 4001
+"""Rotations at which ties are looked at, up to the overturning."""
 NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
 """Width of the column of notes, room between the drawings and at the edges, and height of a line of text [inch]."""
 
@@ -35,7 +37,8 @@ NOTES, APART, EDGE, LINE = 2.5, 0.4, 0.15, 0.125
 def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
-    Openings of one sill are drawn at equal distances: where they are along the wall plays no part. The elevation of a
+    A tie that breaks before the wall overturns says how far the centroid has then moved outwards as the wall turns
+    about its toe. Openings of one sill are drawn at equal distances: where they are along the wall plays no part. The elevation of a
     long wall has a smaller scale than the section.
 
     Args:
@@ -143,11 +146,15 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
     """Where each effect acts in the section, and what it is."""
     face, said, made = -case.block.b, dict[Effect, str](), []
+    _, breaking = case.limits_of_ties(np.linspace(0.0, case.overturning_rotation, POINTS))
     for name, effect in case.named.items():
         if not effect.mass_added:
             said[effect] = f"{said[effect]}, {name}" if effect in said else name
     for effect, name in [*said.items(), *((mass, mass.label) for mass in case.wall.masses)]:
         note = f"{type(effect).__name__}({effect.arguments})" if arguments else f"{name}: {effect.said}"
+        if name in breaking and not arguments:
+            moved = float(case.wall.pose(np.array([breaking[name]]))[0, 0])
+            note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"
         made.append(((face if effect.on_face else effect.offset, effect.height), note))
     if arguments and case.stop_top is not None:
         made.append(((face - 0.05, case.stop_top), "SideStop(top)"))

@@ -146,16 +146,7 @@ class PushoverCurve:
         They are those of a wall that turns about its outer toe.
         """
         fine = np.linspace(self.rotation[0], self.rotation[-1], 20_001)
-        yielding: dict[str, float] = {}
-        breaking: dict[str, float] = {}
-        names = [name for name, tie in self.case.springs.items() if tie.law.holds]
-        for name, pull in zip(names, self.case.pulls, strict=True):
-            elongation = pulled(pull, fine, 1.0)[0] - pull.strength / pull.stiffness
-            for at, further in ((yielding, 0.0), (breaking, pull.ultimate)):
-                beyond = np.flatnonzero(elongation > further)
-                if beyond.size:
-                    at[name] = float(fine[beyond[0]])
-        return yielding, breaking
+        return self.case.limits_of_ties(fine)
 
     def __repr__(self) -> str:
         base = "rigid" if self.contacts is None else f"{self.contacts.base.points} lines"

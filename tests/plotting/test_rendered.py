@@ -59,6 +59,17 @@ def test_a_gable_and_a_rose_window_are_drawn():
     assert area_of(figure, figure.axes[1], STONE) == pytest.approx(area, rel=0.08)
 
 
+def test_the_sketch_says_where_a_tie_breaks():
+    """The displacement of the centroid is that of the code check, whose wall has no masses added."""
+    tie = mr.Tie(height=3.9, stiffness=2e6, strength=3e3, ultimate=0.02)
+    case = mr.Case(mr.Block.from_size(0.6, 4.2), 0.0, 1.0, effects=(tie, mr.Tie(4.0, 1e6, strength=1e3)))
+    said = [text.get_text() for text in plotting.sketch(case).axes[0].texts]
+    (note,) = (text for text in said if text.startswith("tie_0"))
+    check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"))
+    assert note.endswith(f"breaks where the centroid has moved by {1e3 * check.breaking['tie_0']:.0f} mm")
+    assert not any("breaks" in text for text in said if text.startswith("tie_1"))
+
+
 def test_spectra_their_mean_and_their_target():
     """The mean of motions that are scaled to the target lies on it in the mean of the periods."""
     target, T = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"), np.geomspace(0.1, 2.0, 12)

@@ -27,6 +27,13 @@ def test_the_least_strength_governs():
     assert (tie.height, tie.length, tie.slack, tie.ultimate) == (6.0, 8.0, 0.005, 0.03)
 
 
+def test_punching_beside_a_printed_example():
+    """Master Magazine 7, p. 75: a round plate of 100 mm on a wall of 300 mm, f_v0 = 0.74 N/cm2, punches at 2.79 kN. A
+    square plate has 4 / pi of the perimeter."""
+    square = strengths_of_bar(0.016, 450e6, 0.1, 0.3, 7.4e3, 1e6)["punching"]
+    assert square * math.pi / 4 == pytest.approx(2.79e3, abs=5)
+
+
 @pytest.mark.parametrize(
     ("other", "strength"),
     [

@@ -27,7 +27,7 @@ from .effects import KINDS, AddedMass, Carrying, Load, SideStop, forces_of
 from .in_space import require_in_plane
 from .plausible import doubts
 from .restoring_moment import Restoring, of_force
-from .ties_on_wall import TiePull, stored, taken, yielded
+from .ties_on_wall import TiePull, limits, stored, taken, yielded
 
 
 @dataclass(frozen=True)
@@ -179,6 +179,11 @@ class Case(Carrying):
     def resisting(self) -> tuple[TiePull, ...]:
         """All that resists a push outwards with a spring: ties, which bring the wall back, and what slips both ways."""
         return tuple(TiePull.of(tie, self.block.b, self.block.half_base) for tie in self.springs.values())
+
+    def limits_of_ties(self, rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
+        """Rotations [rad] at which ties yield, and at which they break, by name, of those that do at increasing ones."""
+        names = (name for name, tie in self.springs.items() if tie.law.holds)
+        return limits(dict(zip(names, self.pulls, strict=True)), rotations)
 
     @property
     def pressing(self) -> float:

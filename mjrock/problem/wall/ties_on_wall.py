@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,6 +70,19 @@ def pulled(tie: TiePull, theta: Any, side: float) -> tuple[Any, Any]:
 def moment_at_strength(pulls: Sequence[TiePull]) -> float:
     """Restoring moment of ties that pull with their strength, about the outer toe of a wall at rest [N m]."""
     return sum(pull.strength * float(pulled(pull, 0.0, 1.0)[1]) for pull in pulls)
+
+
+def limits(pulls: Mapping[str, TiePull], rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
+    """Rotations [rad] at which ties yield, and at which they break, of those that do at increasing rotations (n,)."""
+    yielding: dict[str, float] = {}
+    breaking: dict[str, float] = {}
+    for name, pull in pulls.items():
+        elongation = pulled(pull, rotations, 1.0)[0] - pull.strength / pull.stiffness
+        for at, further in ((yielding, 0.0), (breaking, pull.ultimate)):
+            beyond = np.flatnonzero(elongation > further)
+            if beyond.size:
+                at[name] = float(rotations[beyond[0]])
+    return yielding, breaking
 
 
 def yielded(pulls: Sequence[TiePull], theta: Array) -> Array:
