@@ -8,6 +8,9 @@ INSTALLED := out/installed
 
 .PHONY: demo docs test test-slow test-oldest test-installed mutants lint calibrate models figures robots clean stale
 
+# Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
+test test-slow test-oldest test-installed mutants: export OPENBLAS_NUM_THREADS = 1
+
 demo: $(READY)
 	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
 

@@ -38,8 +38,8 @@ def sketch(case: Case, title: str = "", *, arguments: bool = False) -> Figure:
     """Section and elevation of a wall at rest with dimensions [m], true to scale, and its effects.
 
     A tie that breaks before the wall overturns says how far the centroid has then moved outwards as the wall turns
-    about its toe. Openings of one sill are drawn at equal distances: where they are along the wall plays no part. The elevation of a
-    long wall has a smaller scale than the section.
+    about its toe. Openings of one sill are drawn at equal distances: where they are along the wall plays no part. The
+    elevation of a long wall has a smaller scale than the section.
 
     Args:
         case: the wall and its effects.

@@ -166,6 +166,7 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     source = tmp_path / "docs"
     shutil.copytree(DOCS, source, ignore=shutil.ignore_patterns("build", "auto_examples"))
     command = [sys.executable, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q"]
+    command += ["-D", r"sphinx_gallery_conf.filename_pattern=/0[^7]"]  # the church has a test of its own above
     command += ["-d", str(tmp_path / "doctrees"), str(source), str(tmp_path / "html")]
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     found = subprocess.run(command, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False)

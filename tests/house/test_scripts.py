@@ -200,6 +200,8 @@ LONG = {
     "joint_stiffness",
     "two_storeys",
     "columns_in_space",
+    "arching",
+    "slow_push",
 }
 """Scripts that take a while even with --quick."""
 

@@ -181,7 +181,7 @@ class Case(Carrying):
         return tuple(TiePull.of(tie, self.block.b, self.block.half_base) for tie in self.springs.values())
 
     def limits_of_ties(self, rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
-        """Rotations [rad] at which ties yield, and at which they break, by name, of those that do at increasing ones."""
+        """Rotations [rad] at which ties yield, and at which they break, by name, within increasing `rotations` (n,)."""
         names = (name for name, tie in self.springs.items() if tie.law.holds)
         return limits(dict(zip(names, self.pulls, strict=True)), rotations)
 
