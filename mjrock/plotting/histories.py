@@ -95,9 +95,9 @@ GROUNDS = {
 
 @picture(case=kind(Case, MasonryCase))
 def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
-    """Acceleration of what stands below against time [m/s2], horizontal and, if there are some, transverse and vertical.
+    """Acceleration of the base against time [m/s2], horizontal and, where there are some, transverse and vertical.
 
-    It is that of the ground, or of a floor.
+    The base is the ground or a floor.
     """
     moved = [(getattr(case, name, None), *look) for name, look in GROUNDS.items()]
     for motion, label, color in moved:

@@ -89,8 +89,8 @@ def test_eurocode(code, soil, T, over_ag):
 )
 def test_eurocode_as_another_program_prints_it(code, soil, printed):
     """Values of eurocodepy 2026.1.1, an open library for the Eurocodes, for 0.3 g and q = 1, with which the design
-    spectrum is the elastic one from T_B on. Its lower bound of 0.2 a_g S, at long periods of type 2, is left out, and so
-    is ground D of type 2, for which it has another S than table 3.3."""
+    spectrum is the elastic one from T_B on. Its lower bound of 0.2 a_g S, at long periods of type 2, is left out, and
+    so is ground D of type 2, for which it has another S than table 3.3."""
     T = np.array([0.2, 0.5, 1.0, 2.0, 3.0])[: len(printed)]
     spectrum = mr.code_spectrum(f"EC8 type {code}", ag=2.941995, soil=soil)
     np.testing.assert_allclose(spectrum(T), printed, atol=5.1e-5)
