@@ -3,20 +3,23 @@
 Nanoseconds of the processor for a contact line of the plane or a point of space and step: walls in running bond and
 façades, whose ground accelerates at once, with sprung and with rigid friction. The earlier version is taken from the
 repository's history and runs in a process of its own, in turn with this one. Then set-up, rocking theory, first runs
-with an empty store, and what large scenes take. Prints the tables, and digests of the answers of this version, and
-writes step_cost.txt, .csv and .png, step_cost_starts.txt and step_cost_waits.txt, each as soon as it is measured.
+with an empty store, what large scenes take, and what it costs to keep the forces of joints. Prints the tables, and
+digests of the answers of this version, and writes step_cost.txt, .csv and .png, step_cost_starts.txt,
+step_cost_waits.txt and step_cost_forces.txt, each as soon as it is measured.
 """
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import math
 import statistics
 import sys
 import tempfile
+import time
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -42,7 +45,7 @@ SETTLED_IN = 50
 HEADER = ["scene", "lines", "digest", "before [ns]", "now [ns]", "C, one loop [ns]", "C, vectors [ns]"]
 
 
-@cache
+@functools.cache
 def long_case(name: str) -> tuple[mr.MasonryCase, float]:
     """A large scene under a record, for a part of its time, and the time that a user would ask for [s]."""
     record = mr.GroundMotion.synthetic(3.0, 10.0, seed=1)
@@ -78,6 +81,32 @@ def waited(name: str) -> list[object]:
     whole = setting_up + spent * asked / case.duration
     blocks = len(answer.case.masonry.blocks)
     return [name, blocks, lines, f"{stats['timestep'] * 1e6:.1f}", f"{case.duration:g}", f"{spent:.1f}", f"{whole:.0f}"]
+
+
+def forces_kept(rounds: int) -> list[list[object]]:
+    """Rows of the table of forces: blocks, and processor seconds of runs in turn without forces and with them."""
+    record = mr.GroundMotion.synthetic(1.0, 10.0, seed=1)
+    joints: dict[str, Any] = {"k_n": K_SPACE, "k_s": K_SPACE}
+    wall = functools.partial(mr.Masonry.running_bond, 4.0, 2.0, (0.4, 0.2), **joints)
+    explicit, engine = mr.solve_explicit, mr.simulate
+    runs = {
+        "wall, explicit steps": (explicit, wall(), 2.0),
+        "wall with mortar, explicit steps": (explicit, wall(bond=mr.BONDS["cement mortar, wall J4D"]), 2.0),
+        "façade in space, explicit steps": (explicit, mr.Masonry.facade(3.2, 1.6, 1.2, (0.4, 0.2), **joints), 1.0),
+        "wall, MuJoCo": (engine, mr.Masonry.running_bond(1.6, 0.8, (0.4, 0.2), k_n=1e8), 1.0),
+        "façade in space, MuJoCo": (engine, mr.Masonry.facade(1.6, 0.8, 0.8, (0.4, 0.2), k_n=1e8), 0.5),
+    }
+    rows: list[list[object]] = []
+    for name, (solve, masonry, duration) in tqdm(runs.items(), desc="forces", disable=None, leave=False):
+        case, took = mr.MasonryCase(masonry, duration, record), dict[bool, list[float]]({False: [], True: []})
+        for i in range(2 * rounds + 2):
+            begun = time.process_time()
+            solve(case, forces=i % 2 == 1, output_step=0.01)
+            if i > 1:  # the first of both compile what is not compiled yet
+                took[i % 2 == 1].append(time.process_time() - begun)
+        without, kept = (statistics.median(times) for times in took.values())
+        rows.append([name, len(masonry.free), f"{without:.2f}", f"{kept:.2f}", f"{kept / without:.2f}"])
+    return rows
 
 
 def floors(folder: Path, names: Sequence[str], rounds: int) -> dict[str, list[float]]:
@@ -153,6 +182,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     header = ["scene", "blocks", "lines", "step [us]", "timed [s]", "took [s]", "the whole [s]"]
     waits = cli.table(header, [waited(name) for name in tqdm(WAITS, disable=None, leave=False)])
     cli.report(out / "step_cost_waits", waits)
+    header = ["scene", "blocks", "without forces [s]", "with forces [s]", "ratio [-]"]
+    cli.report(out / "step_cost_forces", cli.table(header, forces_kept(rounds)))
 
 
 def step_table(
