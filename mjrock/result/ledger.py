@@ -69,7 +69,8 @@ class Ledger:
         dashpots: work that the dashpots have taken since the release, by group of contacts: "base" and "side" of a
             wall.
         friction: work that friction has taken since the release.
-        ground: work that the ground motion has put in, as seen from the base.
+        ground: work that the ground motion has put in, as seen from the base, and with it that of supports that are
+            moved and of actuators.
         ties: work that yielding ties have taken since the release, by tie.
         broken: elastic energy that ties have lost by breaking since the release, by tie; only those that may break.
         ends: energy that contacts of masonry have lost at the ends of faces since the release, those of "joints" and
