@@ -112,6 +112,9 @@ EQUIVALENT = {
     },
     "joint_law.py: k_s: Any = 1": "a law that is given its friction alone has no shear spring",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
+    "bond_law.py: if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears / bond.bears:": (
+        "what is not crushed closes by zero in the search, too"
+    ),
     "bond_law.py: PASSES = 16": "eight passes have found the opening and the closing to rounding",
     "forces.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
         "joints on what is fixed have no arm that is read"
