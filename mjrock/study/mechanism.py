@@ -7,6 +7,7 @@ the ground, or on a floor whose spectrum or motion is the demand, and has no vib
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -19,7 +20,7 @@ from ..problem.ground.spectrum import response_spectrum
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.ties_on_wall import moment_at_strength
-from ..quantities import GRAVITY, Array, require_real, require_within, shown, takes
+from ..quantities import GRAVITY, Array, Implausible, require_real, require_within, shown, takes
 from .pushover import pushover
 
 SHARE = {"SLV": 0.4, "SLC": 0.6}
@@ -176,6 +177,9 @@ def mechanism_check(
     Raises:
         TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
 
+    Warns:
+        Implausible: for ties that never break and raise d_SLC above d_0 of the wall without them.
+
     Examples:
         >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
         >>> str(check).startswith('<MechanismCheck: starts at 0.1')
@@ -197,6 +201,8 @@ def mechanism_check(
     d = moved * second / (wall.centroid_height * first)
     a = curve.multiplier * GRAVITY / (participation * factor)
     d_0 = float(d[-1])
+    alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
+    _warn_of_ties(case, SHARE["SLC"] * d_0, alone)
     states = {}
     for name, share in SHARE.items():
         capacity = share * d_0
@@ -207,6 +213,19 @@ def mechanism_check(
         tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
     return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
+
+
+def _warn_of_ties(case: Case, capacity: float, alone: float) -> None:
+    """Warn of ties that never break, where they raise d_SLC above the displacement `alone` at which the curve of the
+    wall without them ends [m]."""
+    endless = [name for name, tie in case.springs.items() if tie.law.ultimate == math.inf]
+    if endless and capacity > alone:
+        warnings.warn(
+            f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
+            f"{', '.join(endless)} would hold at any displacement; say by `ultimate` how far a tie can be drawn out",
+            Implausible,
+            stacklevel=3,
+        )
 
 
 def _by_limit_state(demand: Demand | Mapping[str, Demand]) -> Mapping[str, Demand]:

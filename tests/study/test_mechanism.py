@@ -1,6 +1,7 @@
 """The check of a local mechanism: every step against its closed form for one block."""
 
 import math
+import warnings
 
 import pytest
 
@@ -86,3 +87,22 @@ def test_each_limit_state_has_a_demand_of_its_own():
 def test_what_cannot_be(call, complaint):
     with pytest.raises((ValueError, TypeError), match=complaint):
         call()
+
+
+def test_ties_that_never_break_are_doubted_where_they_make_the_capacity():
+    wall = mr.Block.from_size(0.6, 4.0, 6.0, 1900.0)
+    spectrum = mr.code_spectrum("NTC 2018", ag=2.0, F0=2.45, Tc=0.35, soil="B")
+
+    def check(**changed):
+        tie = mr.Tie(height=4.0, stiffness=2e7, **changed)
+        return mr.mechanism_check(mr.Case(wall, 0.0, 1.0, effects=tie), spectrum)
+
+    with pytest.warns(mr.Implausible, match=r"d_SLC = .* is more than 0.3 m, .* tie_0 would hold at any displacement"):
+        endless = check(strength=120e3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        drawn_out = check(strength=120e3, ultimate=0.05)
+        weak = check(strength=3e3)
+    assert endless.d_0 > 1.0
+    assert drawn_out.d_0 == pytest.approx(0.3, rel=1e-3)
+    assert 0.3 < weak.d_0 < 0.5
