@@ -115,6 +115,12 @@ EQUIVALENT = {
     "bond_law.py: if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears / bond.bears:": (
         "what is not crushed closes by zero in the search, too"
     ),
+    "bond_law.py: if (bond.k / gap) ** 2 + sheared * sheared <= bond.bears * bond.bears:": (
+        "what is not crushed closes by zero in the search, too"
+    ),
+    "bond_law.py: if bond.k * (far + crack) <= strength:": (
+        "once there is a crack, the spring holds what is left of the strength, or more where slip has worn it"
+    ),
     "bond_law.py: PASSES = 16": "eight passes have found the opening and the closing to rounding",
     "forces.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
         "joints on what is fixed have no arm that is read"
