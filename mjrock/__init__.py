@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from .problem.masonry.bond import BONDS, Bond
     from .problem.masonry.case import MasonryCase
     from .problem.masonry.collapse import Collapse, collapse_multiplier
+    from .problem.masonry.compound import Compound
     from .problem.masonry.joints import Joint
     from .problem.masonry.joints_in_space import SpaceJoint
     from .problem.masonry.masonry import Masonry
@@ -93,8 +94,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
-    "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "ContactParameters",
-    "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility",
+    "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
+    "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility",
     "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
     "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
     "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",

@@ -157,7 +157,7 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
     window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
     for block in bodies.ground:
         level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
-        for face in (block.corners[list(face)] for face in block.faces):
+        for face in (side.corners for side in block.sides):
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]
