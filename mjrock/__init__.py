@@ -95,8 +95,8 @@ if TYPE_CHECKING:
 __all__ = [
     "BONDS", "CALIBRATED", "CALIBRATED_BED", "GRAVITY", "MASONRY_TYPES", "PUBLISHED", "Actuator", "AddedMass",
     "Analysis", "Block", "Bond", "Capacity", "Case", "CodeSpectrum", "Collapse", "Comparison", "Compound",
-    "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum", "Fragility",
-    "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
+    "ContactParameters", "ContactWarning", "Contacts", "CoulombFriction", "Damper", "DampingLaw", "FloorSpectrum",
+    "Fragility", "FrictionDamper", "Gable", "Grid", "GroundMotion", "Impact", "Implausible", "InspectedContact", "Interface",
     "Joint", "Ledger", "Load", "ManyContactParameters", "Masonry", "MasonryAnalysis", "MasonryCase",
     "MasonryResponse", "MasonryType", "MeasuredContact", "MechanismCheck", "Opening", "Outcome", "PairContact",
     "PairContacts", "PairedRatio", "Plan", "Polygon", "Polyhedron", "PowerLaw", "Push", "RecordSet", "Response",

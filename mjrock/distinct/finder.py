@@ -154,7 +154,7 @@ class Finder:
         solids, count = pair_number(found.face, found.other, len(self.owner)), len(self.number)
         found = found._replace(face=self.owner[found.face], other=self.owner[found.other])
         blocks = pair_number(found.face, found.other, count)
-        _, at, of = np.unique(solids, return_index=True, return_inverse=True)  # the places of solids have one area
+        at = np.unique(solids, return_index=True)[1]  # the places of solids have one area
         _, of_pair = np.unique(blocks, return_inverse=True)
         in_pair = np.bincount(of_pair[at], weights=found.area[at])[of_pair]
         over = found.area > 0

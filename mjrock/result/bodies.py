@@ -11,9 +11,9 @@ from ..geometry.frames import PLANE
 from ..geometry.hull import Faces, prism
 from ..geometry.poses import rotations
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.polygon import Polygon
 from ..problem.wall.case import Case
 from ..quantities import Array, Integers, require_within

@@ -8,6 +8,7 @@ from ...quantities import Array
 from .joints_in_space import Face, faces_of
 from .masonry import Masonry
 
+
 def faces_of_joints(masonry: Masonry) -> tuple[tuple[Face, Face], ...]:
     """Of each joint of masonry in space, the face of the block below and that of the block above."""
     faces = [faces_of(block.sides) for block in masonry.polyhedra]

@@ -61,9 +61,7 @@ class Lines(NamedTuple):
         return pairs[:, 0], pairs[:, 1]
 
 
-def lines_of(
-    blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int
-) -> Lines:
+def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner is that of the block below, and the point is

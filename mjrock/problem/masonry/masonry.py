@@ -40,8 +40,8 @@ from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, between_beams, bonded_wall, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
-from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .compas_files import compas_text, read_compas
+from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .drawing import odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joints import Joint, joints_in_plane, names_of
@@ -151,10 +151,11 @@ class Masonry:
             if not isinstance(block, Polygon | Polyhedron | Compound):
                 raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon, Polyhedron or Compound")
             if block.in_space != self.blocks[0].in_space:
-                raise TypeError(
-                    f"blocks[{i}] is a {type(block).__name__} {'in space' if block.in_space else 'of the plane'}, and "
-                    "blocks[0] is not; give blocks of one kind"
-                )
+                which = [
+                    f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}"
+                    for b in (block, self.blocks[0])
+                ]
+                raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
         if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
             raise ValueError(
                 f"blocks = {len(self.free)} free and {len(self.blocks) - len(self.free)} fixed; at least one of each "
@@ -804,19 +805,17 @@ class Masonry:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
 
         Raises:
-            ValueError: for blocks in the plane.
+            ValueError: for blocks in the plane, or a `Compound`.
         """
-        self._require_space()
-        return write_text(require_path("path", path), obj_text(self.polyhedra, self.names))
+        return write_text(require_path("path", path), obj_text(self.convex_in_space("an OBJ file"), self.names))
 
     def to_compas(self, path: AnyPath) -> Path:
         """Write the blocks to the JSON file of a COMPAS model, with supports and densities, in metres.
 
         Raises:
-            ValueError: for blocks in the plane.
+            ValueError: for blocks in the plane, or a `Compound`.
         """
-        self._require_space()
-        return write_text(require_path("path", path), compas_text(self.polyhedra, self.names))
+        return write_text(require_path("path", path), compas_text(self.convex_in_space("a COMPAS model"), self.names))
 
     @classmethod
     def _read(
@@ -844,9 +843,14 @@ class Masonry:
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
 
-    def _require_space(self) -> None:
+    def convex_in_space(self, what: str) -> list[Polyhedron]:
+        """The blocks. A ValueError says what takes convex blocks in space alone, if they are in the plane or not
+        convex."""
         if not self.in_space:
             raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
+        if compounds := [n for n, block in zip(self.names, self.blocks, strict=True) if isinstance(block, Compound)]:
+            raise ValueError(f"blocks: {what} takes convex blocks, and {named(compounds)} has several parts")
+        return [block for block in self.blocks if isinstance(block, Polyhedron)]
 
     def _touching(self) -> Self:
         """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap."""

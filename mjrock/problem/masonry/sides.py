@@ -11,8 +11,8 @@ class Side(NamedTuple):
     """A plane piece of the surface of a block.
 
     Args:
-        corners: in the plane the two ends of an edge, counterclockwise about the block [m], shape (2, 2). In space those
-            of a convex polygon, counterclockwise as seen from outside [m], shape (n, 3).
+        corners: in the plane the two ends of an edge, counterclockwise about the block [m], shape (2, 2). In space
+            those of a convex polygon, counterclockwise as seen from outside [m], shape (n, 3).
         normal: unit vector out of the block, shape (d,).
         parts: numbers of the convex parts of the block that it bounds.
     """

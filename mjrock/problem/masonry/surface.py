@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -43,15 +44,13 @@ def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: f
     """
     covered = [[list[Array]() for _ in part.sides] for part in parts]
     for joint in joined:
-        for part, side in zip((joint.below, joint.above), joint.sides, strict=True):
-            covered[part][side].append(np.array([joint.start, joint.end]))
+        for k, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            covered[k][side].append(np.array([joint.start, joint.end]))
     pieces, inside = list[Side](), []
     for i, part in enumerate(parts):
         left = [_uncovered(side, covered[i][j], SHORTEST * close) for j, side in enumerate(part.sides)]
         inside.append(np.array([not len(some) for some in left]))
-        pieces += [
-            Side(ends, side.normal, (i,)) for side, some in zip(part.sides, left, strict=True) for ends in some
-        ]
+        pieces += [Side(ends, side.normal, (i,)) for side, some in zip(part.sides, left, strict=True) for ends in some]
     loops = [_straightened(loop, close) for loop in _loops(pieces)]
     sides = tuple(side for loop in loops for side in loop)
     outer = max(range(len(loops)), key=lambda k: _area(loops[k]))
@@ -67,13 +66,13 @@ def surface_in_space(parts: Sequence[Polyhedron], joined: Sequence[SpaceJoint], 
     covered. Faces in one plane are one side where that is convex."""
     covered = [np.zeros(len(part.faces)) for part in parts]
     for joint in joined:
-        for part, side in zip((joint.below, joint.above), joint.sides, strict=True):
-            covered[part][side] += joint.area
+        for i, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            covered[i][side] += joint.area
     sides, inside = list[Side](), []
-    for i, part in enumerate(parts):
+    for k, part in enumerate(parts):
         areas = np.array([_area_in_space(side) for side in part.sides])
-        inside.append(covered[i] > (1 - WITHIN) * areas)
-        sides += [side._replace(parts=(i,)) for side, gone in zip(part.sides, inside[i], strict=True) if not gone]
+        inside.append(covered[k] > (1 - WITHIN) * areas)
+        sides += [side._replace(parts=(k,)) for side, gone in zip(part.sides, inside[k], strict=True) if not gone]
     merged = _merged(sides, close)
     corners = np.unique(np.concatenate([side.corners for side in merged]), axis=0)
     return Surface(tuple(merged), corners, tuple(inside))
@@ -144,7 +143,7 @@ def _merged(sides: list[Side], close: float) -> list[Side]:
     """Sides of which those that lie in one plane and make a convex one are one."""
     sides = list(sides)
     while True:
-        for i, j in ((i, j) for i in range(len(sides)) for j in range(i)):
+        for i, j in combinations(range(len(sides)), 2):
             if (both := _both(sides[i], sides[j], close)) is not None:
                 sides = [both, *(side for k, side in enumerate(sides) if k not in (i, j))]
                 break
