@@ -61,7 +61,7 @@ calibrate: $(READY) # the laws that ship, and what they are worth on walls they 
 models: $(READY)
 	$(BIN)/python scripts/models/make_models.py
 
-figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
+figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes recorded ground motions where a script does
 	$(BIN)/python scripts/paper/compare_wall.py --check --out docs/figures/demo
 	$(BIN)/python scripts/paper/sketch.py --out docs/figures
 	$(BIN)/python scripts/studies/first_pictures.py --out docs/figures
@@ -110,7 +110,9 @@ figures: $(READY) # the pictures and tables of the README; RECORDS=folder takes 
 	$(BIN)/python scripts/studies/dome.py --out docs/figures
 	$(BIN)/python scripts/studies/vaults.py --out docs/figures
 	$(BIN)/python scripts/studies/bonded_facade.py --out docs/figures
+	$(BIN)/python scripts/studies/opened_in_vtk.py --out docs/figures
 	$(BIN)/python scripts/measure/throughput.py --out docs/figures
+	$(BIN)/python scripts/measure/step_cost.py --out docs/figures
 	$(BIN)/python scripts/measure/speed.py
 
 robots: $(READY) # public robots; PACKAGES=folder of packages that carry their models, MJX=a Python that has MuJoCo's MJX

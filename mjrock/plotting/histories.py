@@ -38,10 +38,12 @@ def rotation(ax: Axes, responses: Sequence[Response], labels: Sequence[str] | No
         ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
+    far = 4 * max(reached)  # a line there would flatten the motion
     for limit in {response.case.overturning_rotation / response.case.wall.alpha for response in responses}:
-        if abs(limit - 1) > 0.01 and limit < 4 * max(reached):  # one that is far would flatten the motion
+        if abs(limit - 1) > 0.01 and limit < far:
             ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
             ax.text(0.99, limit, "overturns", transform=ax.get_yaxis_transform(), fontsize=7, ha="right", va="top")
+            reached.append(limit)
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     said = [
@@ -93,7 +95,10 @@ GROUNDS = {
 
 @picture(case=kind(Case, MasonryCase))
 def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
-    """Acceleration of the ground against time [m/s2], horizontal and, where there are some, transverse and vertical."""
+    """Acceleration of the base against time [m/s2], horizontal and, where there are some, transverse and vertical.
+
+    The base is the ground or a floor.
+    """
     moved = [(getattr(case, name, None), *look) for name, look in GROUNDS.items()]
     for motion, label, color in moved:
         if motion is not None:
@@ -102,7 +107,7 @@ def acceleration(ax: Axes, case: Case | MasonryCase, until: float) -> Axes:
     if sum(motion is not None for motion, *_ in moved) > 1 or case.vertical is not None:
         ax.legend(frameon=False, fontsize=7, loc="upper right", ncols=2)
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
-    ax.set(xlabel=TIME, ylabel="ground [m/s²]")
+    ax.set(xlabel=TIME, ylabel="base [m/s²]")
     return ax
 
 

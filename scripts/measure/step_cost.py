@@ -115,14 +115,14 @@ def compared(versions: Sequence[speed.Version], task: str, size: int, rounds: in
 
 def drawn(rows: Sequence[Sequence[object]]) -> Figure:
     """Nanoseconds of each scene before, now, and of plain C."""
-    figure = Figure(figsize=(8.4, 3.6), layout="constrained")
+    figure = Figure(figsize=(7.4, 0.6 + 0.42 * len(rows)), layout="constrained")
     ax, places = figure.add_subplot(), np.arange(len(rows))
     for i, (label, colour) in enumerate((("before", "#b9b9b9"), ("now", "#12406b"), ("plain C", "#6c8a4e"))):
         values = [float(str(row[3 + i]) or "nan") for row in rows]
-        ax.bar(places + 0.27 * (i - 1), values, 0.27, label=label, color=colour)
-    ax.set_yscale("log")
-    ax.set_ylabel("a line and step [ns]")
-    ax.set_xticks(places, [f"{row[0]}\n{row[1]} lines" for row in rows], fontsize=7)
+        ax.barh(places + 0.27 * (i - 1), values, 0.27, label=label, color=colour)
+    ax.set_xlabel("time of a step for one line [ns]")
+    ax.set_yticks(places, [f"{row[0]}, {row[1]:,} lines" for row in rows])
+    ax.invert_yaxis()
     ax.legend(frameon=False)
     return figure
 

@@ -1,6 +1,7 @@
 """Masonry with bonds: at rest, by explicit steps, in limit analysis, and what refuses it."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -219,3 +220,40 @@ def test_a_bonded_wall_that_cracks_moves_in_the_plane_as_in_space():
     assert list(flat.cracked) == list(deep.cracked)
     gap = np.abs(deep.pose[..., [0, 2]] - flat.pose[..., :2]).max()
     assert gap < 1e-6 * np.abs(flat.pose - flat.pose[0]).max()
+
+
+def frequencies(x, h, modes):
+    """Of undamped modes about a constant, from samples [rad/s]: x_{i+n} + x_{i-n} follows from those between."""
+    n, inner = modes, len(x) - 2 * modes
+    rows = [np.ones(inner), x[n:-n], *(x[n + i : n + i + inner] + x[n - i : n - i + inner] for i in range(1, n))]
+    weights = np.linalg.lstsq(np.array(rows).T, x[2 * n :] + x[:inner], rcond=None)[0]
+    cosines = np.polynomial.chebyshev.chebroots([-weights[1], *(-2 * weights[2:]), 2.0])
+    return np.sort(np.arccos(cosines)) / h
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("in_space", [False, True], ids=["plane", "space"])
+def test_units_whose_bonds_are_strong_and_stiff_vibrate_as_one_block(in_space):
+    """Up and down, and in both modes of sway and rocking, on a joint that is four million times softer."""
+    found = []
+    for heights in ((0.0, 1.2), (0.0, 0.3, 0.6, 1.2)):
+        blocks = [mr.Polygon([(-1, -0.5), (1, -0.5), (1, 0), (-1, 0)], length=0.4, fixed=True, name="ground")]
+        for low, high in pairwise(heights):
+            corners = [(-0.2, low), (0.2, low), (0.2, high), (-0.2, high)]
+            blocks.append(mr.Polygon(corners, length=0.4, name=f"at {low}"))
+        if in_space:
+            blocks = [mr.Polyhedron.prism(block) for block in blocks]
+
+        def stiffness(joint):
+            return 2.5e7 if "ground" in joint.name else 1e14
+
+        masonry = mr.Masonry(blocks, k_n=stiffness, k_s=stiffness, friction=0.6, xi=0, bond=HUGE, points=2)
+        step = {"timestep": 8e-6} if len(heights) == 2 else {}
+        for way, accel, modes in (("motion", 1e-3, 2), ("vertical", 1e-2, 1)):
+            case = mr.MasonryCase(masonry, 0.4, **{way: mr.GroundMotion([accel] * 2, 0.4)})
+            answer = mr.solve_explicit(case, output_step=1e-3, **step)
+            up = 2 if in_space else 1
+            found.append(frequencies(answer.pose[:, -1, 0 if modes == 2 else up], answer.t[1], modes))
+    one, units = np.concatenate(found[:2]), np.concatenate(found[2:])
+    np.testing.assert_allclose(units, one, rtol=1e-6)
+    assert one[2] == pytest.approx(math.sqrt(2.5e7 * 0.16 / (2000 * 0.4 * 0.4 * 1.2)), rel=1e-6)

@@ -53,6 +53,7 @@ WRITES = {
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
     "joint_stiffness": {f"joint_stiffness.{ending}" for ending in ("png", "csv", "txt")},
     "collapse": {"collapse.csv", "collapse.txt"},
+    "opened_in_vtk": {"opened_in_vtk.txt"},
     "two_storeys": {f"two_storeys.{ending}" for ending in ("png", "csv", "txt")}
     | {"two_storeys_stands.gif", "two_storeys_falls.gif"},
     "columns_in_space": {f"columns_in_space.{ending}" for ending in ("png", "csv", "txt")},
@@ -202,6 +203,7 @@ LONG = {
     "columns_in_space",
     "arching",
     "slow_push",
+    "opened_in_vtk",
 }
 """Scripts that take a while even with --quick."""
 
@@ -210,6 +212,8 @@ LONG = {
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in WRITES]
 )
 def test_quick(name, tmp_path, capsys):
+    if name == "opened_in_vtk":
+        pytest.importorskip("pyvista", reason="the extra docs is not installed")
     main_of(name)(["--quick", "--out", str(tmp_path / "deep" / "er")])
     written = {p.name for p in (tmp_path / "deep" / "er").iterdir() if p.suffix != ".lock"}
     assert written == WRITES[name]

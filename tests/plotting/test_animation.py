@@ -233,7 +233,7 @@ def test_a_history_stops_where_the_wall_has_fallen():
     above, below = figure.axes
     assert below.get_ylim()[1] == 1.2
     assert f"beyond return from t = {fell:.3g} s" in [text.get_text() for text in below.texts]
-    assert above.get_ylabel() == "ground [m/s²]"
+    assert above.get_ylabel() == "base [m/s²]"
     np.testing.assert_allclose(above.get_lines()[0].get_ydata().min(), -4.0)
     assert len(plotting.history([theory()] * 2, "both").axes) == 1
     assert histories.overturned_at(theory()) is None

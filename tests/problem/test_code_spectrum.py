@@ -73,6 +73,29 @@ def test_eurocode(code, soil, T, over_ag):
     assert float(mr.code_spectrum(code, ag=2.0, soil=soil)(T)) == pytest.approx(2.0 * over_ag)
 
 
+@pytest.mark.parametrize(
+    ("code", "soil", "printed"),
+    [
+        (1, "A", (7.355, 5.884, 2.942, 1.471, 0.6538)),
+        (1, "B", (8.826, 8.826, 4.413, 2.2065, 0.9807)),
+        (1, "C", (8.4582, 8.4582, 5.0749, 2.5375, 1.1278)),
+        (1, "D", (9.9292, 9.9292, 7.9434, 3.9717, 1.7652)),
+        (1, "E", (10.297, 10.297, 5.1485, 2.5742, 1.1441)),
+        (2, "A", (7.355, 3.6775, 1.8387)),
+        (2, "B", (9.9292, 4.9646, 2.4823)),
+        (2, "C", (11.0325, 5.5162, 2.7581)),
+        (2, "E", (11.768, 5.884, 2.942)),
+    ],
+)
+def test_eurocode_as_another_program_prints_it(code, soil, printed):
+    """Values of eurocodepy 2026.1.1, an open library for the Eurocodes, for 0.3 g and q = 1, with which the design
+    spectrum is the elastic one from T_B on. Its lower bound of 0.2 a_g S, at long periods of type 2, is left out, and
+    so is ground D of type 2, for which it has another S than table 3.3."""
+    T = np.array([0.2, 0.5, 1.0, 2.0, 3.0])[: len(printed)]
+    spectrum = mr.code_spectrum(f"EC8 type {code}", ag=2.941995, soil=soil)
+    np.testing.assert_allclose(spectrum(T), printed, atol=5.1e-5)
+
+
 def test_damping_lowers_it_to_a_bound():
     spectrum = ntc()
     assert spectrum(0.3, 0.10) == pytest.approx(spectrum(0.3) * math.sqrt(10 / 15))

@@ -57,6 +57,21 @@ def test_a_facade_overturns_from_return_walls_that_are_not_bonded_to_it():
     assert mr.collapse_multiplier(masonry, -1).multiplier > 3 * outwards.multiplier
 
 
+def test_a_header_binds_a_facade_to_a_return_wall_by_friction():
+    """By hand: the facade slides on smooth ground, and a header that lies on it goes along, out of the return wall. The
+    return wall holds by mu N, and N is largest where the header stands on the outer edge of the facade."""
+    mu, t, high, reach, inner = 0.6, 0.6, 0.5, 1.2, 1.15
+    facade = box((t, 1.0, 1.0), (-0.5 * t, 0, 0.5), name="facade")
+    wall = box((1.0, 1.0, 1.0), (-inner - 0.5, 0, 0.5), name="return", fixed=True)
+    header = box((reach, 1.0, high), (-0.5 * reach, 0, 1.0 + 0.5 * high), name="header")
+    masonry = mr.Masonry([GROUND, facade, wall, header], xi=0, friction=lambda j: mu * ("header" in j.name))
+    found = mr.collapse_multiplier(masonry, (1, 0))
+    w, W = header.mass, facade.mass
+    # N inner = w reach / 2 - multiplier w high / 2 about that edge, and multiplier (W + w) = mu N
+    assert found.multiplier == pytest.approx(mu * w * 0.5 * reach / inner / (W + w + mu * w * 0.5 * high / inner))
+    assert set(found.moving) == {"facade", "header"}
+
+
 def test_what_nothing_moves_has_an_infinite_multiplier():
     stops = [box((1, 1, 1), (x, 0, 0.5), fixed=True) for x in (-1, 1)]
     masonry = mr.Masonry([GROUND, *stops, box((1, 1, 1), (0, 0, 0.5))], xi=0, friction=lambda j: 0.7 * j.is_bed)

@@ -120,7 +120,7 @@ def test_a_report_and_histories(tmp_path):
     with pytest.raises(ValueError, match="leave e and contacts out"):
         mr.report(case, answers, tmp_path / "a.html", e=mr.Restitution(0.9, 0.9))
     figure = plotting.history(answers[0])
-    assert [ax.get_ylabel() for ax in figure.axes] == ["ground [m/s²]", "farthest block [mm]"]
+    assert [ax.get_ylabel() for ax in figure.axes] == ["base [m/s²]", "farthest block [mm]"]
     (line, _, *_) = figure.axes[1].get_lines()
     far = np.hypot(*answers[0].pose[:, :, :2].T).max()
     assert np.max(line.get_ydata()) == pytest.approx(1e3 * far)

@@ -1,0 +1,108 @@
+"""The law of a bond on a row of numbers, against its equations."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from mjrock.problem.masonry.bond_law import BRITTLE, bonded_limit, crush, tear, wear
+
+K, TENSION, TORN = 1e8, 2e3, 1e4
+"""Stiffness [N/m], strength [N], and rate at which a crack softens [1/m]: f_t / G_I."""
+
+
+def row(**changed):
+    """An intact bond."""
+    law = {"k": K, "tension": TENSION, "cohesion": 3e3, "bears": math.inf, "torn": TORN, "worn": 5e3, "crumbled": 50.0}
+    state = {"left": 1.0, "drawn": 0.0, "crack": 0.0, "crushed": 0.0, "secant": K}
+    return SimpleNamespace(**law | state | {"k_s": 0.4 * K, "friction": 0.75} | changed)
+
+
+def state(bond):
+    return bond.left, bond.drawn, bond.crack, bond.secant
+
+
+@pytest.mark.parametrize("gap", [-1e-3, 0.0, 0.999 * TENSION / K, TENSION / K])
+def test_a_bond_within_its_strength_stays_whole(gap):
+    bond = row()
+    tear(bond, gap)
+    assert state(bond) == (1.0, max(gap, 0.0), 0.0, K)
+
+
+@pytest.mark.parametrize("gap", [2.1e-5, 5e-5, 3e-4])
+def test_a_crack_pulls_what_is_left_of_the_strength(gap):
+    bond = row()
+    tear(bond, gap)
+    assert bond.drawn == gap
+    assert 0 < bond.crack < gap
+    assert K * (gap - bond.crack) == pytest.approx(TENSION * math.exp(-TORN * bond.crack), rel=1e-12)
+    assert bond.left == pytest.approx(math.exp(-TORN * bond.crack), rel=1e-12)
+    assert bond.secant * gap == pytest.approx(TENSION * bond.left, rel=1e-12)
+    before = state(bond)
+    tear(bond, 0.5 * gap)  # unloading along the secant leaves it as it is
+    assert state(bond) == before
+
+
+def test_many_small_openings_tear_as_one():
+    once, often = row(), row()
+    tear(once, 1e-4)
+    for i in range(1, 11):
+        tear(often, i * 1e-5)
+    assert state(often) == pytest.approx(state(once), rel=1e-12)
+
+
+def test_what_slip_has_worn_is_no_longer_there_to_tear():
+    bond = row(left=0.5)
+    tear(bond, 5e-5)
+    assert bond.left == pytest.approx(0.5 * math.exp(-TORN * bond.crack), rel=1e-12)
+    assert bond.secant * 5e-5 == pytest.approx(TENSION * bond.left, rel=1e-12)
+
+
+@pytest.mark.parametrize(("rate", "breaks"), [(1.0, True), (1.0 - 1e-9, False), (1.5, True)])
+def test_a_bond_breaks_at_once_where_its_spring_gives_back_what_the_crack_takes(rate, breaks):
+    bond = row(k=2.0**27, tension=2.0**10, torn=rate * BRITTLE * 2.0**17)
+    tear(bond, 2.0**-17 + 1e-7)
+    if breaks:
+        assert state(bond) == (0.0, bond.drawn, bond.drawn, 0.0)
+    else:
+        assert 0 < bond.left < 1
+        assert bond.secant > 0
+
+
+@pytest.mark.parametrize("sheared", [0.0, 1e4])
+def test_a_joint_is_crushed_until_it_bears_the_rest(sheared):
+    bond = row(bears=1e5)
+    gap = -math.sqrt(1e5**2 - (3 * sheared) ** 2) / K
+    assert crush(bond, 0.999 * gap, sheared) == 0.0
+    assert (bond.left, bond.crushed, bond.bears) == (1.0, 0.0, 1e5)
+    closing = crush(bond, 1.1 * gap, sheared)
+    pressed = K * (-1.1 * gap - closing)
+    assert closing > 0
+    assert math.hypot(pressed, 3 * sheared) == pytest.approx(1e5 * math.exp(-50.0 * closing), rel=1e-9)
+    assert bond.bears == pytest.approx(1e5 * math.exp(-50.0 * closing), rel=1e-12)
+    assert bond.left == pytest.approx(math.exp(-50.0 * closing), rel=1e-12)
+    assert crush(bond, 1.2 * gap + closing, sheared) > 0
+    assert bond.crushed > closing
+
+
+def test_a_joint_that_shear_alone_crushes_gives_way_until_nothing_presses():
+    bond = row(bears=1e5)
+    assert crush(bond, -2e-4, 5e4) == pytest.approx(2e-4)
+
+
+def test_cohesion_and_friction_within_what_the_joint_bears():
+    assert bonded_limit(row(), 4e3) == pytest.approx(3e3 + 0.75 * 4e3)
+    assert bonded_limit(row(left=0.5), 4e3) == pytest.approx(1.5e3 + 0.75 * 4e3)
+    assert bonded_limit(row(), -4e3) == pytest.approx(3e3)
+    assert bonded_limit(row(bears=9e3), 4e3) == pytest.approx(3e3)
+
+
+def test_slip_wears_cohesion_by_its_energy():
+    """A whole bond takes c / (c / G_II) in all: the energy of the line."""
+    bond = row(left=0.8)
+    taken = wear(bond, 1e-4)
+    assert bond.left == pytest.approx(0.8 * math.exp(-0.5), rel=1e-12)
+    assert taken == pytest.approx(3e3 / 5e3 * (0.8 - bond.left), rel=1e-12)
+    assert wear(bond, 0.0) == 0.0
+    assert wear(row(worn=0.0), 1e-4) == 0.0
+    assert wear(row(), 1.0) == pytest.approx(3e3 / 5e3)
