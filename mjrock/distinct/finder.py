@@ -129,14 +129,14 @@ class Finder:
         face, other = table[:, :2].astype(np.int64).T
         found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9, 10)))
         found = self._of_the_plane(found) if self.flat else found
-        return found if self.number.max() == 1 else self._of_blocks(found)
+        return found if self.number.max() == 1 else self._among_blocks(found)
 
     def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
         _, one, other = each_with_each(self.first, self.number, np.column_stack([a, b]))
         return pair_number(one, other, len(self.owner))
 
-    def solids_of(self, block: int) -> range:
+    def parts_of(self, block: int) -> range:
         """Numbers of the solids of a block."""
         return range(self.first[block], self.first[block] + self.number[block])
 
@@ -148,7 +148,7 @@ class Finder:
             change[:, ::2, ::2] = poses.change
         return self.solids.moved(place[self.owner], change[self.owner])
 
-    def _of_blocks(self, found: Found) -> Found:
+    def _among_blocks(self, found: Found) -> Found:
         """Places of solids as those of blocks, those of a pair together. What a pair has is shared among its pairs of
         solids by the areas where these lie over each other."""
         solids, count = pair_number(found.face, found.other, len(self.owner)), len(self.number)

@@ -59,7 +59,7 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
     worst, at_start, said = 0.0, 0.0, ""
     for _, i, a, b in deepest:
         finder = encounters.finder
-        solids, (ours, theirs) = finder.posed(poses[i]), (finder.solids_of(a), finder.solids_of(b))
+        solids, (ours, theirs) = finder.posed(poses[i]), (finder.parts_of(a), finder.parts_of(b))
         common = sum(common_volume(solids, one, other) for one in ours for other in theirs)
         share = common / float(finder.volumes[[a, b]].min())
         at_start = max(at_start, share if i == 0 else 0.0)

@@ -74,4 +74,4 @@ def test_overlap_counts_every_part():
     encounters = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).encounters
     finder = encounters.finder
     assert finder.volumes[1] == pytest.approx(7 * 2 * finder._half)
-    assert [list(finder.solids_of(i)) for i in range(3)] == [[0], [1, 2, 3], [4]]
+    assert [list(finder.parts_of(i)) for i in range(3)] == [[0], [1, 2, 3], [4]]
