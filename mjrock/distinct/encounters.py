@@ -99,6 +99,7 @@ class Encounters:
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
+        self.jointed = _jointed(masonry, self.finder, of)
         self.kind, self.start = system.lines.dtype, self.poses(system)
         self.limits, free, slip, gap = self._limits(), self.blocks.free, np.zeros(len(left)), np.zeros(len(left))
         self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
@@ -122,7 +123,8 @@ class Encounters:
 
     def _limits(self) -> Array:
         """How far each block may move before it is looked at [m], shape (blocks,)."""
-        found = self.finder.found(self.start, 0.5 * self.sizes, np.ones(self.count, dtype=bool), self.law.jointed)
+        every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
+        found = self.finder.found(self.start, 0.5 * self.sizes, every, jointed)
         apart, limits = (
             found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other]),
             self.sizes.copy(),
@@ -171,7 +173,8 @@ class Encounters:
         met.watched, met.handed = watched, met.handed | worn
         met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
         stays = self._moves_of(met.pair) == met.found
-        known = np.sort(np.append(self.law.jointed[~met.handed], met.pair[stays]))
+        intact = self.jointed[1][~met.handed[self.jointed[0]]]
+        known = np.unique(np.append(intact, self.finder.between(*np.divmod(met.pair[stays], self.count))))
         found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
         until, soon = self._until(found, velocity, about)
         of_gone = np.append(worn[wear.pairs], ~stays)
@@ -247,6 +250,27 @@ class Encounters:
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         inverse = inverse_masses(np.asarray(system.bodies), poses.change[self.blocks.free])
         return shares_within(sides, law, inverse, h / STABLE)
+
+
+def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:
+    """Pairs of solids whose faces make a joint: the number of the pair of blocks among those with joints, and that of
+    the pair of solids, shape (n,) each.
+
+    Args:
+        masonry, finder: the blocks.
+        of: number of the pair of blocks of each joint, shape (joints,).
+    """
+    pairs, numbers = list[int](), list[int]()
+    for joint, pair in zip(masonry.joints, of.tolist(), strict=True):
+        ends = (joint.below, joint.above)
+        one, other = (
+            [int(finder.first[block]) + part for part in masonry.blocks[block].sides[side].parts]
+            for block, side in zip(ends, joint.sides, strict=True)
+        )
+        both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]
+        pairs += [pair] * len(both)
+        numbers += both
+    return np.array(pairs), np.array(numbers)
 
 
 def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:

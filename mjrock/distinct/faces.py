@@ -40,8 +40,10 @@ def outlines_of_joints(masonry: Masonry) -> list[tuple[Outline, Outline]]:
     for joint in masonry.plane_joints:
         ways, normal = np.array([-joint.along, joint.along]), np.array([-joint.along[1], joint.along[0]])
         below, above = (
-            Outline(joint.middle + np.outer(edge_ends(masonry.polygons[block], joint), joint.along), way, ways)
-            for block, way in ((joint.below, normal), (joint.above, -normal))
+            Outline(
+                joint.middle + np.outer(edge_ends(masonry.polygons[block].sides[side], joint), joint.along), way, ways
+            )
+            for block, side, way in zip((joint.below, joint.above), joint.sides, (normal, -normal), strict=True)
         )
         pairs.append((below, above))
     return pairs

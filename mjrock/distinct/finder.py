@@ -17,11 +17,12 @@ import numpy as np
 from ..compiled import compiled, inlined
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, spun, vector
-from ..problem.masonry.polygon import Polygon
-from ..problem.masonry.polyhedron import Polyhedron
+from ..problem.masonry.compound import AnyBlock
+from ..problem.masonry.joints import each_with_each, numbered_parts
 from ..quantities import Array, Flags, Integers
 from .clipping import clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
-from .solids import Poses, Solids, solids_of
+from .pair_law import pair_number
+from .solids import Poses, Solids, inside_of, solids_of
 
 EDGES = 0.8
 """Overlap along the normal of two edges, over that along the best one of a face, below which the edges meet [-]."""
@@ -68,12 +69,12 @@ class Near(NamedTuple):
     """Which pairs are looked at.
 
     Args:
-        low, high: least and largest coordinates of each block, what it reaches included [m], shape (blocks, 3).
-        order: the blocks by their low ends along an axis, shape (blocks,).
+        low, high: least and largest coordinates of each solid, what it reaches included [m], shape (solids, 3).
+        order: the solids by their low ends along an axis, shape (solids,).
         axis: its number.
-        reach: of each block [m], shape (blocks,).
-        watched, fixed: shape (blocks,). One of two blocks is watched, and one is free.
-        skipped: numbers of pairs that are left out, increasing, see `pair_law.pair_number`.
+        reach: of each solid [m], shape (solids,).
+        watched, fixed: shape (solids,). One of two solids is watched, and one is free.
+        skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
     """
 
     low: Array
@@ -87,21 +88,24 @@ class Near(NamedTuple):
 
 
 class Finder:
-    """Convex blocks.
+    """Blocks, and the convex solids that they are made of.
 
     Args:
         blocks: the blocks.
         drawn: where their centroids are drawn [m], shape (blocks, d).
     """
 
-    def __init__(self, blocks: Sequence[Polygon | Polyhedron], drawn: Array) -> None:
+    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array) -> None:
         self.flat = drawn.shape[1] == 2
         self._half = float(np.median([block.size for block in blocks]))  # of the length of a prism
-        self._fixed = np.array([block.fixed for block in blocks])
-        centroids = np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn
+        self.first, self.number = numbered_parts(blocks)
+        self.owner = np.repeat(np.arange(len(blocks)), self.number)
+        self._fixed = np.array([block.fixed for block in blocks])[self.owner]
+        centroids = (np.insert(drawn, 1, 0.0, axis=1) if self.flat else drawn)[self.owner]
         solids = solids_of(blocks, self._half)
-        self.volumes = np.array([solid.volume for solid in solids])
-        self.solids = Solids.about(solids, centroids)
+        self.volumes = np.bincount(self.owner, weights=[solid.volume for solid in solids])
+        inside = [flags for block in blocks for flags in inside_of(block)]
+        self.solids = Solids.about(solids, centroids, inside, self.owner)
         most = int(np.diff(self.solids.first).max())
         self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 3))
 
@@ -112,9 +116,9 @@ class Finder:
             poses: of all blocks.
             reach: of each block [m], shape (blocks,).
             watched: shape (blocks,).
-            skipped: numbers of pairs that are left out, increasing.
+            skipped: numbers of pairs of solids that are left out, increasing, see `between`.
         """
-        solids = self.posed(poses)
+        solids, reach, watched = self.posed(poses), reach[self.owner], watched[self.owner]
         low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
         low, high = low - reach[:, None], high + reach[:, None]
         axis = int(np.ptp(low, axis=0).argmax())
@@ -124,7 +128,17 @@ class Finder:
         table = self._table[:count]
         face, other = table[:, :2].astype(np.int64).T
         found = Found(face, other, *(table[:, part].copy() for part in (slice(2, 5), slice(5, 8), 8, 9, 10)))
-        return self._of_the_plane(found) if self.flat else found
+        found = self._of_the_plane(found) if self.flat else found
+        return found if self.number.max() == 1 else self._among_blocks(found)
+
+    def between(self, a: Integers, b: Integers) -> Integers:
+        """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
+        _, one, other = each_with_each(self.first, self.number, np.column_stack([a, b]))
+        return pair_number(one, other, len(self.owner))
+
+    def parts_of(self, block: int) -> range:
+        """Numbers of the solids of a block."""
+        return range(self.first[block], self.first[block] + self.number[block])
 
     def posed(self, poses: Poses) -> Solids:
         """The blocks where they are."""
@@ -132,7 +146,21 @@ class Finder:
         if self.flat:
             place, change = np.insert(place, 1, 0.0, axis=1), np.zeros((len(place), 3, 3))
             change[:, ::2, ::2] = poses.change
-        return self.solids.moved(place, change)
+        return self.solids.moved(place[self.owner], change[self.owner])
+
+    def _among_blocks(self, found: Found) -> Found:
+        """Places of solids as those of blocks, those of a pair together. What a pair has is shared among its pairs of
+        solids by the areas where these lie over each other."""
+        solids, count = pair_number(found.face, found.other, len(self.owner)), len(self.number)
+        found = found._replace(face=self.owner[found.face], other=self.owner[found.other])
+        blocks = pair_number(found.face, found.other, count)
+        at = np.unique(solids, return_index=True)[1]  # the places of solids have one area
+        _, of_pair = np.unique(blocks, return_inverse=True)
+        in_pair = np.bincount(of_pair[at], weights=found.area[at])[of_pair]
+        over = found.area > 0
+        share = found.share * np.where(over, found.area / np.where(over, in_pair, 1.0), 1.0)
+        area = np.where(over, in_pair, 0.0)
+        return found._replace(share=share, area=area).only(np.argsort(blocks, kind="stable"))
 
     def _of_the_plane(self, found: Found) -> Found:
         """The places at one end of the prisms."""
@@ -172,6 +200,8 @@ def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
                 break
             if not (near.watched[a] or near.watched[b]) or (near.fixed[a] and near.fixed[b]):
                 continue
+            if solids.owner[a] == solids.owner[b]:
+                continue
             if are_apart(near, a, b) or among(near.skipped, min(a, b) * blocks + max(a, b)):
                 continue
             count = find_pair(solids, near.reach[a] + near.reach[b], (min(a, b), max(a, b)), table, count, room)
@@ -194,7 +224,7 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
     face, apart = face_between(solids, a, b, reach)
     other_face, other_apart = (-1, -math.inf) if apart > reach else face_between(solids, b, a, reach)
     best = max(apart, other_apart)
-    if best > reach:
+    if best > reach or face < 0 or other_face < 0:
         return count
     if other_face >= 0 and other_apart + LEAD * (extent(solids, other_face) - extent(solids, face)) > apart:
         face, blocks = other_face, (b, a)
@@ -229,7 +259,7 @@ def shallowest(
     for turn in range(2):
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
         for one in range(solids.face[block], solids.face[block + 1]):
-            if one != face and outside(solids, one, other) > least:
+            if one != face and not solids.inside[one] and outside(solids, one, other) > least:
                 gap = deepest(table, count, clip(solids, one, (block, other), table, count, room))
                 if gap > most:
                     best, of_best, most = one, (block, other), gap
@@ -274,10 +304,13 @@ def farthest(solids: Solids, block: int, way: Vector) -> float:
 def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
     """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap.
 
-    More than it reaches is far enough."""
+    More than it reaches is far enough. Nothing meets a face that lies inside its block: what is outside of one is near
+    other parts of the block, and counts as far."""
     best, most = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
         apart = outside(solids, face, other)
+        if solids.inside[face]:
+            apart = math.inf if apart >= 0 else -math.inf
         if apart > most:
             best, most = face, apart
             if most > reach:

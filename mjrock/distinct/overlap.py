@@ -58,8 +58,10 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
         deepest = set(heapq.nlargest(DEEPEST, deepest | here)) | {each for each in deepest | here if each[1] == 0}
     worst, at_start, said = 0.0, 0.0, ""
     for _, i, a, b in deepest:
-        solids = encounters.finder.posed(poses[i])
-        share = common_volume(solids, a, b) / float(encounters.finder.volumes[[a, b]].min())
+        finder = encounters.finder
+        solids, (ours, theirs) = finder.posed(poses[i]), (finder.parts_of(a), finder.parts_of(b))
+        common = sum(common_volume(solids, one, other) for one in ours for other in theirs)
+        share = common / float(finder.volumes[[a, b]].min())
         at_start = max(at_start, share if i == 0 else 0.0)
         if share > worst:
             names = case.masonry.names
@@ -80,7 +82,7 @@ def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: 
 
 
 def common_volume(solids: Solids, a: int, b: int) -> float:
-    """Volume that two convex blocks have in common [m3]: that of pyramids on what is left of their faces, from a point
+    """Volume that two convex solids have in common [m3]: that of pyramids on what is left of their faces, from a point
     within both."""
     kept = []
     for block, other in ((a, b), (b, a)):

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.hull import prism, unlike_ways
+from ..problem.masonry.compound import AnyBlock, Compound
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
-from ..quantities import Array, Integers
+from ..quantities import Array, Flags, Integers
 
 
 class Solid(NamedTuple):
@@ -24,7 +25,7 @@ class Solid(NamedTuple):
 
 
 class Solids(NamedTuple):
-    """Blocks in space.
+    """Convex solids in space: blocks, or the parts of a block that is not convex.
 
     Args:
         corners: of all blocks [m], shape (corners, 3).
@@ -35,6 +36,8 @@ class Solids(NamedTuple):
         way: where those of each block begin, and where those of the last end, shape (blocks + 1,).
         outline: numbers of the corners around each face, one face after the other.
         first: where those of each face begin, and where those of the last end, shape (faces + 1,).
+        inside: which faces lie inside the block that they are a part of, where nothing meets them, shape (faces,).
+        owner: number of the block that each solid is a part of, shape (solids,).
     """
 
     corners: Array
@@ -45,10 +48,14 @@ class Solids(NamedTuple):
     way: Integers
     outline: Integers
     first: Integers
+    inside: Flags
+    owner: Integers
 
     @classmethod
-    def about(cls, blocks: Sequence[Solid | Polyhedron], centroids: Array) -> Solids:
-        """Blocks about their centroids [m], shape (blocks, 3)."""
+    def about(
+        cls, blocks: Sequence[Solid | Polyhedron], centroids: Array, inside: Sequence[Flags], owner: Integers
+    ) -> Solids:
+        """Solids about the centroids of their blocks [m], shape (solids, 3)."""
         corner = _begins(block.corners for block in blocks)
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
         return cls(
@@ -60,6 +67,8 @@ class Solids(NamedTuple):
             _begins(block.edges for block in blocks),
             np.concatenate(outlines),
             _begins(outlines),
+            np.concatenate(inside),
+            owner,
         )
 
     def moved(self, place: Array, change: Array) -> Solids:
@@ -96,9 +105,17 @@ def _begins(tables: Iterable[Array | Integers]) -> Integers:
     return np.cumsum([0, *map(len, tables)])
 
 
-def solids_of(blocks: Sequence[Polygon | Polyhedron], half: float) -> list[Solid | Polyhedron]:
-    """Blocks in space: those of the plane as prisms of some half length [m]."""
-    return [solid_of(block, half) if isinstance(block, Polygon) else block for block in blocks]
+def solids_of(blocks: Sequence[AnyBlock], half: float) -> list[Solid | Polyhedron]:
+    """The convex parts of blocks in space: those of the plane as prisms of some half length [m]."""
+    parts = (part for block in blocks for part in block.parts)
+    return [solid_of(part, half) if isinstance(part, Polygon) else part for part in parts]
+
+
+def inside_of(block: AnyBlock) -> list[Flags]:
+    """Which faces of each solid of a block lie inside it, a prism's two ends before its sides."""
+    ends = np.zeros(0 if block.in_space else 2, dtype=bool)
+    flags = block.surface.inside if isinstance(block, Compound) else [np.zeros(len(block.sides), dtype=bool)]
+    return [np.append(ends, some) for some in flags]
 
 
 def solid_of(block: Polygon, half: float) -> Solid:

@@ -71,7 +71,7 @@ def tints(scene: Scene) -> list[dict[str, object]]:
 
 def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) -> Iterator[str]:
     """A body with its joints, its shape, its faces by their first points, and its contact points."""
-    name, radius, outline = scene.bodies.names[j], scene.radius, scene.bodies.outlines[j]
+    name, radius = scene.bodies.names[j], scene.radius
     prefix = "" if len(scene.bodies.names) == 1 else f"{name}_"
     yield f"  <body name={quoteattr(name)} pos={value_text(in_space(scene.bodies.rest[j], radius))}>"
     yield "    " + tag("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **_inertia(scene, j))
@@ -79,10 +79,11 @@ def _body(scene: Scene, j: int, faces: dict[str, int], tint: dict[str, object]) 
         yield "    " + tag("joint", name=prefix + joint, type=kind, axis=axis)
     if scene.freedom != PLANE:
         yield "    " + tag("joint", name=f"{prefix}turn", type="ball")
-    if _is_box(outline):
-        yield "    " + tag("geom", name=name, type="box", size=_half(scene, outline), material="brick", **tint)
-    else:
-        yield "    " + tag("geom", name=name, type="mesh", mesh=name, material="brick", **tint)
+    for part, outline in zip(part_names(scene, j), scene.bodies.parts_of(j), strict=True):
+        if _is_box(outline):
+            yield "    " + tag("geom", name=part, type="box", size=_half(scene, outline), material="brick", **tint)
+        else:
+            yield "    " + tag("geom", name=part, type="mesh", mesh=part, material="brick", **tint)
     for face in (face for face, i in faces.items() if scene.contacts.face_body[i] == j):
         yield "    " + tag("geom", name=face, type="box", group="3", **_plate(scene, faces[face]))
     for i in np.flatnonzero(scene.contacts.body == j):
@@ -178,14 +179,20 @@ def _plate(scene: Scene, i: int) -> dict[str, object]:
 
 def meshes(scene: Scene) -> Iterator[str]:
     """The bodies that are not boxes; those of the plane as prisms."""
-    for name, outline in zip(scene.bodies.names, scene.bodies.outlines, strict=True):
-        if not _is_box(outline):
-            vertices = outline
-            if scene.freedom == PLANE:
-                vertices = np.array(
-                    [(x, y, z) for y in (-scene.bodies.length / 2, scene.bodies.length / 2) for x, z in outline]
-                )
-            yield tag("mesh", name=name, vertex=np.ravel(vertices))
+    half = scene.bodies.length / 2
+    for j in range(len(scene.bodies.names)):
+        for name, outline in zip(part_names(scene, j), scene.bodies.parts_of(j), strict=True):
+            if not _is_box(outline):
+                vertices = outline
+                if scene.freedom == PLANE:
+                    vertices = np.array([(x, y, z) for y in (-half, half) for x, z in outline])
+                yield tag("mesh", name=name, vertex=np.ravel(vertices))
+
+
+def part_names(scene: Scene, body: int) -> list[str]:
+    """Names of the geoms that show a body: its own, and of a body of several parts with their numbers."""
+    name, count = scene.bodies.names[body], len(scene.bodies.parts_of(body))
+    return [name, *(f"{name} part {i}" for i in range(1, count))]
 
 
 def _half(scene: Scene, outline: Array) -> tuple[float, ...]:

@@ -82,7 +82,8 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
         if level is not None and bodies.eye[2] > 0:
             seen &= corners[..., 2].mean(axis=1) > level
         place = np.argsort(bodies.order(frame))  # of each body in the order
-        number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.body[seen]], kind="stable")]
+        near = corners[seen].mean(axis=1) @ bodies.eye  # of one body that is not convex, a face may hide another
+        number = np.flatnonzero(seen)[np.lexsort((near, place[bodies.facets.body[seen]]))]
         bright = DARKEST + (1 - DARKEST) * np.clip(normals[number] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
         counts = bodies.facets.counts[number]
         moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]
@@ -157,7 +158,7 @@ def _ground(ax: Axes3D, bodies: Solids, extent: tuple[Array, Array]) -> float | 
     window, level = np.array([(left, near), (right, near), (right, far), (left, far)]), None
     for block in bodies.ground:
         level = max(float(block.corners[:, 2].max()), -np.inf if level is None else level)
-        for face in (block.corners[list(face)] for face in block.faces):
+        for face in (side.corners for side in block.sides):
             plan = convex.clipped(face[:, :2], window) if _normals(face[None])[0, 2] > 0.99 else ()
             if len(plan) > 2:
                 patch = [np.column_stack([plan, np.full(len(plan), face[:, 2].mean())])]

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..geometry.frames import SPACE, frames_of
+from ..problem.masonry.compound import SolidBlock
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.masonry.support import Support
 from ..problem.wall.effect import Effect
 from ..quantities import Array, Integers, keep, require_array, require_within
@@ -104,7 +104,7 @@ class Solids:
         return tuple(i for i, is_ground in enumerate(self._are_ground) if not is_ground)
 
     @property
-    def ground(self) -> list[Polyhedron]:
+    def ground(self) -> list[SolidBlock]:
         """The fixed blocks below all that move, which are not moved themselves."""
         return [block for block, is_ground in zip(self.masonry.polyhedra, self._are_ground, strict=True) if is_ground]
 
@@ -131,11 +131,11 @@ class Solids:
     def facets(self) -> Facets:
         """The faces of the blocks that are shown."""
         blocks = [self.masonry.polyhedra[i] for i in self.shown]
-        counts = np.array([len(face) for block in blocks for face in block.faces])
-        body = np.repeat(np.arange(len(blocks)), [len(block.faces) for block in blocks])
+        counts = np.array([len(side.corners) for block in blocks for side in block.sides])
+        body = np.repeat(np.arange(len(blocks)), [len(block.sides) for block in blocks])
         corners = np.empty((len(counts), counts.max(), 3))
         bodies = zip(blocks, self.rests, strict=True)
-        about = [(block.corners - rest)[list(face)] for block, rest in bodies for face in block.faces]
+        about = [side.corners - rest for block, rest in bodies for side in block.sides]
         for row, face in zip(corners, about, strict=True):
             row[: len(face)], row[len(face) :] = face, face[-1]
         return Facets(corners, body, counts)

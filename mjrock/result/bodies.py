@@ -11,6 +11,7 @@ from ..geometry.frames import PLANE
 from ..geometry.hull import Faces, prism
 from ..geometry.poses import rotations
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polygon import Polygon
@@ -99,10 +100,7 @@ def bodies_of(case: Case | MasonryCase, t: Array, pose: Array, velocity: Array) 
     for i, (name, block, rest) in enumerate(
         zip(masonry.names, masonry.blocks, in_space(laden(masonry, case.effects)[1]), strict=True)
     ):
-        if isinstance(block, Polygon):
-            corners, faces = prism(block.corners, block.length)
-        else:
-            corners, faces = block.corners, block.faces
+        corners, faces = faces_of(block)
         where, rate = still
         if not block.fixed:
             where, rate = (part[:, masonry.free.index(i)] for part in (pose, velocity))
@@ -112,6 +110,17 @@ def bodies_of(case: Case | MasonryCase, t: Array, pose: Array, velocity: Array) 
         moves = not block.fixed or name in moved
         bodies.append(Body(name, corners - rest, faces, rest, where, rate, block.fixed, moves))
     return bodies
+
+
+def faces_of(block: AnyBlock) -> tuple[Array, Faces]:
+    """Corners of a block in space [m], shape (corners, 3), and its faces: those of each of its convex parts."""
+    corners, faces = list[Array](), list[tuple[int, ...]]()
+    for part in block.parts:
+        before = sum(map(len, corners))
+        own, rings = prism(part.corners, part.length) if isinstance(part, Polygon) else (part.corners, part.faces)
+        corners.append(own)
+        faces += [tuple(before + i for i in ring) for ring in rings]
+    return np.concatenate(corners), tuple(faces)
 
 
 def _wall(case: Case, pose: Array, velocity: Array, still: tuple[Array, Array]) -> list[Body]:

@@ -82,7 +82,8 @@ def _faces_below(masonry: Masonry) -> list[Array]:
     if masonry.in_space:
         return [below.corners[:, :2] for below, _ in faces_of_joints(masonry)]
     return [
-        joint.middle[:1] + np.outer(edge_ends(masonry.polygons[joint.below], joint), joint.along[:1])
+        joint.middle[:1]
+        + np.outer(edge_ends(masonry.polygons[joint.below].sides[joint.sides[0]], joint), joint.along[:1])
         for joint in masonry.plane_joints
     ]
 

@@ -409,11 +409,12 @@ class Response:
             The path that was written.
 
         Raises:
-            ValueError: for a wall or blocks in the plane, or a time outside the run.
+            ValueError: for a wall, blocks in the plane or a `Compound`, or a time outside the run.
             OSError: if the file cannot be written.
         """
         if self.rocking is not None or not self.in_space:
             raise ValueError("case = a wall or blocks in the plane, which have no such file; take Polyhedron.prism")
+        self.case.masonry.convex_in_space("a COMPAS model")
         k = sample_at(self.t, at)
         bodies = bodies_of(self.case, self.t[[k]], self.pose[[k]], self.velocity[[k]])
         text = results_text(self.case, bodies, float(self.t[k]), self.kept_forces, k)

@@ -8,10 +8,10 @@ from functools import lru_cache
 import numpy as np
 
 from ..problem.masonry.case import MasonryCase
+from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
 from ..problem.masonry.statics import falling, friction_lacking, slippery
 from ..problem.masonry.tilt import motions_of_tilt
@@ -161,6 +161,11 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
             rest=centroids[free],
             outlines=tuple(blocks[i].corners - centroids[i] for i in free),
             length=max(map(_length, (blocks[i] for i in free))),
+            parts={
+                body: tuple(part.corners - centroids[i] for part in blocks[i].parts)
+                for body, i in enumerate(free)
+                if len(blocks[i].parts) > 1
+            },
         ),
         ContactPoints(
             body=number[lines.body],
@@ -189,9 +194,9 @@ def drawn_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
     return replace(scene, settled=scene.potential.unmoved)
 
 
-def _length(block: Polygon | Polyhedron) -> float:
+def _length(block: AnyBlock) -> float:
     """Extent along the facade [m]."""
-    return block.length if isinstance(block, Polygon) else float(np.ptp(block.corners[:, 1]))
+    return float(np.ptp(block.corners[:, 1])) if isinstance(block, Polyhedron) else block.length
 
 
 def _sorted(lines: Lines, number: Integers) -> Lines:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
@@ -40,6 +40,7 @@ class Bodies:
             is one of the plane or of space.
         outlines: vertices of each body about its centroid, for pictures [m], n arrays of shape (vertices, d).
         length: length out of the plane, for pictures [m]. It makes no difference in space.
+        parts: vertices of the convex parts of each body that is not convex, for pictures, by its number.
     """
 
     names: tuple[str, ...]
@@ -48,6 +49,7 @@ class Bodies:
     rest: Array
     outlines: tuple[Array, ...]
     length: float
+    parts: Mapping[int, tuple[Array, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n, directions = len(self.names), 3 if np.shape(self.rest)[-1:] == (3,) else 2
@@ -60,6 +62,10 @@ class Bodies:
     def freedom(self) -> Freedom:
         """How the bodies may move: in the plane or in space."""
         return PLANE if self.rest.shape[1] == 2 else SPACE
+
+    def parts_of(self, body: int) -> tuple[Array, ...]:
+        """Vertices of the convex parts of a body about its centroid [m]: the outline of one that is convex."""
+        return self.parts.get(body, (self.outlines[body],))
 
     @cached_property
     def extent(self) -> float:

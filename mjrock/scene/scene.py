@@ -194,7 +194,9 @@ class Scene:
                 values = getattr(part, entry.name)
                 if part is self.contacts and entry.name in ("k", "c"):
                     continue
-                for value in values if entry.name == "outlines" else (values,):
+                if entry.name == "parts":
+                    values = tuple(part for of_body in values.values() for part in of_body)
+                for value in values if entry.name in ("outlines", "parts") else (values,):
                     digest.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
         if (self.links.push > 0).any():
             digest.update(self.ties.reach.tobytes())

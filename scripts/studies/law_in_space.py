@@ -39,7 +39,7 @@ def in_plane(points: int) -> mr.Masonry:
 
 def in_space(plane: mr.Masonry) -> mr.Masonry:
     """The same as prisms."""
-    prisms = tuple(mr.Polyhedron.prism(block) for block in plane.polygons)
+    prisms = tuple(mr.Polyhedron.prism(block) for block in plane.blocks if isinstance(block, mr.Polygon))
     return mr.Masonry(prisms, K_N, FRICTION, law=plane.law, points=plane.points)
 
 

@@ -48,7 +48,8 @@ def tilted(masonry: mr.Masonry, angle: float) -> mr.Masonry:
     c, s = math.cos(angle), math.sin(angle)
     turned = [
         mr.Polygon(block.corners @ np.array([[c, -s], [s, c]]), block.density, block.length, block.fixed, name)
-        for block, name in zip(masonry.polygons, masonry.names, strict=True)
+        for block, name in zip(masonry.blocks, masonry.names, strict=True)
+        if isinstance(block, mr.Polygon)
     ]
     return mr.Masonry(tuple(turned), k_n=masonry.k_n, friction=masonry.friction)
 

@@ -164,7 +164,7 @@ def test_a_prism_has_the_frequencies_of_its_section():
 
 def test_what_masonry_in_space_refuses():
     blocks = [GROUND, box((1, 1, 1), (0, 0, 0.5))]
-    with pytest.raises(TypeError, match=r"blocks\[2\] is a Polygon, and blocks\[0\] is not"):
+    with pytest.raises(TypeError, match=r"blocks\[2\] is a Polygon of the plane, and blocks\[0\]"):
         mr.Masonry([*blocks, mr.Polygon([(0, 0), (1, 0), (0, 1)])])
     with pytest.raises(ValueError, match="law = is for stacks, where every block stands on one other block"):
         mr.Masonry.facade(1.2, 0.8, 0.4, (0.4, 0.2), law="CALIBRATED")

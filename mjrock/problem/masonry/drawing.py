@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...quantities import named
+from .compound import AnyBlock
 from .joints import Joint
 from .joints_in_space import SpaceJoint
-from .polygon import Polygon
-from .polyhedron import Polyhedron
 
 LARGEST, SMALLEST = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
@@ -19,7 +18,7 @@ ALIKE = 0.99
 """Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
 
 
-def odd_sizes(blocks: Sequence[Polygon | Polyhedron], names: Sequence[str]) -> str:
+def odd_sizes(blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:
     """What is odd about the sizes of the free blocks, in words, empty where nothing is."""
     sizes = {name: 2 * block.size for block, name in zip(blocks, names, strict=True) if not block.fixed}
     least, most = min(sizes, key=sizes.__getitem__), max(sizes, key=sizes.__getitem__)
@@ -29,7 +28,7 @@ def odd_sizes(blocks: Sequence[Polygon | Polyhedron], names: Sequence[str]) -> s
     return f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in mm? A file takes scale=0.001"
 
 
-def split_faces(joints: Sequence[Joint | SpaceJoint], names: Sequence[str]) -> str:
+def split_faces(joints: Sequence[Joint | SpaceJoint], blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:
     """What is odd about the joints of blocks in space, in words, empty where nothing is.
 
     Two convex blocks have one face each that points at the other in one way. Two joints of theirs with nearly the same
@@ -37,7 +36,7 @@ def split_faces(joints: Sequence[Joint | SpaceJoint], names: Sequence[str]) -> s
     """
     normals = defaultdict(list)
     for joint in joints:
-        if isinstance(joint, SpaceJoint):
+        if isinstance(joint, SpaceJoint) and len(blocks[joint.below].parts) == len(blocks[joint.above].parts) == 1:
             normals[joint.below, joint.above].append(joint.normal)
     odd = []
     for pair, ways in normals.items():

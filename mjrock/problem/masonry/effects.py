@@ -9,9 +9,8 @@ import numpy as np
 from ...quantities import GRAVITY, Array, named, require_whole
 from ..wall.effect import Anchored, Effect
 from .actuator import Actuator
+from .compound import AnyBlock
 from .masonry import Masonry
-from .polygon import Polygon
-from .polyhedron import Polyhedron
 
 BESIDE = 1e-3
 """How far outside its block a point of an effect may lie [m]: coordinates are rounded."""
@@ -121,12 +120,8 @@ def require_anchored(name: str, effect: Effect, masonry: Masonry) -> None:
     _require_on(f"{name}, anchor", anchor, masonry.blocks[number])
 
 
-def _require_on(name: str, point: tuple[float, ...], block: Polygon | Polyhedron) -> None:
-    if isinstance(block, Polyhedron):
-        corners, normals = block.corners[[face[0] for face in block.faces]], block.normals
-    else:
-        corners, normals = block.corners, block.normals
-    outside = float(((point - corners) * normals).sum(axis=1).max())
+def _require_on(name: str, point: tuple[float, ...], block: AnyBlock) -> None:
+    outside = min(max(float((point - side.corners[0]) @ side.normal) for side in part.sides) for part in block.parts)
     if outside > BESIDE:
         raise ValueError(f"{name} = {point} m lies {outside:.3g} m outside the block; the valid range is on it")
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from ...geometry import convex
 from ...quantities import Array, frozen
-from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart
+from .joints import LEVEL, SHORTEST, names_of, neighbours, require_apart, unlike_named
 from .polyhedron import Polyhedron, Vertices
+from .sides import Side, Solid
 
 OPPOSITE = -1 + 1e-3
 """Largest cosine of the angle between the normals of two faces that make a joint [-]."""
@@ -30,7 +31,9 @@ class SpaceJoint:
         vertices: corners of the polygon that both faces cover, counterclockwise as seen from above [m].
         direction: the normal.
         corners: of each vertex, whether it is a corner of the block below and none of the block above.
-        name: names of the two blocks with a | between them, the one below first.
+        name: names of the two blocks with a | between them, the one below first. A second joint of the same two has
+            " (2)" after it.
+        sides: numbers of the sides of the block below and of the block above that make it.
     """
 
     below: int
@@ -39,6 +42,7 @@ class SpaceJoint:
     direction: tuple[float, float, float]
     corners: tuple[bool, ...]
     name: str
+    sides: tuple[int, int]
 
     @cached_property
     def outline(self) -> Array:
@@ -114,37 +118,55 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     return first, np.cross(normals, first)
 
 
-def joints_in_space(blocks: Sequence[Polyhedron], tolerance: float) -> tuple[SpaceJoint, ...]:
+def joints_in_space(blocks: Sequence[Solid], tolerance: float) -> tuple[SpaceJoint, ...]:
     """The joints between blocks, in the order of the blocks. A ValueError names two that overlap.
 
     Two faces make a joint where they cover a common area and are nowhere in it farther apart than the tolerance [m],
     which is the largest overlap of blocks too. The joint lies halfway between them. Two fixed blocks make none.
     """
     names = names_of(blocks)
-    faces = [faces_of(block) for block in blocks]
-    normals = [block.normals for block in blocks]
-    offsets = [np.array([face.offset for face in sides]) for sides in faces]
+    faces = [faces_of(block.sides) for block in blocks]
+    normals = [np.array([face.normal for face in of_block]) for of_block in faces]
+    solids = [[Convex.of(part) for part in block.parts] for block in blocks]
     joints: list[SpaceJoint] = []
     for i, j in neighbours(blocks, tolerance).tolist():
-        deep = min(
-            float((offsets[i] - (blocks[j].corners @ normals[i].T).min(axis=0)).min()),
-            float((offsets[j] - (blocks[i].corners @ normals[j].T).min(axis=0)).min()),
-        )
+        deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
         if deep < -tolerance:
             continue
-        if deep > tolerance:
-            deep = min(deep, _depth_across_edges(blocks[i], blocks[j]))
         require_apart(names[i], names[j], deep, tolerance)
         for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
-            joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), names, tolerance)
-    return tuple(joints)
+            joints += _between(blocks, (i, j), (faces[i][side], faces[j][other]), (side, other), names, tolerance)
+    return unlike_named(joints)
 
 
-def faces_of(block: Polyhedron) -> list[Face]:
-    """The faces of a block."""
-    rings = [block.corners[list(face)] for face in block.faces]
-    sides = zip(rings, block.normals, axes_across(block.normals), strict=True)
-    return [Face(ring, normal, float((ring @ normal).mean()), axes) for ring, normal, axes in sides]
+def faces_of(sides: Sequence[Side]) -> list[Face]:
+    """The faces of a block from its sides."""
+    axes = axes_across(np.array([side.normal for side in sides]))
+    pairs = zip(sides, axes, strict=True)
+    return [Face(side.corners, side.normal, float((side.corners @ side.normal).mean()), way) for side, way in pairs]
+
+
+class Convex(NamedTuple):
+    """A convex part of a block, and where its faces are along their normals [m], shape (faces,)."""
+
+    part: Polyhedron
+    offsets: Array
+
+    @classmethod
+    def of(cls, part: Polyhedron) -> Convex:
+        """With the mean of the corners of each face, which lie in a plane but for rounding."""
+        pairs = zip(part.faces, part.normals, strict=True)
+        return cls(part, np.array([float((part.corners[list(face)] @ normal).mean()) for face, normal in pairs]))
+
+    def before(self, corners: Array) -> float:
+        """How deep corners reach behind a face [m], the least over the faces."""
+        return float((self.offsets - (corners @ self.part.normals.T).min(axis=0)).min())
+
+
+def _depth(one: Convex, other: Convex, tolerance: float) -> float:
+    """How deep two convex parts lie inside each other [m], negative where they are apart."""
+    deep = min(one.before(other.part.corners), other.before(one.part.corners))
+    return min(deep, _depth_across_edges(one.part, other.part)) if deep > tolerance else deep
 
 
 def _depth_across_edges(block: Polyhedron, neighbour: Polyhedron) -> float:
@@ -164,9 +186,10 @@ def _depth_across_edges(block: Polyhedron, neighbour: Polyhedron) -> float:
 
 
 def _between(
-    blocks: Sequence[Polyhedron],
+    blocks: Sequence[Solid],
     pair: tuple[int, int],
     faces: tuple[Face, Face],
+    sides: tuple[int, int],
     names: Sequence[str],
     tolerance: float,
 ) -> Iterator[SpaceJoint]:
@@ -187,9 +210,9 @@ def _between(
     places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block
     (below, above), upwards = pair, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
     if blocks[above].fixed or (upwards < 0 and not blocks[below].fixed):
-        below, above, normal, places = above, below, -normal, places[::-1]
+        below, above, normal, places, sides = above, below, -normal, places[::-1], sides[::-1]
 
-    def is_corner(block: Polyhedron, place: Array) -> bool:
+    def is_corner(block: Solid, place: Array) -> bool:
         return bool(np.linalg.norm(block.corners - place, axis=1).min() < SHORTEST * tolerance)
 
     yield SpaceJoint(
@@ -199,4 +222,5 @@ def _between(
         direction=(float(normal[0]), float(normal[1]), float(normal[2])),
         corners=tuple(is_corner(blocks[below], p) and not is_corner(blocks[above], p) for p in places),
         name=f"{names[below]}|{names[above]}",
+        sides=sides,
     )

@@ -13,10 +13,11 @@ from ...geometry.convex import spread
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
+from .compound import AnyBlock
 from .joints import Joint
 from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
-from .polyhedron import Polyhedron
+from .sides import Side
 
 RIGID = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""
@@ -60,9 +61,7 @@ class Lines(NamedTuple):
         return pairs[:, 0], pairs[:, 1]
 
 
-def lines_of(
-    blocks: Sequence[Polygon | Polyhedron], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int
-) -> Lines:
+def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner is that of the block below, and the point is
@@ -101,19 +100,13 @@ def _on_face(joint: SpaceJoint, points: int, k_n: float) -> Iterator[tuple[Array
         yield place, k_n * area, bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
 
 
-def edge_ends(block: Polygon, joint: Joint) -> tuple[float, float]:
-    """Where the edge of a block that makes a joint ends, from the middle of the joint along it [m]."""
-    corners = block.corners - joint.middle
-    edges = np.roll(corners, -1, axis=0) - corners
-    ways = edges / np.hypot(*edges.T)[:, None]
-    apart = np.abs(corners[:, 0] * ways[:, 1] - corners[:, 1] * ways[:, 0])
-    low, high = np.sort([corners @ joint.along, (corners + edges) @ joint.along], axis=0)
-    crossed = np.where((low <= 0) & (high >= 0) & (np.abs(ways @ joint.along) > 0.9), apart, np.inf)
-    edge = int(np.argmin(crossed))
-    return float(low[edge]), float(high[edge])
+def edge_ends(edge: Side, joint: Joint) -> tuple[float, float]:
+    """Where an edge that makes a joint ends, from the middle of the joint along it [m]."""
+    low, high = sorted(((edge.corners - joint.middle) @ joint.along).tolist())
+    return low, high
 
 
-def rates(blocks: Sequence[Polygon | Polyhedron], lines: Lines, directions: Array) -> csr_array:
+def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:
     """Rates at which the lines move apart in given directions, see `mjrock.linear.rates_of`.
 
     Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
@@ -124,13 +117,13 @@ def rates(blocks: Sequence[Polygon | Polyhedron], lines: Lines, directions: Arra
     return rates_of(number[np.column_stack([lines.body, lines.face])], arms, directions, int(number.max()) + 1)
 
 
-def free_numbers(blocks: Sequence[Polygon | Polyhedron]) -> Integers:
+def free_numbers(blocks: Sequence[AnyBlock]) -> Integers:
     """Number of each block among those that are not fixed, -1 for one that is, shape (blocks,)."""
     free = np.array([not block.fixed for block in blocks])
     return np.where(free, np.cumsum(free) - 1, -1)
 
 
-def slips(blocks: Sequence[Polygon | Polyhedron], lines: Lines, joints: int) -> csr_array:
+def slips(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
     """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies).
 
     In space a joint has three: along the two directions of `Lines.across`, and the rate at which it twists about its
@@ -146,7 +139,7 @@ def slips(blocks: Sequence[Polygon | Polyhedron], lines: Lines, joints: int) -> 
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
 
-def lowest_frequency(blocks: Sequence[Polygon | Polyhedron], lines: Lines, friction: Array) -> float:
+def lowest_frequency(blocks: Sequence[AnyBlock], lines: Lines, friction: Array) -> float:
     """The lowest natural frequency of masonry whose joints are all closed and do not slide [rad/s].
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
@@ -164,13 +157,13 @@ def lowest_frequency(blocks: Sequence[Polygon | Polyhedron], lines: Lines, frict
     return math.sqrt(square)
 
 
-def masses_of(blocks: Sequence[Polygon | Polyhedron]) -> tuple[Array, csr_array | None]:
+def masses_of(blocks: Sequence[AnyBlock]) -> tuple[Array, csr_array | None]:
     """Mass or moment of inertia of each unknown of the blocks that are not fixed [kg, kg m2], shape (unknowns,).
 
     In space they are those of rotations about the principal axes. The second value then holds the unknowns of `rates`
     for unit ones about these axes, in its columns, shape (unknowns, unknowns).
     """
-    solids = [block for block in blocks if isinstance(block, Polyhedron) and not block.fixed]
+    solids = [block for block in blocks if not isinstance(block, Polygon) and block.in_space and not block.fixed]
     if solids:
         axes = csr_array(block_diag([coo_array(part) for block in solids for part in (np.eye(3), block.principal[1])]))
         return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), axes

@@ -1,4 +1,4 @@
-"""Masonry of many blocks: convex blocks, and the joints where their edges touch."""
+"""Masonry of many blocks, and the joints where their edges touch."""
 
 from __future__ import annotations
 
@@ -41,6 +41,7 @@ from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, arch_of, between_beams, bonded_wall, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
+from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
 from .drawing import odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joints import Joint, joints_in_plane, names_of
@@ -65,7 +66,7 @@ UNDAMPED = 1e-4
 
 @dataclass(frozen=True, repr=False)
 class Masonry:
-    """Rigid convex blocks on compliant joints.
+    """Rigid blocks on compliant joints.
 
     The joints are found where edges of two blocks touch along a line, along the whole edge or part of it. A joint is a
     few contact lines, at its ends and evenly between: each is a spring and a dashpot that push only, with Coulomb
@@ -73,7 +74,7 @@ class Masonry:
     structure near its limit can depend on that.
 
     Blocks in space, of the kind `Polyhedron`, have their joints where two faces cover a common area, with contact
-    points in place of the lines.
+    points in place of the lines. Blocks are convex; a unit that is not, such as an L or a hook, is a `Compound`.
 
     In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
     of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
@@ -82,7 +83,8 @@ class Masonry:
     meet others.
 
     Args:
-        blocks: the blocks, all `Polygon` or all `Polyhedron`, at least one fixed and one that is not, at most 5000.
+        blocks: the blocks, all in the plane, `Polygon` or `Compound` of these, or all in space, `Polyhedron` or
+            `Compound` of these; at least one fixed and one that is not, at most 5000.
         k_n: normal stiffness of the joints [N/m3], 1e4 to 1e14, or a function of the joint.
         friction: coefficient of friction [-], 0 to 10, or a function of the joint.
         xi: damping ratio [-], 0 to 100, or a function of the joint. The dashpot of a line is c = (2 xi / omega) k, the
@@ -120,7 +122,7 @@ class Masonry:
         (19, 18)
     """
 
-    blocks: Sequence[Polygon | Polyhedron]
+    blocks: Sequence[AnyBlock]
     k_n: OfJoint = 1e10
     friction: OfJoint = 0.7
     xi: OfJoint = 0.05
@@ -146,12 +148,14 @@ class Masonry:
             raise TypeError(f"blocks = {shown(self.blocks)} is not a list of blocks")
         keep(self, blocks=tuple(self.blocks))
         for i, block in enumerate(self.blocks):
-            if not isinstance(block, Polygon | Polyhedron):
-                raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon or Polyhedron")
-            if type(block) is not type(self.blocks[0]):
-                raise TypeError(
-                    f"blocks[{i}] is a {type(block).__name__}, and blocks[0] is not; give blocks of one kind"
-                )
+            if not isinstance(block, Polygon | Polyhedron | Compound):
+                raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon, Polyhedron or Compound")
+            if block.in_space != self.blocks[0].in_space:
+                which = [
+                    f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}"
+                    for b in (block, self.blocks[0])
+                ]
+                raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
         if not 0 < len(self.free) < len(self.blocks) <= MOST_BLOCKS:
             raise ValueError(
                 f"blocks = {len(self.free)} free and {len(self.blocks) - len(self.free)} fixed; at least one of each "
@@ -187,24 +191,24 @@ class Masonry:
             _ = self.retardation
         elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
             warnings.warn(odd, Implausible, stacklevel=3)
-        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.names)):
+        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
             if odd:
                 warnings.warn(odd, Implausible, stacklevel=3)
 
     @property
     def in_space(self) -> bool:
         """Whether the blocks are bodies in space."""
-        return isinstance(self.blocks[0], Polyhedron)
+        return self.blocks[0].in_space
 
     @cached_property
-    def polygons(self) -> tuple[Polygon, ...]:
+    def polygons(self) -> tuple[FlatBlock, ...]:
         """The blocks of masonry in the plane; none of masonry in space."""
-        return tuple(block for block in self.blocks if isinstance(block, Polygon))
+        return tuple(block for block in self.blocks if not isinstance(block, Polyhedron) and not block.in_space)
 
     @cached_property
-    def polyhedra(self) -> tuple[Polyhedron, ...]:
+    def polyhedra(self) -> tuple[SolidBlock, ...]:
         """The blocks of masonry in space; none of masonry in the plane."""
-        return tuple(block for block in self.blocks if isinstance(block, Polyhedron))
+        return tuple(block for block in self.blocks if not isinstance(block, Polygon) and block.in_space)
 
     @cached_property
     def plane_joints(self) -> tuple[Joint, ...]:
@@ -801,19 +805,17 @@ class Masonry:
         """Write the blocks to an OBJ file, an object each, in metres. Density and supports are not kept.
 
         Raises:
-            ValueError: for blocks in the plane.
+            ValueError: for blocks in the plane, or a `Compound`.
         """
-        self._require_space()
-        return write_text(require_path("path", path), obj_text(self.polyhedra, self.names))
+        return write_text(require_path("path", path), obj_text(self.convex_in_space("an OBJ file"), self.names))
 
     def to_compas(self, path: AnyPath) -> Path:
         """Write the blocks to the JSON file of a COMPAS model, with supports and densities, in metres.
 
         Raises:
-            ValueError: for blocks in the plane.
+            ValueError: for blocks in the plane, or a `Compound`.
         """
-        self._require_space()
-        return write_text(require_path("path", path), compas_text(self.polyhedra, self.names))
+        return write_text(require_path("path", path), compas_text(self.convex_in_space("a COMPAS model"), self.names))
 
     @classmethod
     def _read(
@@ -841,9 +843,14 @@ class Masonry:
         except ValueError as error:
             raise ValueError(f"path = {path}: {error}") from None
 
-    def _require_space(self) -> None:
+    def convex_in_space(self, what: str) -> list[Polyhedron]:
+        """The blocks. A ValueError says what takes convex blocks in space alone, if they are in the plane or not
+        convex."""
         if not self.in_space:
             raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
+        if compounds := [n for n, block in zip(self.names, self.blocks, strict=True) if isinstance(block, Compound)]:
+            raise ValueError(f"blocks: {what} takes convex blocks, and {named(compounds)} has several parts")
+        return [block for block in self.blocks if isinstance(block, Polyhedron)]
 
     def _touching(self) -> Self:
         """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...quantities import Array, frozen, keep, require_flag, require_reals, require_text, require_within, shown
+from .sides import Side
 
 Corners = tuple[tuple[float, float], ...]
 FARTHEST = 1e4
@@ -73,6 +74,22 @@ class Polygon:
         """Unit normals out of the edges, each of which begins at the corner of the same number, shape (n, 2)."""
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         return frozen(np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None])
+
+    @property
+    def parts(self) -> tuple[Polygon, ...]:
+        """The convex parts that it is made of: itself."""
+        return (self,)
+
+    @cached_property
+    def sides(self) -> tuple[Side, ...]:
+        """Its edges, in the order of `normals`."""
+        ends = np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
+        return tuple(Side(*edge) for edge in zip(ends, self.normals, strict=True))
+
+    @property
+    def in_space(self) -> bool:
+        """Whether it is a body in space."""
+        return False
 
     @cached_property
     def _moments(self) -> tuple[float, float, float, float]:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ...geometry.hull import Bulk, Hull, bulk_of, hull_of, unlike_ways
 from ...quantities import Array, frozen, keep, require_array, require_flag, require_kind, require_within
 from .polygon import FARTHEST, Polygon, checked_name, required_vertices
+from .sides import Side
 
 Vertices = tuple[tuple[float, float, float], ...]
 DENTED = 1e-4
@@ -120,6 +121,23 @@ class Polyhedron:
         """Unit normals out of the faces, shape (faces, 3)."""
         return self.hull.normals
 
+    @property
+    def parts(self) -> tuple[Polyhedron, ...]:
+        """The convex parts that it is made of: itself."""
+        return (self,)
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """Its faces."""
+        return tuple(
+            Side(self.corners[list(face)], normal) for face, normal in zip(self.faces, self.normals, strict=True)
+        )
+
+    @property
+    def in_space(self) -> bool:
+        """Whether it is a body in space."""
+        return True
+
     @cached_property
     def edges(self) -> Array:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
@@ -154,20 +172,25 @@ class Polyhedron:
 
     @cached_property
     def principal(self) -> tuple[Array, Array]:
-        """Principal moments of inertia [kg m2], shape (3,), and axes, the columns of a right-handed array, (3, 3).
-
-        The axes of the world are kept where they are principal. Otherwise the moments ascend.
-        """
-        if np.abs(self.inertia - np.diag(np.diag(self.inertia))).max() <= DIAGONAL * float(np.trace(self.inertia)):
-            return np.diag(self.inertia).copy(), np.eye(3)
-        moments, axes = np.linalg.eigh(self.inertia)
-        axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
-        return moments, axes
+        """Principal moments of inertia [kg m2] and their axes, see `principal_of`."""
+        return principal_of(self.inertia)
 
     @property
     def size(self) -> float:
         """Largest distance of a vertex from the centroid [m]."""
         return float(np.linalg.norm(self.corners - self.centroid, axis=1).max())
+
+
+def principal_of(inertia: Array) -> tuple[Array, Array]:
+    """Principal moments of a tensor of inertia [kg m2], shape (3,), and axes, the columns of a right-handed array.
+
+    The axes of the world are kept where they are principal. Otherwise the moments ascend.
+    """
+    if np.abs(inertia - np.diag(np.diag(inertia))).max() <= DIAGONAL * float(np.trace(inertia)):
+        return np.diag(inertia).copy(), np.eye(3)
+    moments, axes = np.linalg.eigh(inertia)
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    return moments, axes
 
 
 def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull, Vertices]:

@@ -12,12 +12,11 @@ from ...quantities import Array
 from ..damping.contacts import AnyLaw, Contacts
 from ..damping.restitution import Restitution
 from ..wall.block import Block
+from .compound import AnyBlock
 from .joints import Joint
 from .joints_in_space import SpaceJoint
-from .polygon import Polygon
-from .polyhedron import Polyhedron
 
-Blocks = Sequence[Polygon | Polyhedron]
+Blocks = Sequence[AnyBlock]
 
 
 def is_side(blocks: Blocks, joint: Joint | SpaceJoint) -> bool:

@@ -1,0 +1,140 @@
+"""Units of several convex parts: mass, surface, joints, limit analysis, rest, and what is refused."""
+
+import numpy as np
+import pytest
+from masonry_blocks import GROUND, box
+
+import mjrock as mr
+
+L_UNIT = mr.Compound([box(0, 1, 0, 3), box(1, 2, 0, 1)], name="L")
+U_UNIT = mr.Compound([box(0, 1, 0, 2), box(2, 3, 0, 2), box(0, 3, 2, 3)], name="U")
+
+
+def in_space(block):
+    return mr.Compound.prism(block) if isinstance(block, mr.Compound) else mr.Polyhedron.prism(block)
+
+
+def test_mass_centroid_and_inertia_are_those_of_a_square_less_a_square():
+    """A U is a square of 3 m less a slot of 1 m by 2 m, whose second moment is b h^3 / 12 about its middle."""
+    area, z = 9 - 2, (9 * 1.5 - 2 * 1.0) / 7
+    polar = 3**4 / 6 + 9 * (1.5 - z) ** 2 - (1 * 2 * (1 + 4) / 12 + 2 * (1.0 - z) ** 2)
+    for unit, axes in ((U_UNIT, (1.5, z)), (in_space(U_UNIT), (1.5, 0, z))):
+        assert unit.mass == pytest.approx(2000 * area)
+        np.testing.assert_allclose(unit.centroid, axes, atol=1e-12)
+        about_y = unit.inertia[1, 1] if unit.in_space else unit.inertia
+        assert about_y == pytest.approx(2000 * polar)
+    assert in_space(U_UNIT).inertia[0, 0] == pytest.approx(
+        2000 * (9 * (9 + 1) / 12 + 9 * (1.5 - z) ** 2 - 2 * (4 + 1) / 12 - 2 * (1 - z) ** 2)
+    )
+
+
+def test_densities_of_parts_move_the_centroid():
+    unit = mr.Compound([box(0, 1, 0, 1, density=3000.0), box(1, 2, 0, 1, density=1000.0)])
+    np.testing.assert_allclose(unit.centroid, (0.75, 0.5))
+    assert unit.inertia == pytest.approx(4000 / 6 + 3000 * 0.25**2 + 1000 * 0.75**2)
+
+
+def test_the_surface_does_not_know_the_cut():
+    other = mr.Compound([box(0, 1, 1, 3), box(0, 2, 0, 1)], name="L")
+    third = mr.Compound([box(0, 0.4, 0, 1), box(0.4, 2, 0, 1), box(0, 1, 1, 3)], name="L")
+    for unit in (L_UNIT, other, third):
+        ends = {tuple(side.corners.ravel().tolist()) for side in unit.sides}
+        assert ends == {(0, 0, 2, 0), (2, 0, 2, 1), (2, 1, 1, 1), (1, 1, 1, 3), (1, 3, 0, 3), (0, 3, 0, 0)}
+        assert unit.corners.shape == (6, 2)
+        (joint,) = mr.Masonry([GROUND, unit]).joints
+        assert (joint.start, joint.end) == ((0, 0), (2, 0))
+        (deep,) = mr.Masonry([in_space(GROUND), in_space(unit)]).joints
+        assert deep.area == pytest.approx(2)
+        assert deep.width == pytest.approx(1)
+
+
+def test_a_frame_has_an_outline_that_goes_round_its_hole():
+    frame = mr.Compound([box(0, 3, 0, 1), box(0, 3, 2, 3), box(0, 1, 1, 2), box(2, 3, 1, 2)])
+    assert len(frame.sides) == 8
+    x, z = frame.corners.T
+    assert 0.5 * (x * np.roll(z, -1) - z * np.roll(x, -1)).sum() == pytest.approx(8)
+
+
+@pytest.mark.parametrize("turn", [lambda block: block, in_space])
+def test_an_l_on_its_foot_tilts_about_either_edge(turn):
+    """Its weight acts 0.75 m from the heel and 1.25 m from the toe, 1.25 m up."""
+    masonry = mr.Masonry([turn(GROUND), turn(L_UNIT)], friction=2.0)
+    ways = ((1, 0), (-1, 0)) if masonry.in_space else (1, -1)
+    found = [mr.collapse_multiplier(masonry, way).multiplier for way in ways]
+    np.testing.assert_allclose(found, [1.25 / 1.25, 0.75 / 1.25], rtol=1e-9)
+
+
+@pytest.mark.parametrize("turn", [lambda block: block, in_space])
+def test_a_u_over_a_sill_stands_on_both_feet_and_the_sill_is_free_of_it(turn):
+    masonry = mr.Masonry([turn(GROUND), turn(U_UNIT), turn(box(1.2, 1.8, 0, 1.5, name="sill"))], k_n=1e9)
+    assert [joint.name for joint in masonry.joints] == ["ground|U", "ground|U (2)", "ground|sill"]
+    case = mr.MasonryCase(masonry, 0.05)
+    run = mr.solve_explicit(case, forces=True)
+    np.testing.assert_allclose(run.forces.normal[0], np.array([7000, 7000, 1800]) * mr.GRAVITY, rtol=1e-6)
+    assert run.outcome is mr.Outcome.AT_REST
+    assert run.stats["overlap"] == 0
+
+
+def test_a_hook_hangs_on_a_wall_and_leans_against_it_below():
+    """Its weight acts beside the wall that it hangs on, and turns it against the wall. The push against the wall and
+    the friction on its top, 4 m up, make the couple that balances this."""
+    wall = box(-1, 0, 0, 4, fixed=True, name="wall")
+    hook = mr.Compound([box(-0.5, 0, 4, 4.5), box(0, 0.5, 2, 4.5)], name="hook")
+    masonry = mr.Masonry([wall, hook], k_n=1e9, friction=lambda joint: 0.7 if joint.is_bed else 0.0, points=2)
+    assert [joint.name for joint in masonry.joints] == ["wall|hook", "wall|hook (2)"]
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.05), forces=True)
+    vertical = [j for j, joint in enumerate(masonry.joints) if joint.is_bed]
+    assert run.forces.normal[0, vertical[0]] == pytest.approx(hook.mass * mr.GRAVITY, rel=1e-6)
+    beside = 1 - vertical[0]
+    assert run.forces.normal[0, beside] > 100
+    assert abs(run.forces.shear[0, vertical[0]]) == pytest.approx(run.forces.normal[0, beside], rel=1e-4)
+    assert run.outcome is mr.Outcome.AT_REST
+    (x, _), (_, z) = (
+        masonry.joints[j].middle + run.forces.eccentricity[0, j] * masonry.joints[j].along
+        for j in (vertical[0], beside)
+    )
+    couple = run.forces.normal[0, beside] * (4 - z)
+    assert couple == pytest.approx(hook.mass * mr.GRAVITY * (hook.centroid[0] - x), rel=1e-4)
+
+
+@pytest.mark.parametrize("turn", [lambda block: block, in_space])
+def test_mujoco_and_explicit_steps_rest_alike(turn):
+    masonry = mr.Masonry([turn(GROUND), turn(L_UNIT), turn(box(1, 2, 1, 2, name="on"))], k_n=1e9)
+    case = mr.MasonryCase(masonry, 0.05)
+    rest = [solve(case).pose[-1] for solve in (mr.simulate, mr.solve_explicit)]
+    np.testing.assert_allclose(rest[0], rest[1], atol=1e-9)
+    assert {joint.name for joint in masonry.joints} == {"ground|L", "L|on"} | {j.name for j in masonry.joints}
+
+
+def test_what_a_compound_refuses():
+    for parts, error, match in (
+        ([box(0, 1, 0, 1)], ValueError, "2 to 1000"),
+        ([box(0, 1, 0, 1), box(2, 3, 0, 1)], ValueError, "part 1 hangs together with part 0 along no edge"),
+        ([box(0, 1, 0, 1), box(1, 2, 1, 2)], ValueError, "along no edge"),
+        ([box(0, 1, 0, 1), box(0.5, 2, 0, 1)], ValueError, "part_0 and part_1 overlap by 0.5 m"),
+        ([box(0, 1, 0, 1), box(1, 2, 0, 1, length=2.0)], ValueError, "lengths out of the plane from 1 to 2 m"),
+        ([box(0, 1, 0, 1), box(1, 2, 0, 1, fixed=True)], ValueError, r"parts\[1\] is fixed"),
+        ([box(0, 1, 0, 1), mr.Polyhedron.prism(box(1, 2, 0, 1))], TypeError, "parts of one kind"),
+        ([box(0, 1, 0, 1), 3], TypeError, r"parts\[1\] = 3"),
+        ("ab", TypeError, "not a list of blocks"),
+    ):
+        with pytest.raises(error, match=match):
+            mr.Compound(parts)
+    with pytest.raises(TypeError, match="give blocks of one kind"):
+        mr.Masonry([GROUND, in_space(L_UNIT)])
+    with pytest.raises(ValueError, match="blocks L and block_2 overlap"):
+        mr.Masonry([GROUND, L_UNIT, box(1.5, 2.5, 0.5, 1.5)])
+
+
+def test_files_of_convex_blocks_refuse_it_by_name(tmp_path):
+    masonry = mr.Masonry([in_space(GROUND), in_space(L_UNIT)], k_n=1e9)
+    for write in (masonry.to_obj, masonry.to_compas):
+        with pytest.raises(ValueError, match="takes convex blocks, and L has several parts"):
+            write(tmp_path / "file")
+
+
+def test_an_effect_acts_on_the_unit_and_not_in_its_notch():
+    masonry = mr.Masonry([in_space(GROUND), in_space(L_UNIT)], k_n=1e9)
+    mr.MasonryCase(masonry, 0.1, effects=[mr.Load(force=1e3, at=(0.5, 0, 3), block="L")])
+    with pytest.raises(ValueError, match="outside the block"):
+        mr.MasonryCase(masonry, 0.1, effects=[mr.Load(force=1e3, at=(1.8, 0, 2.8), block="L")])
