@@ -34,6 +34,9 @@ PAIRED = mujoco.MjModel.from_xml_string(
 PLAN = mr.Plan(base_count=2, side_count=2)
 COLUMN = mr.Masonry.stack([WALL], 5e8)
 GROUND = mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True)
+L_UNIT = mr.Compound(
+    [mr.Polygon([(0, 0), (1, 0), (1, 3), (0, 3)]), mr.Polygon([(1, 0), (2, 0), (2, 1), (1, 1)])], name="L"
+)
 BOX = mr.Masonry([GROUND, mr.Polyhedron.box((0.6, 0.4, 2.0), (0, 0, 1))], k_n=5e8)
 
 
@@ -207,6 +210,8 @@ CALLS = OF_NUMBERS | {
         mr.Polygon,
         {"vertices": [(0, 0), (1, 0), (0, 1)], "density": 2e3, "length": 1.0, "fixed": False, "name": None},
     ),
+    "Compound": (mr.Compound, {"parts": list(L_UNIT.parts), "fixed": False, "name": "L"}),
+    "Compound.prism": (mr.Compound.prism, {"compound": L_UNIT, "middle": 0.0}),
     "Polyhedron": (
         mr.Polyhedron,
         {
