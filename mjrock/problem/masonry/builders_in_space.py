@@ -20,7 +20,7 @@ from .polyhedron import Polyhedron
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
 SLENDEREST = 100.0
-"""Height of a drum over its width, at most, and the other way round: faces of a hundred sides are still told apart [-]."""
+"""Height of a drum over its width at most, and the other way round [-]: a hundred sides are still told apart."""
 
 
 def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
@@ -48,7 +48,7 @@ def column_of(width: float, height: float, drums: int, sides: int, density: floa
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
     if not 1 / SLENDEREST <= (slender := height / (drums * width)) <= SLENDEREST:
         raise ValueError(
-            f"height is {shown(height)} m for {drums} drums of a width of {shown(width)} m: a drum is {slender:.3g} times "
+            f"height is {shown(height)} m for {drums} drums {shown(width)} m wide: a drum is {slender:.3g} times "
             f"as high as wide; the valid range is [{1 / SLENDEREST:g}, {SLENDEREST:g}]"
         )
     ring = 0.5 * width / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
