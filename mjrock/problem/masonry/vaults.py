@@ -69,11 +69,17 @@ def bridge_of(
     return [ground_under(left, right, height, length), *polygons]
 
 
+def _section(arch: Span, density: float) -> list[Polygon]:
+    """The section of a vault, with its abutments; a TypeError or ValueError says what is wrong with its courses."""
+    require_whole("courses", arch.voussoirs, 1, 1000)
+    return arch_of(*arch, density, 1.0)
+
+
 def barrel_of(arch: Span, length: float, unit: float, density: float) -> list[Polyhedron]:
     """Courses of voussoirs in running bond between two abutments, see `Masonry.barrel_vault`."""
     length = require_within("length", length, 1e-2, 1e3, "m")
     unit = require_within("unit", unit, 1e-2, length, "m")
-    left, *courses, right = arch_of(*arch, density, 1.0)
+    left, *courses, right = _section(arch, density)
     whole = round(length / unit)
     if len(courses) * (whole + 1) >= MOST_BLOCKS:
         raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BLOCKS}")
@@ -99,7 +105,7 @@ def groin_of(arch: Span, length: float, unit: float, cut: bool, density: float) 
 
     The four webs are one web, turned. It has its axis along y, lies where y >= |x|, and ends at the side of the bay.
     """
-    _, *courses, _ = arch_of(*arch, density, 1.0)
+    _, *courses, _ = _section(arch, density)
     (x, z), (reach, top) = arch.springing.tolist()
     pier = np.array([(x, z), (reach, top), (reach, z - (reach - x)), (x, z - (reach - x))])
     strips = [Polygon(pier * (-1, 1), density), *courses, Polygon(pier, density)]
