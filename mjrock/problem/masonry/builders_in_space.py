@@ -13,19 +13,22 @@ from numpy.typing import ArrayLike
 
 from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
 from ..wall.section import Opening
-from .builders import BEYOND, DEEP, MOST_BLOCKS, SMALLEST_PIECE, required_faces, required_unit
+from .builders import MOST_BLOCKS, SMALLEST_PIECE, extent_of_ground, required_faces, required_unit
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
+SLENDEREST = 100.0
+"""Height of a drum over its width at most, and the other way round [-]: a hundred sides are still told apart."""
 
 
 def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
     """Fixed ground under what stands on it between two corners x, y, z [m]."""
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     wide = (high - low)[:2]
-    beyond, deep = np.maximum(BEYOND * (high[2] - low[2]), 0.5 * wide), DEEP * float(wide.max())
+    extents = [extent_of_ground(float(each), float(high[2] - low[2])) for each in wide]
+    beyond, deep = np.array([reach for reach, _ in extents]), max(depth for _, depth in extents)
     middle = 0.5 * (low + high)[:2]
     return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
 
@@ -43,6 +46,11 @@ def column_of(width: float, height: float, drums: int, sides: int, density: floa
     height = require_within("height", height, 1e-2, 1e3, "m")
     drums, sides = require_whole("drums", drums, 1, 1000), require_whole("sides", sides, 3, 100)
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
+    if not 1 / SLENDEREST <= (slender := height / (drums * width)) <= SLENDEREST:
+        raise ValueError(
+            f"height is {shown(height)} m for {drums} drums {shown(width)} m wide: a drum is {slender:.3g} times "
+            f"as high as wide; the valid range is [{1 / SLENDEREST:g}, {SLENDEREST:g}]"
+        )
     ring = 0.5 * width / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
     levels = np.linspace(0.0, height, drums + 1)
     blocks = [ground_below((*ring.min(axis=0), 0.0), (*ring.max(axis=0), height))]
