@@ -18,6 +18,8 @@ DEEP = 0.25
 """Depth of the ground, over the width of what stands on it [-]."""
 BEYOND = 2.0
 """How far the ground reaches beyond what stands on it, over the height of that [-]: what falls over lies on it."""
+THINNEST_GROUND = 1e-3
+"""Depth of the ground, over its own width, at least [-]: what stands on it may be ever so slender."""
 SMALLEST_PIECE = 0.1
 """Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
 DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
@@ -37,8 +39,14 @@ def rectangle(
 def ground_under(left: float, right: float, height: float, length: float, level: float = 0.0) -> Polygon:
     """Fixed ground with its surface at a level [m], under what stands on it between two x, of a height [m]."""
     wide = right - left
+    beyond, deep = extent_of_ground(wide, height)
+    return rectangle(left - beyond, right + beyond, level - deep, level, 2000.0, length, True, "ground")
+
+
+def extent_of_ground(wide: float, height: float) -> tuple[float, float]:
+    """How far ground reaches beyond what stands on it, of a width and a height [m], and how deep it is [m]."""
     beyond = max(BEYOND * height, 0.5 * wide)
-    return rectangle(left - beyond, right + beyond, level - DEEP * wide, level, 2000.0, length, True, "ground")
+    return beyond, max(DEEP * wide, THINNEST_GROUND * (wide + 2 * beyond))
 
 
 def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:

@@ -13,19 +13,22 @@ from numpy.typing import ArrayLike
 
 from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
 from ..wall.section import Opening
-from .builders import BEYOND, DEEP, MOST_BLOCKS, SMALLEST_PIECE, Ends, required_ends, required_unit, rings_of
+from .builders import MOST_BLOCKS, SMALLEST_PIECE, Ends, extent_of_ground, required_ends, required_unit, rings_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 
 WHOLE = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
+SLENDEREST = 100.0
+"""Height of a drum over its width at most, and the other way round [-]: a hundred sides are still told apart."""
 
 
 def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
     """Fixed ground under what stands on it between two corners x, y, z [m]."""
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     wide = (high - low)[:2]
-    beyond, deep = np.maximum(BEYOND * (high[2] - low[2]), 0.5 * wide), DEEP * float(wide.max())
+    extents = [extent_of_ground(float(each), float(high[2] - low[2])) for each in wide]
+    beyond, deep = np.array([reach for reach, _ in extents]), max(depth for _, depth in extents)
     middle = 0.5 * (low + high)[:2]
     return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
 
@@ -39,14 +42,19 @@ def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:
 
 def column_of(width: Ends, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
     """The ground and prismatic drums on it, see `Masonry.column`."""
-    bottom, top = required_ends("width", width, 1e-2, 100.0)
+    ends = required_ends("width", width, 1e-2, 100.0)
     height = require_within("height", height, 1e-2, 1e3, "m")
     drums, sides = require_whole("drums", drums, 1, 1000), require_whole("sides", sides, 3, 100)
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
+    for wide in ends:
+        if not 1 / SLENDEREST <= (slender := height / (drums * wide)) <= SLENDEREST:
+            raise ValueError(
+                f"height is {height:g} m for {drums} drums {wide:g} m wide: a drum is {slender:.3g} times as high as "
+                f"wide; the valid range is [{1 / SLENDEREST:g}, {SLENDEREST:g}]"
+            )
     ring = 0.5 / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
-    levels, widths = np.linspace(0.0, height, drums + 1), np.linspace(bottom, top, drums + 1)
-    wide = max(bottom, top)
-    blocks = [ground_below((*(wide * ring.min(axis=0)), 0.0), (*(wide * ring.max(axis=0)), height))]
+    levels, widths = np.linspace(0.0, height, drums + 1), np.linspace(*ends, drums + 1)
+    blocks = [ground_below((*(max(ends) * ring.min(axis=0)), 0.0), (*(max(ends) * ring.max(axis=0)), height))]
     for i in range(drums):
         vertices = [(*(widths[j] * at), levels[j]) for j in (i, i + 1) for at in ring]
         blocks.append(Polyhedron(vertices, density, name=f"drum_{i}"))

@@ -651,7 +651,8 @@ class Masonry:
             width: diameter of the circle within the section [m], 0.01 to 100: the side of a square. A pair is that of
                 the bottom and of the top of a column that tapers.
             height: of the column [m], 0.01 to 1000.
-            drums: how many, 1 to 1000. They are named `drum_0` and so on, from the lowest upwards.
+            drums: how many, 1 to 1000, each of a height of 0.01 to 100 widths. They are named `drum_0` and so on, from
+                the lowest upwards.
             sides: of the section, a regular polygon, 3 to 100. A square one has its sides along x and y.
             density: mass density [kg/m3], 100 to 30000.
             options: further arguments of `Masonry`.
