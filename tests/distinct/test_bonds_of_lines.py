@@ -39,7 +39,7 @@ def copy_of(bond):
 @pytest.mark.parametrize(("gap", "last"), [(-0.003, -0.001), (0.0005, 0.0002), (0.003, 0.0005), (0.003, -0.0005)])
 def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap, last):
     before = 30.0 if d == 2 else 30.0 * ALONG[3]
-    whole, normal = bonded_line(d, face, gap, gap=last, push=80.0, pressed=7.0, dragged=before)
+    whole, normal = bonded_line(d, face, gap, gap=last, push=80.0, pressed=7.0, dragged=before, grip=before / 3000.0)
     line, bond, bodies = whole.lines[0], whole.bonds[0], whole.bodies
     meet = contact.where_friction_rubs(met(whole))
     velocity = contact.relative(bodies, line, whole.supports, meet, whole.axes)
@@ -68,6 +68,7 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     np.testing.assert_allclose(bodies["moment"][0], about(meet.face_arm, against), rtol=1e-9)
     np.testing.assert_allclose(kept.dashpots, [0.0, -0.5 * H * (7.0 + bond.pressed) * rate], rtol=1e-9)
     torn = 0.5 * last * gap * (K - twin.secant)
+    assert taken > 0
     np.testing.assert_allclose(kept.bonds, [torn, taken, 0.0], rtol=1e-9, atol=1e-12)
     mean = 0.5 * H * (before + np.array(drag))
     assert kept.totals[0].friction == pytest.approx(-mean @ np.array(slip) - taken, rel=1e-9)
@@ -177,7 +178,7 @@ def test_a_bond_is_crushed_where_it_is_pressed_and_can_be(d, bears, gap):
 
 
 @BOTH
-@pytest.mark.parametrize(("bears", "tension"), [(math.inf, TENSION), (5e3, TENSION), (math.inf, 0.0), (5e3, 0.0)])
+@pytest.mark.parametrize(("bears", "tension"), [(math.inf, TENSION), (5e3, 0.5), (math.inf, 0.0), (5e3, 0.0)])
 def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
     whole, _ = bonded_line(d, 0, 0.002, left=1e-5, secant=2e4, bears=bears, tension=tension, gap=0.003, margin=9.0, push=-60.0)
     line, bond = whole.lines[0], whole.bonds[0]
@@ -265,6 +266,16 @@ def test_the_bonds_of_masonry_have_the_strength_of_its_joints(space):
         np.testing.assert_allclose(table[name], rate)
     np.testing.assert_allclose((table["left"], table["residual"], table["falls"]), [[1.0], [0.5], [0.25]] * np.ones(len(table)))  # fmt: skip
     assert len(dry.bonds) == 0
+
+
+def test_a_bond_of_a_newton_tears_too():
+    weak = setup_of(mr.MasonryCase(joint(mr.Bond(0.5, 0.5, 1e-6, 1e-6)), 1.0, settled=False), None, None).system
+    assert (weak.bonds["tension"] < 0.1).all()
+    np.testing.assert_array_equal(weak.bonds["secant"], weak.bonds["k"])
+    whole, _ = bonded_line(2, -1, 0.003, tension=0.5)
+    bonds.hold_bonds(whole, books(whole), H, whole.axes)
+    assert 0 < whole.bonds["secant"][0] < K
+    assert bonds.holding(whole.bonds)[0] == (whole.bonds["left"][0] > bonds.GONE)
 
 
 def test_a_bond_without_strength_in_tension_leaves_the_normal_to_its_line():
