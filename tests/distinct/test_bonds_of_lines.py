@@ -39,7 +39,7 @@ def copy_of(bond):
 @pytest.mark.parametrize(("gap", "last"), [(-0.003, -0.001), (0.0005, 0.0002), (0.003, 0.0005), (0.003, -0.0005)])
 def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap, last):
     before = 30.0 if d == 2 else 30.0 * ALONG[3]
-    whole, normal = bonded_line(d, face, gap, gap=last, push=80.0, pressed=7.0, dragged=before, grip=before / 3000.0)
+    whole, normal = bonded_line(d, face, gap, gap=last, push=80.0, pressed=7.0, dragged=before, grip=before / 1500.0)
     line, bond, bodies = whole.lines[0], whole.bonds[0], whole.bodies
     meet = contact.where_friction_rubs(met(whole))
     velocity = contact.relative(bodies, line, whole.supports, meet, whole.axes)
@@ -77,8 +77,6 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
         assert kept.totals[0].ground == pytest.approx(whole.supports.moving[0] @ work, rel=1e-9)
     else:
         assert kept.totals[0].ground == 0
-    bonds.hold_bonds(whole, kept, 0.0, whole.axes)
-    assert kept.bonds[0] == pytest.approx(torn, rel=1e-9, abs=1e-12)
 
 
 def test_works_of_bonds_add_up():
