@@ -79,6 +79,17 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
         assert kept.totals[0].ground == 0
 
 
+@pytest.mark.parametrize(("last", "gap"), [(5e-4, -1e-3), (-5e-4, -1e-3)])
+def test_a_worn_bond_tears_as_it_closes(last, gap):
+    """What its spring holds less is taken where the gap was open; a closed one held nothing that it no longer does."""
+    whole, _ = bonded_line(2, -1, gap, gap=last, left=0.2, drawn=5e-4)
+    kept = books(whole)
+    bonds.hold_bonds(whole, kept, H, whole.axes)
+    lost = K - whole.bonds["secant"][0]
+    assert lost > 0.5 * K
+    assert kept.bonds[0] == pytest.approx(0.5 * last * gap * lost if last > 0 else 0.0, rel=1e-9)
+
+
 def test_works_of_bonds_add_up():
     """A second line at the same place doubles what both book."""
     once, twice = books(system(2)), books(system(2))
@@ -255,6 +266,7 @@ def test_the_bonds_of_masonry_have_the_strength_of_its_joints(space):
         np.testing.assert_allclose(table[name], dry.lines[name])
     assert len(table) == len(lines)
     assert not (lines["k"].any() or lines["c"].any() or lines["friction"].any() or np.isfinite(lines["margin"]).any())
+    assert not lines["grip"].any()
     for name, strength in (("tension", 0.25e6), ("cohesion", 0.35e6), ("bears", 10.5e6)):
         assert table[name].sum() == pytest.approx(strength * AREA)
     np.testing.assert_allclose(table["secant"], table["k"])

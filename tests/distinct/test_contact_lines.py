@@ -265,17 +265,18 @@ def test_lines_that_stick_rigidly_are_listed(d):
 
 
 @BOTH
-def test_a_dashpot_looks_ahead_where_it_presses_before_and_after(d):
-    for was, ahead in ((150.0, True), (0.0, False)):
-        whole, _, rate, _ = moving_line(d, 0, -0.003, push=was, pressed=0.0, depth=0.002)
+@pytest.mark.parametrize("size", [1.0, 1e-3])
+def test_a_dashpot_looks_ahead_where_it_presses_before_and_after(d, size):
+    for was, ahead in ((150.0 * size, True), (0.0, False)):
+        whole, _, rate, _ = moving_line(d, 0, -0.003, push=was, pressed=0.0, depth=0.002, k=K * size, c=C * size)
         line = whole.lines[0]
-        push = max(300.0 - C * rate, 0.0)
+        push = max((300.0 - C * rate) * size, 0.0)
         assert push > 0
         seen = touches.foreseen(line, rate, push, 0.5) if ahead else rate
         if not ahead:
             push = touches.forces_of_leaving(line, -0.003, rate, H)[1]
         pressed(whole, lead=0.5)
-        assert whole.lines[0].push == pytest.approx(max(300.0 - C * seen, 0.0) if ahead else push, rel=1e-9)
+        assert whole.lines[0].push == pytest.approx(max((300.0 - C * seen) * size, 0.0) if ahead else push, rel=1e-9)
 
 
 @BOTH
@@ -300,17 +301,24 @@ def test_a_line_past_its_end_is_not_open():
 
 @BOTH
 @pytest.mark.parametrize(
-    ("was", "push", "gap"), [(0.0, 0.0, -0.0002), (0.0002, 20.0, 0.0001), (0.0, 0.0, -0.3), (0.0002, 0.0, 0.0001)]
+    ("was", "push", "gap", "before"),
+    [
+        (0.0, 0.0, -0.0002, 0.3),
+        (0.0002, 20.0, 0.0001, 0.3),
+        (0.0, 0.0, -0.3, 0.3),
+        (0.0002, 0.0, 0.0001, 0.3),
+        (0.0002, 0.0, 0.0001, 0.6),
+    ],
 )
-def test_a_line_that_meets_or_leaves_its_face_is_touched(d, was, push, gap):
+def test_a_line_that_meets_or_leaves_its_face_is_touched(d, was, push, gap, before):
     whole = system(d, 2)
     whole.bodies["velocity"][1] += (1.0 if gap > 0 else -1.0) * matrix(d, 0) @ NORMAL[d]
     friction_law = {"k_s": 1e5, "c_s": 1.0, "friction": 0.5, "dragged": 2.0, "grip": 0.0}
     _, meet, rate, slip = moving_line(
-        d, 0, gap, was=was, push=push, pressed=0.0, number=1, whole=whole, rate=0.3, **friction_law
+        d, 0, gap, was=was, push=push, pressed=0.0, number=1, whole=whole, rate=before, **friction_law
     )
     twin = system(d, 2)
-    put_line(twin, 0, gap, number=1, k=K, c=C, depth=was, push=push, rate=0.3, **friction_law)
+    put_line(twin, 0, gap, number=1, k=K, c=C, depth=was, push=push, rate=before, **friction_law)
     sprung, expected = touches.touched_forces(twin.lines[1], meet.gap, rate, H)
     drag = np.zeros(1 if d == 2 else 3)
     if expected > 0:
