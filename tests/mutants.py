@@ -69,6 +69,7 @@ OWN = {
     "distinct/slowing.py": ("push",),
     "distinct/bonds.py": ("bonds", "bonded_masonry"),
     "problem/masonry/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
+    "problem/masonry/actuator.py": ("actuators",),
     "distinct/links.py": ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
@@ -92,7 +93,12 @@ OWN = {
 }
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
+    "distinct/bonds.py": ("bonds_of_lines",),
+    "distinct/contact.py": ("contact_lines",),
+    "distinct/friction.py": ("friction_of_lines",),
+    "distinct/pair_law.py": ("pair_law",),
     "distinct/turning.py": ("turning",),
+    "problem/masonry/actuator.py": ("actuator_inputs",),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
 ROUNDS = (
@@ -136,6 +142,15 @@ EQUIVALENT = {
     "reading.py: peak_times: Array = field(default_factory=lambda: np.zeros(1))": "masonry has no peaks that are read",
     "reading.py: early = t[-1] <= case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to "
     "the duration": "no sample is half a step before the end to the last bit",
+    "turning.py: PASSES = 6": "more passes take time only",
+    "turning.py: SLOW, PASSES_OF_SLOW = 1e-3, 4": "more passes take time only",
+    "turning.py: SLOW, PASSES_OF_SLOW = 0.002, 2": "what two passes leave is within the error of the step there, too",
+    "turning.py: SMALL = 0.0002": "the first term of the series that is left out is below rounding there, too",
+    "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
+    "friction.py: SWEEPS = 100": "the sweeps have ended before",
+    "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
+    "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",
+    "friction.py: HELD = 2e-09": "any small number serves to divide by",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""

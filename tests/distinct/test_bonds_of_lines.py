@@ -137,7 +137,9 @@ def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides
     trial = 0.004 + slip * H
     stretch = min(trial, limit / K_SHEAR)
     assert bool(stretch < trial) is slides
-    drag, taken = bonds.slide(whole.bodies, line, bond, tuple(normal), (slip,) if d == 2 else tuple(slip * along), push, H)
+    drag, taken = bonds.slide(
+        whole.bodies, line, bond, tuple(normal), (slip,) if d == 2 else tuple(slip * along), push, H
+    )
     assert bond.friction == pytest.approx(0.65)
     held = min(K_SHEAR * stretch + C_SHEAR * slip, limit)
     np.testing.assert_allclose(friction.as_vector(tuple(normal), drag), -held * along, rtol=1e-12, atol=1e-10)
@@ -189,7 +191,9 @@ def test_a_bond_is_crushed_where_it_is_pressed_and_can_be(d, bears, gap):
 @BOTH
 @pytest.mark.parametrize(("bears", "tension"), [(math.inf, TENSION), (5e3, 0.5), (math.inf, 0.0), (5e3, 0.0)])
 def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
-    whole, _ = bonded_line(d, 0, 0.002, left=1e-5, secant=2e4, bears=bears, tension=tension, gap=0.003, margin=9.0, push=-60.0)
+    whole, _ = bonded_line(
+        d, 0, 0.002, left=1e-5, secant=2e4, bears=bears, tension=tension, gap=0.003, margin=9.0, push=-60.0
+    )
     line, bond = whole.lines[0], whole.bonds[0]
     line.k, line.c, line.margin = (K - 2e4, 0.5 * C, math.inf) if tension else (K, C, 9.0)
     grip, drag = (0.4, 0.3) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])

@@ -47,7 +47,9 @@ def test_a_line_is_where_its_bodies_have_it(d, face, gap):
     whole = system(d)
     normal = put_line(whole, face, gap, 0.01)
     meet, bodies = met(whole), whole.bodies
-    across = gap * normal + 0.01 * {-1: np.eye(d), 0: matrix(d, 0), POINT: matrix(d, 1)}[int(whole.lines[0].face)] @ ALONG[d]
+    across = (
+        gap * normal + 0.01 * {-1: np.eye(d), 0: matrix(d, 0), POINT: matrix(d, 1)}[int(whole.lines[0].face)] @ ALONG[d]
+    )
     assert meet.gap == pytest.approx(gap, rel=1e-11)
     np.testing.assert_allclose(meet.normal, normal, rtol=1e-13)
     point = matrix(d, 1) @ AT[d]
@@ -281,7 +283,9 @@ def test_a_dashpot_looks_ahead_where_it_presses_before_and_after(d, size):
 
 @BOTH
 def test_a_line_that_stays_open_keeps_its_widest_gap(d):
-    whole, _, _, _ = moving_line(d, -1, 0.004, was=0.0, push=0.0, pressed=0.0, grip=3.0, widest=0.001, k_s=1e5, friction=0.5)
+    whole, _, _, _ = moving_line(
+        d, -1, 0.004, was=0.0, push=0.0, pressed=0.0, grip=3.0, widest=0.001, k_s=1e5, friction=0.5
+    )
     kept, counts = pressed(whole)
     line = whole.lines[0]
     assert counts == (0, 0)

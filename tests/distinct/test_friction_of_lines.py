@@ -316,4 +316,3 @@ def test_the_work_of_rigid_friction_is_booked(d, on_face):
     assert (rubbed, put_in) == pytest.approx((-0.5 * impulses @ first, 0.5 * carried))
     friction.book_rubbing(whole, books, 1, whole.axes)
     assert books.totals[0].ground == pytest.approx(2 * carried)
-

@@ -90,7 +90,10 @@ def test_half_of_many_joints_is_more_than_the_stiffest():
 
 
 def test_the_softer_block_of_two_is_taken_whichever_comes_first():
-    joints = [SimpleNamespace(below=0, above=1, width=0.5, area=0.5), SimpleNamespace(below=2, above=3, width=0.5, area=0.5)]
+    joints = [
+        SimpleNamespace(below=0, above=1, width=0.5, area=0.5),
+        SimpleNamespace(below=2, above=3, width=0.5, area=0.5),
+    ]
     given = SimpleNamespace(blocks=range(4), joints=joints, in_space=False, residual_friction=np.full(2, 0.9))
     for stiffness in ([4.0, 5.0], [5.0, 4.0]):
         table = rows(kinds(2).line, 2, k=stiffness, friction=[0.6, 0.5])
