@@ -1,4 +1,4 @@
-"""Bodies and lines whose rows are written by hand, for tests that call the functions of explicit steps one at a time."""
+"""Bodies and lines whose rows are written by hand, for tests that call functions of explicit steps one at a time."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -12,7 +12,12 @@ from mjrock.scene.ground import Ground
 
 TURNS = Rotation.from_rotvec([[0.7, -0.4, 0.3], [-0.2, 0.5, 0.6]])
 ANGLES = 0.7, -0.4
-INERTIAS = np.array([[[3.0, 0.4, -0.3], [0.4, 5.0, 0.7], [-0.3, 0.7, 2.0]], [[4.0, -0.5, 0.2], [-0.5, 2.0, 0.3], [0.2, 0.3, 6.0]]])  # fmt: skip
+INERTIAS = np.array(
+    [
+        [[3.0, 0.4, -0.3], [0.4, 5.0, 0.7], [-0.3, 0.7, 2.0]],
+        [[4.0, -0.5, 0.2], [-0.5, 2.0, 0.3], [0.2, 0.3, 6.0]],
+    ]
+)
 MASSES = np.array([2.0, 5.0])
 REST = np.array([[0.3, -0.2, 1.1], [-0.4, 0.5, 2.3]])
 PLACE = np.array([[0.02, 0.05, -0.04], [-0.03, 0.01, 0.06]])
@@ -44,10 +49,17 @@ def system(d, lines=1, edges=0, still=False):
     supports = moving((), d)._replace(moved=MOVED[:, which], moving=MOVING[:, which])
     none = {name: rows(kind.link, 0) for name in ("ties", "dampers", "forces", "actuators")}
     return System(
-        axes=axes, bodies=bodies, lines=rows(kind.line, lines, face=-1, support=-1, k_s=np.inf, margin=np.inf, sense=1.0),
-        edges=rows(kind.edge, edges), ways=rows(kind.way, (d - 1) * lines), bonds=rows(kind.bond, lines),
-        ground=Ground.of(None), supports=supports, drives=moving((), 1), **none,
-    )  # fmt: skip
+        axes=axes,
+        bodies=bodies,
+        lines=rows(kind.line, lines, face=-1, support=-1, k_s=np.inf, margin=np.inf, sense=1.0),
+        edges=rows(kind.edge, edges),
+        ways=rows(kind.way, (d - 1) * lines),
+        bonds=rows(kind.bond, lines),
+        ground=Ground.of(None),
+        supports=supports,
+        drives=moving((), 1),
+        **none,
+    )
 
 
 def books(system):
@@ -77,7 +89,7 @@ def velocity_at(body, arm):
 
 def energy(bodies):
     """Kinetic energy [J]."""
-    spin, momentum = bodies["spin"], None
+    spin = bodies["spin"]
     inverse = bodies["inverse_inertia" if spin.shape[1] == 1 else "inverse_in_world"]
     momentum = np.linalg.solve(inverse, spin[:, :, None])[:, :, 0]
     return 0.5 * float((bodies["mass"] * (bodies["velocity"] ** 2).sum(axis=1)).sum() + (spin * momentum).sum())

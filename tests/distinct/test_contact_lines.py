@@ -119,13 +119,13 @@ def test_the_end_of_a_face_presses_on_the_face_of_the_block_above(d, face, over,
 def test_past_the_end_of_both_faces_nothing_is_left(d):
     meet = met(ended(d, 0, 0.02, within=0.001)[0])
     assert (meet.gap, meet.past) == (contact.OPEN, True)
-    assert 0.1 < contact.OPEN
+    assert contact.OPEN > 0.1
 
 
 @BOTH
 @pytest.mark.parametrize("face", [-1, 0])
 def test_within_the_outline_a_line_is_not_past_its_end(d, face):
-    whole, normal = ended(d, face, -0.01)
+    whole, _ = ended(d, face, -0.01)
     meet = met(whole)
     assert (meet.gap, meet.past) == (pytest.approx(-0.003, rel=1e-10), False)
     whole.lines["margin"] = 0.0  # the end is looked at, and not reached
@@ -392,9 +392,9 @@ def test_a_line_with_an_intact_bond_or_that_is_handed_over_is_left_out(k, margin
 @pytest.mark.parametrize("face", [0, "support"])
 def test_springs_do_the_work_of_their_touch(d, face):
     """The impulses change both velocities, and each is what its spring is due at the rate that they leave."""
-    whole, kept = system(d, 3), None
+    whole = system(d, 3)
     for number, due in enumerate((0.0, 0.02, -0.03)):
-        _, meet, rate, _ = moving_line(d, face, -0.002, number=number, whole=whole, due=due)
+        _, _, rate, _ = moving_line(d, face, -0.002, number=number, whole=whole, due=due)
         whole.lines[number].rate = 1.5 * rate
     kept = books(whole)
     kept.touched[:2], kept.struck[:] = [1, 2], 5.0

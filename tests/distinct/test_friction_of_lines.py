@@ -22,7 +22,7 @@ def tangential(d):
 
 
 def rigid(d, on_face=True, held=1e6):
-    """A system with one line that sticks rigidly, at the same place of body 1 and of the face of body 0 or a support."""
+    """A system with one line that sticks rigidly, at a place of body 1 and of the face of body 0 or of a support."""
     whole = system(d)
     line = whole.lines[0]
     line.body, line.face, line.support, line.friction = 1, 0 if on_face else -1, -1 if on_face else 0, 0.5
@@ -127,12 +127,15 @@ def test_friction_of_the_last_step_is_that_of_the_spring_or_of_rigid_lines(d, fa
     assert friction.last_friction(whole.bodies, line, spring) == spring
 
 
-@pytest.mark.parametrize("normal", [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.48, 0.6, 0.64), (0.6, 0.768, 0.224)])  # fmt: skip
+@pytest.mark.parametrize(
+    "normal", [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.48, 0.6, 0.64), (0.6, 0.768, 0.224)]
+)
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_ways_along_a_face_are_square_to_it_and_to_each_other(normal, sense):
     normal = sense * np.array(normal)
     first, second = (np.array(friction.way_along(tuple(normal), i)) for i in range(2))
-    np.testing.assert_allclose(np.array([first, second, normal]) @ np.array([first, second, normal]).T, np.eye(3), atol=1e-14)  # fmt: skip
+    three = np.array([first, second, normal])
+    np.testing.assert_allclose(three @ three.T, np.eye(3), atol=1e-14)
     np.testing.assert_allclose(np.cross(normal, first), second, atol=1e-14)
     assert friction.way_along((0.6, 0.8), 0) == (0.8, -0.6)
 
