@@ -147,6 +147,22 @@ EQUIVALENT = {
     "turning.py: SLOW, PASSES_OF_SLOW = 1e-3, 4": "more passes take time only",
     "turning.py: SLOW, PASSES_OF_SLOW = 0.002, 2": "what two passes leave is within the error of the step there, too",
     "turning.py: SMALL = 0.0002": "the first term of the series that is left out is below rounding there, too",
+    **{
+        f"turning.py: {line}": "the term is below rounding there"
+        for line in (
+            "sine, versine = 1 - square / 6, 0.5 - square / 48",
+            "sine, versine = 1 - square / 6, 0.5 + square / 24",
+            "if angle <= SMALL:",
+            "if half <= SMALL:",
+        )
+    },
+    "handover.py: alike = sense / there.sense * dot(vector(found.normal, i, axes), there.normal)": (
+        "a sense is 1 or -1"
+    ),
+    "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
+    "pair_law.py: share = np.maximum(stiffest / np.where(alone, 2.0, sums[:, 0]), 0.5)": (
+        "what a block without a joint has is infinite, whatever it is divided by"
+    ),
     "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
     "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",

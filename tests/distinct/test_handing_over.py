@@ -13,7 +13,7 @@ from mjrock.distinct.rows import POINT, kinds, rows
 from mjrock.distinct.solids import Poses
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
-MOVED = np.array([0.01, -0.02, 0.03])
+MOVED = np.array([0.21, -0.32, 0.23])
 
 
 def cut(a, d):
@@ -280,3 +280,17 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
         handover.hand_over(new, places, gone, pairs, numbers, axes)
         held = 0.5 * 1e4 * 0.0025 / k_s
         np.testing.assert_allclose(np.linalg.norm(new.rows["grip"], axis=1), [held, held, 0.0], rtol=1e-9)
+
+
+def test_friction_turns_from_the_face_of_one_block_to_that_of_the_other():
+    """A place on the other block's face: what acts on its body is against what acted on the one before."""
+    numbers, axes, kind = blocks(3), system(3).axes, kinds(3).line
+    old, places = rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), found(3, 2, 1)
+    handover.write_line(old[0], 0, 0.0, found(3, 1, 2), numbers, axes)
+    old["push"], old["depth"], old["grip"] = 30.0, 0.003, [[0.4, 0.1, -0.2]]
+    places.normal[0] *= -1
+    new = Lines(rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), np.zeros(1), np.zeros(1))
+    pairs = Pairs.belonging(np.array([5]), np.array([5]))
+    handover.hand_over(new, places, Lines(old, np.zeros(1), np.array([0.003])), pairs, numbers, axes)
+    before, after = turn(3, 1) @ old["grip"][0], turn(3, 2) @ new.rows["grip"][0]
+    np.testing.assert_allclose(after, -before, rtol=1e-12)
