@@ -163,6 +163,9 @@ EQUIVALENT = {
     "pair_law.py: share = np.maximum(stiffest / np.where(alone, 2.0, sums[:, 0]), 0.5)": (
         "what a block without a joint has is infinite, whatever it is divided by"
     ),
+    "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
+    "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
+    "contact.py: if push <= 0 and line.push > 0:": "a push of zero has no friction in this way, too",
     "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
     "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",

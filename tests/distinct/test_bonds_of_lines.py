@@ -175,7 +175,7 @@ def test_a_line_that_is_crushed_steps_back_by_what_it_closes(d, face):
 
 
 @BOTH
-@pytest.mark.parametrize(("bears", "gap"), [(2000.0, -0.003), (2000.0, 0.0005), (math.inf, -0.003)])
+@pytest.mark.parametrize(("bears", "gap"), [(2000.0, -0.003), (2000.0, 0.003), (math.inf, -0.003)])
 def test_a_bond_is_crushed_where_it_is_pressed_and_can_be(d, bears, gap):
     whole, _ = bonded_line(d, 0, gap, bears=bears, crumbled=50.0, gap=-0.002)
     twin, kept = copy_of(whole.bonds[0]), books(whole)
@@ -355,11 +355,18 @@ def test_joints_are_named_in_the_order_in_which_they_cracked():
 
 def test_lines_that_are_handed_over_have_back_what_their_bond_has():
     whole = system(2, 3)
-    for name, value in {"k": [K, K, 0.0], "c": C, "friction": 0.6, "margin": 9.0, "grip": 0.4, "dragged": 0.3}.items():
+    for name, value in {
+        "k": [0.5, K, 0.0],
+        "c": C,
+        "friction": 0.6,
+        "margin": 9.0,
+        "grip": 0.4,
+        "dragged": 0.3,
+    }.items():
         whole.bonds[name] = np.array(value)[:, None] if name in ("grip", "dragged") and np.ndim(value) else value
     whole.bonds["secant"], whole.bonds["push"] = 2e5, 50.0
     bonds.released(whole.lines, whole.bonds, np.array([True, False, True]))
-    np.testing.assert_array_equal(whole.lines["k"], [K, 0.0, 0.0])
+    np.testing.assert_array_equal(whole.lines["k"], [0.5, 0.0, 0.0])
     for name, value in (("c", C), ("friction", 0.6), ("margin", 9.0)):
         assert whole.lines[name][0] == value
     assert (whole.lines["grip"][0], whole.lines["dragged"][0]) == (0.4, 0.3)
