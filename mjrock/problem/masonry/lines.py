@@ -67,8 +67,8 @@ def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
-    point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,). A joint
-    has so many lines as `points` says, in space see `geometry.convex.spread`.
+    point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,).
+    A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
     """
     rows, at, normal, k = [], [], [], []
     for number, joint in enumerate(joints):
@@ -98,9 +98,7 @@ def _on_edge(joint: Joint, points: int, k_n: float) -> Iterator[tuple[Array, flo
         yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
 
 
-def _on_face(
-    joint: SpaceJoint, faces: Sequence[Array], points: int, k_n: float
-) -> Iterator[tuple[Array, float, bool]]:
+def _on_face(joint: SpaceJoint, faces: Sequence[Array], points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
     """The same of the points of a joint in space. Those at its corners may be of the block below alone, and those on an
     edge of the face below that lies within the face above are."""
     flat, areas = spread(joint.flat, points)
