@@ -59,6 +59,8 @@ class Method(NamedTuple):
         patient: looks in which a row is given back only once the friction is known.
         known: change of a friction force from look to look, over the largest of the step, that asks for no other look
             [-].
+        way_known: change of the direction of a friction force in space from look to look, times the force, over the
+            largest of the step, that asks for no other look [-].
         held_friction: friction coefficient of the outer edge of a wall that holds, with a side stop, on two lines [-].
             On a bed of n lines it is n/2 times that. This edge must not slip when the side impact pushes the hardly
             loaded base. On the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on nothing
@@ -94,6 +96,7 @@ class Method(NamedTuple):
     looks: int = 6
     patient: int = 2
     known: float = 0.02
+    way_known: float = 0.002
     held_friction: float = 30.0
     free_friction: float = 1.0
     self_work: float = 1e-4

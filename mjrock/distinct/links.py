@@ -154,7 +154,7 @@ def drive(system: System, books: Books, i: int, h: float, axes: tuple[int, ...])
     rate = system.drives.moving[i, 0] - speed
     dragged = row.c * rate
     force = row.k * (system.drives.moved[i, 0] - moved) + dragged
-    books.totals[0].ground += 0.5 * h * (row.pulled + force) * system.drives.moving[i, 0]
+    books.driven[i] += 0.5 * h * (row.pulled + force) * system.drives.moving[i, 0]
     books.dampers[len(system.dampers) + i] += 0.5 * h * (row.dragged + dragged) * rate
     row.pulled, row.dragged = force, dragged
     add_force(body, plus(at, change), scaled(force, way))

@@ -173,8 +173,9 @@ def keep_pose(system: System, books: Books, samples: Samples, row: int, before: 
             sheared += stored_along(line, dot(grip, grip))
     energy, totals = samples.energy[row], books.totals[0]
     energy.potential, energy.elastic = potential, elastic + bonded + sheared
-    energy.friction, energy.ground = totals.friction - sheared, totals.ground
+    energy.friction, energy.ground, energy.driven = totals.friction - sheared, totals.ground, books.driven.sum()
     keep_account(books.dampers, samples.dampers[row])
+    keep_account(books.driven, samples.driven[row])
     keep_account(books.ties, samples.ties[row])
     keep_account(books.broken, samples.broken[row])
     keep_account(books.ends, energy.ends)
@@ -188,7 +189,7 @@ def keep_energy(samples: Samples, row: int, look: int) -> None:
     """Keep the energy of a sample as that of a look."""
     of, energy = samples.energy[row], samples.looks[look]
     energy.kinetic, energy.potential, energy.elastic = of.kinetic, of.potential, of.elastic
-    energy.friction, energy.ground = of.friction, of.ground
+    energy.friction, energy.ground, energy.driven = of.friction, of.ground, of.driven
     keep_account(of.ends, energy.ends)
 
 

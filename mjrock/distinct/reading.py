@@ -169,7 +169,7 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     looks = run.samples.looks[: len(run.looked)]
-    work, left, there = looks["ground"], looks["ends"].sum(axis=1), run.above_rest(looks)
+    work, left, there = looks["ground"] + looks["driven"], looks["ends"].sum(axis=1), run.above_rest(looks)
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
     scale = max(given, kinetic, run.rounding / ENERGY_GAIN)
@@ -195,9 +195,9 @@ def advice(stats: Mapping[str, Any], share: float, wanted: float) -> str:
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
-    scene, samples = run.scene, run.samples.taken(kept)
+    scene, samples, driving = run.scene, run.samples.taken(kept), actuators_of(run.case)
     energy, may_break = samples.energy, np.isfinite(scene.links.sprung.ultimate)
-    dashpots = dict(zip((*scene.links.damped.names, *actuators_of(run.case)), samples.dampers.T, strict=True))
+    dashpots = dict(zip((*scene.links.damped.names, *driving), samples.dampers.T, strict=True))
     groups = (*scene.contacts.joints, "encounters", "motion")[: samples.dashpots.shape[1]]
     dashpots |= dict(zip(groups, samples.dashpots.T, strict=True))
     broken = zip(scene.links.sprung.names, samples.broken.T, may_break, strict=True)
@@ -206,6 +206,7 @@ def ledger_of(run: Run, kept: Integers) -> Ledger:
         **{name: np.asarray(energy[name]) for name in ("kinetic", "potential", "elastic", "ground")},
         dashpots=dashpots,
         friction=np.asarray(energy["friction"]),
+        actuators=dict(zip(driving, samples.driven.T, strict=True)),
         ties=dict(zip(scene.links.sprung.names, samples.ties.T, strict=True)),
         broken={name: account for name, account, breaks in broken if breaks},
         ends={} if isinstance(run.case, Case) else dict(zip(("joints", "encounters"), energy["ends"].T, strict=True)),

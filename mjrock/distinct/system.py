@@ -13,13 +13,13 @@ from .rows import Rows, kinds, rows
 
 ENERGY = np.dtype(
     [
-        *((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground")),
+        *((name, float) for name in ("kinetic", "potential", "elastic", "friction", "ground", "driven")),
         ("ends", float, (2,)),
         ("bonds", float, (3,)),
     ]
 )
-"""Energy at a sample or a look, what friction has taken, what ground and supports have put in, and what lines of joints
-and of encounters have lost at the ends of faces, and what bonds have taken by then [J]."""
+"""Energy at a sample or a look, what friction has taken, what ground and supports have put in, what actuators have put
+in, what lines of joints and of encounters have lost at the ends of faces, and what bonds have taken by then [J]."""
 
 
 class Supports(NamedTuple):
@@ -65,6 +65,7 @@ class Books(NamedTuple):
     Args:
         dashpots: by group, shape (g,).
         ties, broken, dampers: by tie, yielding and breaking, shape (t,) each, and by damper and actuator, shape (d,).
+        driven: what each actuator has put in, shape (a,).
         bonds: what bonds have taken in tension, slip and crushing, shape (3,).
         ends: what lines have lost at the ends of faces, those of joints and of encounters, shape (2,).
         totals: a row of `friction`, what is in the shear springs included; of `ground`, the work of ground and
@@ -78,6 +79,7 @@ class Books(NamedTuple):
     ties: Array
     broken: Array
     dampers: Array
+    driven: Array
     ends: Array
     bonds: Array
     totals: Rows
@@ -88,11 +90,13 @@ class Books(NamedTuple):
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
-        sizes = groups, len(system.ties), len(system.ties), len(system.dampers) + len(system.actuators), 2, 3
-        dashpots, ties, broken, dampers, ends, bonds = (np.zeros(size) for size in sizes)
+        ties, driven = len(system.ties), len(system.actuators)
+        sizes = groups, ties, ties, len(system.dampers) + driven, driven, 2, 3
+        dashpots, yielding, broken, dampers, actuators, ends, bonds = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
         totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
-        return cls(dashpots, ties, broken, dampers, ends, bonds, totals, active, touched, struck)
+        work = dashpots, yielding, broken, dampers, actuators, ends, bonds
+        return cls(*work, totals, active, touched, struck)
 
     def with_room(self, lines: int) -> Books:
         """The books with room for so many lines."""
@@ -104,7 +108,7 @@ class Books(NamedTuple):
     @property
     def size(self) -> int:
         """Accounts that a ledger keeps at each sample."""
-        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers)))
+        return 2 + sum(map(len, (self.dashpots, self.ties, self.broken, self.dampers, self.driven)))
 
 
 class Samples(NamedTuple):
@@ -114,7 +118,7 @@ class Samples(NamedTuple):
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).
         energy: rows of `ENERGY`, shape (samples,). Friction is that of shear springs alone where there is no ledger.
         looks: rows of `ENERGY` at looks, which are made every so many steps, however far the samples are apart.
-        dampers, ties, broken, dashpots: what `Books` say, (samples, accounts), without a ledger (samples, 0).
+        dampers, ties, broken, dashpots, driven: what `Books` say, (samples, accounts), without a ledger (samples, 0).
         actuators: force of each actuator [N], shape (samples, a).
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
@@ -132,6 +136,7 @@ class Samples(NamedTuple):
     ties: Array
     broken: Array
     dashpots: Array
+    driven: Array
     actuators: Array
     loads: Array
     held: Array
@@ -154,7 +159,7 @@ class Samples(NamedTuple):
         """Room for some samples and looks, for a sample that is not kept, and for the accounts of a ledger."""
         count += 1
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
-        kept = (books.dampers, books.ties, books.broken, books.dashpots)
+        kept = (books.dampers, books.ties, books.broken, books.dashpots, books.driven)
         accounts = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
         accounts.append(np.zeros((count, actuators)))
         sizes: tuple[tuple[int, ...], ...] = ((freedom.nv,), (freedom.translations,), (), (), (freedom.nv,))
@@ -175,8 +180,8 @@ class Samples(NamedTuple):
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""
         for table in (self.energy, self.looks):
-            for name in ("friction", "ground", "ends", "bonds"):
+            for name in ("friction", "ground", "driven", "ends", "bonds"):
                 table[name] -= table[name][0]
-        for account in (self.dampers, self.ties, self.broken, self.dashpots):
+        for account in (self.dampers, self.ties, self.broken, self.dashpots, self.driven):
             account -= account[0]
         return self

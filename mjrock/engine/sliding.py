@@ -174,7 +174,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
     coefficient friction raises the normal force by more than that gives, and the contact jams. Returns whether another
     look is needed, and whether a row was given back.
     """
-    change, largest, places = 0.0, 0.0, points.places
+    change, turning, largest, places, method = 0.0, 0.0, 0.0, points.places, sliding.method
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
@@ -182,17 +182,17 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
             pressing = pressing_force(memory, points, i, meets, frames)
             force = -math.copysign(points.law.friction[i] * pressing, slip)
             turned = take_way(memory, places, sliding, i, meets, frames)
-            change = max(change, abs(force - sliding.force[i]), turned * abs(force))
+            change, turning = max(change, abs(force - sliding.force[i])), max(turning, turned * abs(force))
             largest = max(largest, abs(force), abs(sliding.force[i]))
             sliding.force[i] = force
-    again, stopped = change > sliding.method.known * largest, False
+    again, stopped = change > method.known * largest or turning > method.way_known * largest, False
     for i in range(len(sliding.slides)):
-        if sliding.slides[i] and (n >= sliding.method.patient or not again):
+        if sliding.slides[i] and (n >= method.patient or not again):
             meets = where_friction_acts(places, meeting(places, i, frames))
             now = slipping(places, i, meets, frames, memory.velocity)
             faster = dot(now.way, over_face(places, i, meets, frames, memory.acceleration))
             later = now.speed + memory.options[TIMESTEP] * faster
-            if now.speed * later <= 0 or (again and n == sliding.method.looks - 1):
+            if now.speed * later <= 0 or (again and n == method.looks - 1):
                 memory.dimension[i] = ROUGH
                 sliding.slides[i] = False
                 stopped = True

@@ -70,7 +70,9 @@ class Ledger:
             wall.
         friction: work that friction has taken since the release.
         ground: work that the ground motion has put in, as seen from the base, and with it that of supports that are
-            moved and of actuators.
+            moved.
+        actuators: work that each actuator has put in since the release, by its name: its force times the way of its
+            history. What its spring holds is in `elastic`, and what its dashpot has taken in `dashpots` by its name.
         ties: work that yielding ties have taken since the release, by tie.
         broken: elastic energy that ties have lost by breaking since the release, by tie; only those that may break.
         ends: energy that contacts of masonry have lost at the ends of faces since the release, those of "joints" and
@@ -86,6 +88,7 @@ class Ledger:
     dashpots: Mapping[str, Array]
     friction: Array
     ground: Array
+    actuators: Mapping[str, Array] = field(default_factory=dict)
     ties: Mapping[str, Array] = field(default_factory=dict)
     broken: Mapping[str, Array] = field(default_factory=dict)
     ends: Mapping[str, Array] = field(default_factory=dict)
@@ -98,24 +101,42 @@ class Ledger:
 
     @property
     def residual(self) -> Array:
-        """Energy that is there or was taken, less the energy at the release and the work of the ground [J], shape (n,).
+        """Energy that is there or was taken, less that at the release and what was put in [J], shape (n,).
 
         It is zero for an exact integration. A positive residual is energy that nothing has put in.
         """
-        taken = (*self.dashpots.values(), *self.ties.values(), *self.broken.values(), *self.ends.values())
-        taken += tuple(self.bonds.values())
-        gone = sum(taken, self.friction) - self.ground
-        total: Array = self.held + gone
+        total: Array = sum(self.taken.values(), self.held) - sum(self.put_in.values())
         return np.asarray(total - total[0])
+
+    @property
+    def taken(self) -> dict[str, Array]:
+        """All accounts of what was taken, by what took it [J], shape (n,) each."""
+        return (
+            {f"{group} dashpots": account for group, account in self.dashpots.items()}
+            | dict(self.ties)
+            | {f"breaking of {tie}": account for tie, account in self.broken.items()}
+            | {f"ends of faces of {kind}": account for kind, account in self.ends.items()}
+            | {f"{kind} of bonds": account for kind, account in self.bonds.items()}
+            | {"friction": self.friction}
+        )
+
+    @property
+    def put_in(self) -> dict[str, Array]:
+        """All accounts of what was put in, by what did it [J], shape (n,) each."""
+        return {"the ground": self.ground, **self.actuators}
 
     @property
     def largest(self) -> float:
         """The largest part at any time [J]: of the energies, of what was put in and of what was taken."""
-        groups = (self.dashpots, self.ties, self.broken, self.ends, self.bonds)
-        accounts = [account for group in groups for account in group.values()]
         fallen = self.potential - self.potential[0]
-        parts = (self.kinetic, fallen, self.elastic, self.friction, self.ground, *accounts)
+        parts = (self.kinetic, fallen, self.elastic, *self.taken.values(), *self.put_in.values())
         return max(float(np.abs(part).max()) for part in parts)
+
+    def columns(self) -> dict[str, Array]:
+        """All of it as columns of a table, with their unit, shape (n,) each."""
+        held = {f"{name} energy [J]": getattr(self, name) for name in ("kinetic", "potential", "elastic")}
+        taken = {f"taken by {name} [J]": account for name, account in self.taken.items()}
+        return held | taken | {f"put in by {name} [J]": account for name, account in self.put_in.items()}
 
     def at(self, t: Array) -> Ledger:
         """The ledger at other times, interpolated."""
@@ -128,15 +149,11 @@ class Ledger:
         return Ledger(**{name: then(part) for name, part in vars(self).items()} | {"t": t})
 
     def __repr__(self) -> str:
-        taken = ", ".join(
-            [f"{group} dashpots {account[-1]:.4g}" for group, account in self.dashpots.items()]
-            + [f"{tie} {account[-1]:.4g}" for tie, account in self.ties.items()]
-            + [f"breaking of {tie} {account[-1]:.4g}" for tie, account in self.broken.items()]
-            + [f"ends of faces of {kind} {account[-1]:.4g}" for kind, account in self.ends.items()]
-            + [f"{kind} of bonds {account[-1]:.4g}" for kind, account in self.bonds.items()]
+        taken, put_in = (
+            ", ".join(f"{name} {account[-1]:.4g}" for name, account in accounts.items())
+            for accounts in (self.taken, self.put_in)
         )
         return (
             f"<Ledger over {self.t[-1]:.4g} s [J]: at the end held {self.held[-1]:.4g}, taken by {taken}, "
-            f"friction {self.friction[-1]:.4g}, put in by the ground {self.ground[-1]:.4g}, "
-            f"largest residual {np.abs(self.residual).max():.3g}>"
+            f"put in by {put_in}, largest residual {np.abs(self.residual).max():.3g}>"
         )

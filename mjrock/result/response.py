@@ -306,8 +306,9 @@ class Response:
 
         The columns are t [s], theta [rad] and omega [rad/s] of a wall, energy [J], x, z and rotation of each body from
         rest [m, m, rad], in space x, y, z and the quaternion, the acceleration of the ground where there is one [m/s2],
-        and forces where the run kept them: of each fixed block, joint and link [N], and eccentricities [m]. They are
-        those of `Forces`. Mortared joints have their damage and the width of their crack too. No name has a comma:
+        the force of each actuator [N], the accounts of a ledger where there is one [J], and forces where the run kept
+        them: of each fixed block, joint and link [N], and eccentricities [m]. They are those of `Forces`. Mortared
+        joints have their damage and the width of their crack too. No name has a comma:
         `np.genfromtxt(path, delimiter=",", names=True)` reads them. All digits are kept.
 
         Raises:
@@ -328,6 +329,8 @@ class Response:
             if (motion := getattr(self.case, field_name, None)) is not None:
                 columns[f"ground {name} [m/s2]"] = motion(self.t)
         columns |= {f"force of {name} [N]": force for name, force in self.actuators.items()}
+        if self.ledger is not None:
+            columns |= self.ledger.columns()
         if self.kept_forces is not None:
             columns |= self.kept_forces.columns()
             bonded = np.flatnonzero(~np.isnan(self.kept_forces.damage[0]))

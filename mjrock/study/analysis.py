@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
 from ..files import write_arrays
@@ -50,6 +52,8 @@ WALL_COLUMNS = (
 TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
 """Columns of each tie, after its name: how far it has yielded, its largest force, what yielding and breaking took, and
 when it broke, empty where it did not."""
+ACTUATOR_COLUMNS = ("largest_force_N", "work_J")
+"""Columns of each actuator, after its name: its largest force, and with a ledger what it has put in by the end."""
 MASONRY_COLUMNS = (
     "solver",
     "outcome",
@@ -132,7 +136,10 @@ class Analysis:
         own = tuple(f"{tie}_{name}" for tie in self.case.springs for name in TIE_COLUMNS)
         if self.options.get("forces"):
             own += ("largest_reaction_N",)
-        return (WALL_COLUMNS if isinstance(self.case, Case) else MASONRY_COLUMNS) + own
+        names = ACTUATOR_COLUMNS if self.options.get("ledger") else ACTUATOR_COLUMNS[:1]
+        if isinstance(self.case, Case):
+            return WALL_COLUMNS + own
+        return MASONRY_COLUMNS + own + tuple(f"{jack}_{name}" for jack in self.case.actuators for name in names)
 
     @property
     def law(self) -> str:
@@ -169,7 +176,8 @@ class Analysis:
         values = self._of_wall(response) if isinstance(self.case, Case) else _of_masonry(response)
         ending = float(response.t[-1]), response.message
         forces = () if response.kept_forces is None else (response.forces.largest_reaction,)
-        return dict(zip(self.COLUMNS, (*values, *ending, *_of_ties(response), *forces), strict=True))
+        own = *_of_ties(response), *forces, *_of_actuators(response)
+        return dict(zip(self.COLUMNS, (*values, *ending, *own), strict=True))
 
     def _of_wall(self, response: Response) -> tuple[object, ...]:
         """The columns of a wall but the last two."""
@@ -184,6 +192,14 @@ def _of_ties(response: Response) -> Iterator[float | None]:
         drawn = response.plastic.get(name, Plastic(0.0, 0.0))
         broken = None if math.isinf(drawn.broken) else drawn.broken
         yield from (drawn.elongation, tie.largest_force, drawn.energy + drawn.lost, broken)
+
+
+def _of_actuators(response: Response) -> Iterator[float]:
+    """The columns of actuators. Their largest force is that among the samples, with its sign."""
+    for name, force in response.actuators.items():
+        yield float(force[np.abs(force).argmax()])
+        if response.ledger is not None:
+            yield float(response.ledger.actuators[name][-1])
 
 
 def _of_masonry(response: Response) -> tuple[object, ...]:

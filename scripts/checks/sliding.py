@@ -2,8 +2,10 @@
 
 A cube is thrown along level ground, which it must not leave, and a wall rocks against a side that rubs. Both run with
 steps that fit the motion, with `coulomb=True`, their default, and with `coulomb=False`, which leaves sliding to the
-rows of MuJoCo as the model text does. Prints how far the cube rises and where it stops, |e| of the wall over the
-friction of its side, and what a step costs that slides. Writes sliding.png.
+rows of MuJoCo as the model text does. Two boxes in space slide on each other and on the ground and strike, for several
+tolerances of the direction of friction. Prints how far the cube rises and where it stops, |e| of the wall over the
+friction of its side, how far forces of the boxes are from what moves them, and what a step costs that slides. Writes
+sliding.png.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.method import METHOD
 from scripts.shared import cli
 
 SPEED, MU = 4.0, 0.5
@@ -87,6 +90,32 @@ def costs(repeats: int) -> str:
     return cli.table(["scene", "a step at rest [us]", "sliding by Coulomb", "sliding on rows"], rows)
 
 
+def boxes() -> mr.Masonry:
+    """A small box on a larger one on the ground, in space."""
+    sizes = ((20, 20, 1), (0, 0, -0.5)), ((0.7, 0.5, 0.6), (0, 0, 0.3)), ((0.5, 0.4, 0.3), (0.1, 0.05, 0.75))
+    blocks = [mr.Polyhedron.box(size, at, fixed=i == 0) for i, (size, at) in enumerate(sizes)]
+    return mr.Masonry(blocks, k_n=1e9, friction=0.6, xi=0.05)
+
+
+def directions(repeats: int, h: float = 1e-4) -> str:
+    """What friction in space lacks of what moves the boxes, over friction, and the time of a step, over tolerances."""
+    masonry, rows = boxes(), []
+    mass = np.array([block.mass for block in masonry.blocks if not block.fixed])
+    case = mr.MasonryCase(masonry, 0.15, velocity=[[0, 0, 0, 0, 0.3, 0], [1.0, 0.2, 0.5, 0, 0.3, 0]])
+    for tolerance in (2e-2, 2e-3, 5e-4):
+        method = METHOD._replace(way_known=tolerance)
+        run = mr.simulate(case, timestep=h, output_step=h, coulomb=True, forces=True, method=method)
+        moved = np.einsum("b,nbd->nd", mass, np.diff(run.pose[:, :, :2], n=2, axis=0)) / h**2
+        rubs = 0.6 * run.forces.normal[1:-1].sum(axis=1)
+        apart = np.abs(np.sum(list(run.reactions.values()), axis=0)[1:-1, :2] - moved).max(axis=1)
+        share = (apart / rubs)[rubs > 0.1 * mr.GRAVITY * mass.sum()]
+        runs = [mr.simulate(case, timestep=h, coulomb=True, method=method).stats for _ in range(repeats)]
+        took = min(each["stepping_time"] / each["steps"] for each in runs)
+        mean = float(np.sqrt(np.mean(share**2)))
+        rows.append([f"{tolerance:g}", f"{share.max():.2%}", f"{mean:.3%}", f"{1e6 * took:.0f}"])
+    return cli.table(["direction known to", "largest", "root mean square", "a step [us]"], rows)
+
+
 def draw_cube(ax: Axes) -> Axes:
     """The path of the cube in the first half second."""
     for coulomb, label in ((True, "Coulomb"), (False, "rows alone")):
@@ -134,6 +163,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     text = cube_table(accuracies) + "\n\n|e| of the first rebound over the friction of the side\n"
     text += cli.table(["sliding", "accuracy", *(f"{mu:g}" for mu in frictions)], rows)
+    text += "\n\ntwo boxes in space: friction less what moves them, over friction\n" + directions(
+        2 if args.quick else 7
+    )
     text += "\n\nthe time of a step\n" + costs(2 if args.quick else 7)
     cli.report(out / "sliding", text)
 

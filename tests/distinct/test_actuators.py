@@ -13,10 +13,10 @@ def actuator(x, z, displacement, *, in_space=False, stiffness=1e8, damping=2.7e5
     return mr.Actuator("panel", at, way, displacement, stiffness, damping, **more)
 
 
-def pushed(masonry, *effects, duration, **options):
+def pushed(masonry, *effects, duration, output_step=0.01, **options):
     """The answer and the force of the first actuator over the weight."""
     case = mr.MasonryCase(masonry, duration, effects=effects)
-    answer = mr.solve_explicit(case, output_step=0.01, ledger=True, **options)
+    answer = mr.solve_explicit(case, output_step=output_step, ledger=True, **options)
     assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
     return answer, answer.actuators["actuator_0"] / WEIGHT
 
@@ -49,14 +49,39 @@ def test_a_panel_pushed_at_its_top_has_the_force_of_a_rigid_block_down_to_overtu
 @pytest.mark.parametrize("k_s", [None, 1e10])
 def test_a_panel_pushed_to_and_fro_loses_friction_times_path(k_s):
     history = ([0.0, 1.0, 3.0, 5.0], [0.0, 0.05, -0.05, 0.05])
-    answer, force = pushed(panel(0.3, k_s=k_s, k_n=1e10), actuator(-B, 0.1, history), duration=5.0)
+    jack = actuator(-B, 0.1, history)
+    answer, force = pushed(panel(0.3, k_s=k_s, k_n=1e10), jack, duration=5.0, output_step=1e-3)
     foot = answer.pose[:, 0, 0] - H * np.sin(answer.theta[:, 0])
     path = np.abs(np.diff(foot)).sum()
     assert path > 0.24
     assert answer.ledger.friction[-1] == pytest.approx(0.3 * WEIGHT * path, rel=0.005)
     assert answer.ledger.dashpots["actuator_0"][-1] < 0.02 * answer.ledger.friction[-1]
+    work = np.trapezoid(force * WEIGHT, np.interp(answer.t, *history))
+    assert answer.ledger.actuators["actuator_0"][-1] == pytest.approx(work, rel=0.002)
+    moved = answer.pose[:, 0, 0] - (H - 0.1) * np.sin(answer.theta[:, 0])
+    passed_on = np.trapezoid(force * WEIGHT, moved) + 0.5 * (force[-1] * WEIGHT) ** 2 / 1e8
+    assert work == pytest.approx(passed_on + answer.ledger.dashpots["actuator_0"][-1], rel=0.005)
     assert np.median(force[(answer.t > 0.5) & (answer.t < 1.0)]) == pytest.approx(0.3, rel=0.01)
     assert np.median(force[(answer.t > 2.0) & (answer.t < 3.0)]) == pytest.approx(-0.3, rel=0.01)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_each_actuator_has_an_account_of_its_own(in_space):
+    """The first slides the panel to and fro, the second gives way to it: the work of each is its force times the way
+    of its point, beside what is in its spring, and nothing is left for the ground."""
+    first = actuator(-B, 0.1, ([0.0, 0.2, 0.6], [0.0, 0.01, -0.01]), in_space=in_space)
+    second = actuator(B, 0.1, ([0.0], [0.0]), in_space=in_space, stiffness=1e5, damping=0.0)
+    answer, _ = pushed(panel(0.3, in_space=in_space, k_n=1e10), first, second, duration=0.6)
+    turned = answer.tilt[:, 0] * np.sign(answer.pose[:, 0, 5]) if in_space else answer.theta[:, 0]
+    moved = answer.pose[:, 0, 0] - (H - 0.1) * np.sin(turned)
+    path = np.abs(np.diff(moved)).sum()
+    for name, stiffness in (("actuator_0", 1e8), ("actuator_1", 1e5)):
+        force = answer.actuators[name]
+        work = np.trapezoid(force, moved) + 0.5 * force[-1] ** 2 / stiffness + answer.ledger.dashpots[name][-1]
+        assert answer.ledger.actuators[name][-1] == pytest.approx(work, abs=0.01 * 0.3 * WEIGHT * path), name
+    assert answer.ledger.actuators["actuator_0"][-1] > 0.3 * WEIGHT * path
+    assert answer.ledger.actuators["actuator_1"][-1] == 0.0  # its far end rests
+    np.testing.assert_array_equal(answer.ledger.ground, 0.0)
 
 
 @pytest.mark.parametrize("in_space", [False, True])
@@ -109,6 +134,18 @@ def test_forces_are_columns_of_the_table():
     assert answer.actuators["actuator_0"][-1] > 0
     with pytest.raises(ValueError, match="actuator_0: MuJoCo has no row for actuators; take solve_explicit"):
         mr.simulate(case)
+
+
+@pytest.mark.parametrize("ledger", [False, True])
+def test_actuators_in_tables_and_campaigns(ledger):
+    case = mr.MasonryCase(panel(0.3), 0.1, effects=actuator(-B, 0.1, ([0.0, 0.1], [0.0, 1e-3])))
+    analysis = mr.Analysis(case, "explicit", options={"ledger": ledger})
+    row, answer = analysis(), analysis.solve()
+    assert row["actuator_0_largest_force_N"] == pytest.approx(np.abs(answer.actuators["actuator_0"]).max())
+    assert ("put in by actuator_0 [J]" in answer.csv()) == ("actuator_0_work_J" in row) == ledger
+    if ledger:
+        assert row["actuator_0_work_J"] == answer.ledger.actuators["actuator_0"][-1] > 0
+        assert "put in by the ground 0, actuator_0" in repr(answer.ledger)
 
 
 HISTORY = ([0.0, 1.0], [0.0, 0.1])

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import warnings
 from collections import Counter
 
 import numpy as np
@@ -50,6 +51,26 @@ def test_a_column_of_drums(sides):
     assert [joint.area for joint in masonry.joints] == pytest.approx(3 * [area])
     assert [block.mass for block in masonry.blocks[1:]] == pytest.approx(3 * [2000 * area * 2])
     assert masonry.joints[0].width == pytest.approx({3: 1.5, 4: 1.0, 12: 1.0}[sides])
+
+
+@pytest.mark.parametrize("slender", [0.01, 100.0])
+def test_the_flattest_and_the_longest_drums_keep_all_their_sides(slender):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mr.Implausible)
+        column = mr.Masonry.column(1.0, 3 * slender, 3, sides=100, xi=0)
+    assert [len(drum.faces) for drum in column.blocks[1:]] == 3 * [102]
+    assert [len(joint.outline) for joint in column.joints] == 3 * [100]
+    with pytest.raises(ValueError, match=r"height is .* m for 3 drums .*; the valid range is \[0.01, 100\]"):
+        mr.Masonry.column(1.0, 3.03 * slender if slender > 1 else 2.97 * slender, 3)
+
+
+def test_ground_under_a_mast_is_a_body():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mr.Implausible)
+        masts = mr.Masonry.column(1.0, 625.0, 10), mr.Masonry.running_bond(1.0, 900.0, (0.5, 1.0))
+    for mast in masts:
+        wide, *_, deep = np.ptp(mast.blocks[0].corners, axis=0)
+        assert deep == pytest.approx(1e-3 * wide)
 
 
 def test_a_square_column_overturns_about_its_side_and_a_round_one_in_any_direction():

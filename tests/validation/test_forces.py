@@ -141,14 +141,15 @@ def test_reactions_move_the_blocks(solver, build, h, options):
 
 
 def test_reactions_move_blocks_that_slide_in_space():
-    """By Coulomb's law the engine knows the direction of friction to some 5 %, and what presses exactly."""
+    """By Coulomb's law the engine looks for the direction of friction until it turns by less than 0.2 % in a look, and
+    knows what presses exactly."""
     answer, _ = kicked("MuJoCo", in_space, 1e-4)
     masonry = answer.case.masonry
     missing = np.abs(total(answer)[1:-1] - momentum(answer, masonry, 1e-4) - [0, 0, weight(masonry)])
     friction = 0.6 * answer.forces.normal[1:-1].sum(axis=1)
     assert friction.max() > 2 * weight(masonry)
     assert missing[:, 2].max() < 1e-6 * weight(masonry)
-    assert (missing[:, :2].max(axis=1) < 0.08 * friction + 1e-3 * weight(masonry)).all()
+    assert (missing[:, :2].max(axis=1) < 0.008 * friction + 1e-4 * weight(masonry)).all()
 
 
 def test_reactions_of_fitted_steps_make_the_momentum():

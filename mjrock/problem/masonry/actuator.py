@@ -35,9 +35,9 @@ class Actuator(Effect):
     Its force is stiffness (d - u) + damping (d' - u'): d is the history, u the displacement of the point along the
     direction since the masonry stood at rest, or as drawn, and d' and u' are their rates. The actuator pushes and
     pulls, and its direction stays as it is in space. Its force at the samples is `response.actuators` [N], positive
-    where it pushes along the direction. What it puts in is in `ledger.ground`, what its spring holds in
-    `ledger.elastic`, and what its dashpot takes in `ledger.dashpots`. A stiffness far above that of the joints follows
-    the history closely and makes the steps short. Without damping the block swings on the spring.
+    where it pushes along the direction. What it puts in is in `ledger.actuators`, what its spring holds
+    in `ledger.elastic`, and what its dashpot takes in `ledger.dashpots`. A stiffness far above that of the joints
+    follows the history closely and makes the steps short. Without damping the block swings on the spring.
 
     Args:
         block: the block that it drives, by its name or number.
