@@ -73,7 +73,7 @@ def hardened(bond: Any, closing: float) -> float:
 def harden(bond: Any, gap: float, sheared: float) -> float:
     """Close a joint at a gap [m] for good until it bears what presses, or to its peak, see `crush`. Returns by how much
     [m]."""
-    left = bond.hardens - bond.crushed
+    left: float = bond.hardens - bond.crushed
     low, high = 0.0, min(left, -gap)
     if math.hypot(bond.k * (gap + high), sheared) < hardened(bond, high):
         for _ in range(HALVINGS):
