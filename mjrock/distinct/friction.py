@@ -27,8 +27,8 @@ from ..geometry.vectors import (
     put,
     scaled,
     spin_components,
-    spun,
     tangent,
+    tangents,
     times,
     vector,
 )
@@ -119,28 +119,35 @@ def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
 
 
 @inlined
-def way_along(normal: Vector, number: int) -> Vector:
-    """One of the directions along a face."""
-    if len(normal) == 2:
-        return tangent(normal)
-    x, y, z = normal
-    if abs(z) > 0.5:
-        size = 1 / math.sqrt(x * x + z * z)
-        first = (z * size, 0.0, -x * size)
-    else:
-        size = 1 / math.sqrt(x * x + y * y)
-        first = (-y * size, x * size, 0.0)
-    return first if number == 0 else spun(normal, first)
-
-
-@inlined
 def yielding(body: Row, way: Vector) -> float:
     """Velocity that a unit impulse along a unit vector gives to the centroid of a body along it [1/kg].
 
     It is not quite zero of a body that a guide holds, so that it can be divided by.
     """
-    light: float = max(dot(way, times(components(body.inverse_mass, way), way)), HELD / body.mass)
-    return light
+    light: float = dot(way, times(components(body.inverse_mass, way), way))
+    return light if light * body.mass > HELD else HELD / body.mass
+
+
+@inlined
+def list_way(
+    system: System, line: Row, number: int, way: Vector, arm: Vector, face_arm: Vector, velocity: Vector
+) -> None:
+    """Prepare one way of a line that sticks rigidly, see `list_rigid`."""
+    row, body, on_face = system.ways[number], system.bodies[line.body], line.face >= 0
+    row.body, row.face, row.support, row.slip = line.body, line.face, line.support, dot(way, velocity)
+    lever = moment(arm, way)
+    spin = spin_from_many(body, lever)
+    put(row.way, way)
+    put(row.lever, lever)
+    put(row.spin, spin)
+    compliance = yielding(body, way) + dot(lever, spin)
+    if on_face:
+        face, lever = system.bodies[line.face], moment(face_arm, way)
+        spin = spin_from_many(face, lever)
+        put(row.lever_on_face, lever)
+        put(row.spin_of_face, spin)
+        compliance += yielding(face, way) + dot(lever, spin)
+    row.compliance = compliance
 
 
 @inlined
@@ -157,30 +164,19 @@ def list_rigid(
         arm, face_arm: from the two centroids to where friction acts [m].
         velocity: of the point there against its face, before the forces act [m/s].
     """
-    body, face, on_face = system.bodies[line.body], system.bodies[max(line.face, 0)], line.face >= 0
-    for i in range(len(normal) - 1):
-        row, way = system.ways[first + i], way_along(normal, i)
-        row.body, row.face, row.support = line.body, line.face, line.support
-        lever = moment(arm, way)
-        spin = spin_from_many(body, lever)
-        put(row.way, way)
-        put(row.lever, lever)
-        put(row.spin, spin)
-        row.compliance = yielding(body, way) + dot(lever, spin)
-        if on_face:
-            lever = moment(face_arm, way)
-            spin = spin_from_many(face, lever)
-            put(row.lever_on_face, lever)
-            put(row.spin_of_face, spin)
-            row.compliance += yielding(face, way) + dot(lever, spin)
-        row.stiffness, row.shared, row.slip = 1 / row.compliance, 0.0, dot(way, velocity)
-    if len(normal) == 3:
-        a, b = system.ways[first], system.ways[first + 1]
-        a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
-        if on_face:
-            a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
-        area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
-        a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
+    a = system.ways[first]
+    if len(normal) == 2:
+        list_way(system, line, first, tangent(normal), arm, face_arm, velocity)
+        a.stiffness = 1 / a.compliance
+        return
+    b, (way, other) = system.ways[first + 1], tangents(normal)
+    list_way(system, line, first, way, arm, face_arm, velocity)
+    list_way(system, line, first + 1, other, arm, face_arm, velocity)
+    a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
+    if line.face >= 0:
+        a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
+    area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
+    a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
 
 
 @inlined
