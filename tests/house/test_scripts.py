@@ -66,6 +66,7 @@ WRITES = {
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
     "arching": {f"arching.{ending}" for ending in ("png", "csv", "txt")},
     "shear_wall": {f"shear_wall.{ending}" for ending in ("png", "csv", "txt")},
+    "shaken_wall": {f"shaken_wall.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
@@ -204,6 +205,7 @@ LONG = {
     "arching",
     "slow_push",
     "opened_in_vtk",
+    "shaken_wall",
 }
 """Scripts that take a while even with --quick."""
 
