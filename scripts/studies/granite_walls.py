@@ -122,11 +122,13 @@ def wall_of(force: float, assumed: Assumed = ASSUMED) -> Wall:
     def friction(joint: mr.Joint) -> float:
         return assumed.sliding if "plate" in joint.name else assumed.friction
 
-    joints = {"k_n": assumed.stiffness, "k_s": assumed.shear * assumed.stiffness, "points": assumed.points}
-    masonry = mr.Masonry(blocks, friction=friction, xi=0.1, **joints)
+    k_n, k_s = assumed.stiffness, assumed.shear * assumed.stiffness
+    masonry = mr.Masonry(blocks, k_n=k_n, k_s=k_s, friction=friction, xi=0.1, points=assumed.points)
     load = 1e3 * force - sum(block.mass for block in blocks if not block.fixed) * mr.GRAVITY
-    parts = {"plate": assumed.on_plate, "beam": 1.0 - assumed.on_plate}
-    loads = tuple(mr.Load(share * load, top + rise, block=name) for name, share in parts.items() if share > 0)
+    parts = (("plate", assumed.on_plate), ("beam", 1.0 - assumed.on_plate))
+    loads = tuple(
+        mr.Load(share * load, top + rise, block=masonry.names.index(name)) for name, share in parts if share > 0
+    )
     held = mr.Actuator("plate", (0.5, top + rise), 1, None, JACK, damping=1e4)
     jack = mr.Actuator("beam", (0.0, SPAN), 1, None, JACK, damping=1e5, guided=assumed.guided)
     return Wall(masonry, (*loads, held), jack)
