@@ -189,8 +189,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     cyclic.plot(*curve_of(push).T, color="C1", linewidth=0.9, label="found, pushed to and fro")
     for each, title in ((ax, "pushed to 40 mm; tests broad"), (cyclic, "104.8 kN, cyclic")):
         each.set(xlabel="displacement at 1.325 m [mm]", ylabel="horizontal force [kN]", title=title)
-        each.legend(frameon=False)
-    ax.set(xlim=(0, 45), ylim=(0, None))
+        each.legend(frameon=False, loc="upper left", ncols=2 if each is ax else 1)
+    ax.set(xlim=(0, 45), ylim=(0, 115))
     plotting.save(figure, out / "granite_walls.png")
     ends = [
         f"{at_turn(test, turn):.1f} / {at_turn(curve_of(push), turn):.1f}"
