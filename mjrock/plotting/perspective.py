@@ -58,9 +58,9 @@ def in_three(ax: Axes) -> Any:
 def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
     """Draw blocks in space, true to scale, and the ground below them.
 
-    Blocks are drawn from the farthest to the nearest. Of two with a joint the one on the far side of it comes first,
-    and otherwise the one with the farther centroid; blocks that have moved far can hide what lies before them. What has
-    sunk below the ground is left out.
+    Blocks, and the convex parts of one that is not convex, are drawn from the farthest to the nearest. Of two with a
+    joint the one on the far side of it comes first, and otherwise the one with the farther centroid; blocks that have
+    moved far can hide what lies before them. What has sunk below the ground is left out.
     """
     space = in_three(ax)
     low, high = bodies.extent()
@@ -81,9 +81,8 @@ def solids(ax: Axes, bodies: Solids, *, animated: bool = True) -> Update:
         seen = normals @ bodies.eye > 0
         if level is not None and bodies.eye[2] > 0:
             seen &= corners[..., 2].mean(axis=1) > level
-        place = np.argsort(bodies.order(frame))  # of each body in the order
-        near = corners[seen].mean(axis=1) @ bodies.eye  # of one body that is not convex, a face may hide another
-        number = np.flatnonzero(seen)[np.lexsort((near, place[bodies.facets.body[seen]]))]
+        place = np.argsort(bodies.order(frame))  # of each convex part in the order
+        number = np.flatnonzero(seen)[np.argsort(place[bodies.facets.part[seen]], kind="stable")]
         bright = DARKEST + (1 - DARKEST) * np.clip(normals[number] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
         counts = bodies.facets.counts[number]
         moving.corners = [face[:count] for face, count in zip(corners[number], counts, strict=True)]

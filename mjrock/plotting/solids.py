@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..geometry.frames import SPACE, frames_of
-from ..problem.masonry.compound import SolidBlock
+from ..problem.masonry.compound import Compound, SolidBlock
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
@@ -27,10 +27,12 @@ TINTS = ("#e3b79a", "#d39f7e", "#ecc9b0", "#c99272", "#ddab8b", "#efd3bd", "#cf9
 
 class Facets(NamedTuple):
     """The faces of bodies: corners about the centroid of the body, at rest [m], shape (faces, most, 3), of which a face
-    with few repeats the last one, the number of the body, and that of the corners, shape (faces,) each."""
+    with few repeats the last one; the number of the body, that of its convex part, counted over all bodies, and that of
+    the corners, shape (faces,) each."""
 
     corners: Array
     body: Integers
+    part: Integers
     counts: Integers
 
 
@@ -130,15 +132,16 @@ class Solids:
     @cached_property
     def facets(self) -> Facets:
         """The faces of the blocks that are shown."""
-        blocks = [self.masonry.polyhedra[i] for i in self.shown]
+        blocks = self._blocks
         counts = np.array([len(side.corners) for block in blocks for side in block.sides])
         body = np.repeat(np.arange(len(blocks)), [len(block.sides) for block in blocks])
+        part = self._first[body] + np.array([side.parts[0] for block in blocks for side in block.sides])
         corners = np.empty((len(counts), counts.max(), 3))
         bodies = zip(blocks, self.rests, strict=True)
         about = [side.corners - rest for block, rest in bodies for side in block.sides]
         for row, face in zip(corners, about, strict=True):
             row[: len(face)], row[len(face) :] = face, face[-1]
-        return Facets(corners, body, counts)
+        return Facets(corners, body, part, counts)
 
     def displaced(self, frame: int, block: int | None, point: Array) -> Array:
         """Where a point of a block, given at rest [m], shape (3,), is drawn at a frame; one of the ground stays."""
@@ -152,29 +155,31 @@ class Solids:
         return self._drawn(frame, self.facets.body, self.facets.corners)
 
     def order(self, frame: int) -> Integers:
-        """The bodies from the farthest to the nearest, shape (shown,).
+        """The convex parts of all bodies from the farthest to the nearest, shape (parts,).
 
-        Of two with a joint the one on the far side comes first. Among those that hide no other the one with the
-        farthest centroid is next.
+        Of two that lie on each other the one on the far side comes first. Among those that hide no other the one with
+        the farthest centroid is next.
         """
-        frames = self._frames(frame)
-        nearness = (self.rests + frames[:, :3]) @ self.eye
+        bodies = np.repeat(np.arange(len(self.shown)), np.diff(self._first))
+        frames, rests = self._frames(frame)[bodies], self.rests[bodies]
+        turned = np.eye(3) + frames[:, 3:].reshape(-1, 3, 3)
+        arms = np.array([part.centroid for block in self._blocks for part in block.parts]) - rests
+        nearness = (rests + frames[:, :3] + (turned @ arms[:, :, None])[:, :, 0]) @ self.eye
         waits, hidden = np.zeros(len(nearness), dtype=int), [list[int]() for _ in nearness]
         for below, above, normal in self._pairs:
-            turned = normal + frames[below, 3:].reshape(3, 3) @ normal
-            behind, before = (below, above) if turned @ self.eye > 0 else (above, below)
+            behind, before = (below, above) if turned[below] @ normal @ self.eye > 0 else (above, below)
             hidden[behind].append(before)
             waits[before] += 1
         ready = [(float(nearness[i]), int(i)) for i in np.flatnonzero(waits == 0)]
         heapify(ready)
         left, order = set(range(len(nearness))), []
         while left:
-            body = heappop(ready)[1] if ready else min(left, key=nearness.__getitem__)  # a ring of joints is cut there
-            if body not in left:
+            part = heappop(ready)[1] if ready else min(left, key=nearness.__getitem__)  # a ring of joints is cut there
+            if part not in left:
                 continue
-            left.discard(body)
-            order.append(body)
-            for before in hidden[body]:
+            left.discard(part)
+            order.append(part)
+            for before in hidden[part]:
                 waits[before] -= 1
                 if waits[before] == 0:
                     heappush(ready, (float(nearness[before]), before))
@@ -195,11 +200,29 @@ class Solids:
         return np.maximum(corners.min(axis=0), low - room), np.minimum(corners.max(axis=0), high + room)
 
     @cached_property
+    def _blocks(self) -> list[SolidBlock]:
+        """The blocks that are drawn as bodies."""
+        return [self.masonry.polyhedra[i] for i in self.shown]
+
+    @cached_property
+    def _first(self) -> Integers:
+        """Number of the first convex part of each body that is shown, and of all parts, shape (shown + 1,)."""
+        return np.cumsum([0, *(len(block.parts) for block in self._blocks)])
+
+    @cached_property
     def _pairs(self) -> list[tuple[int, int, Array]]:
-        """Bodies below and above each joint between two that are shown, and its normal at rest."""
+        """Convex parts below and above each joint between two that are shown, and its normal at rest."""
+        pairs = []
         body = {block: i for i, block in enumerate(self.shown)}
-        joints = [joint for joint in self.masonry.joints if joint.below in body and joint.above in body]
-        return [(body[joint.below], body[joint.above], joint.normal) for joint in joints]
+        for joint in self.masonry.space_joints:
+            if joint.below in body and joint.above in body:
+                ends = zip((body[joint.below], body[joint.above]), joint.sides, strict=True)
+                lower, upper = ([self._first[i] + k for k in self._blocks[i].sides[side].parts] for i, side in ends)
+                pairs += [(below, above, joint.normal) for below in lower for above in upper]
+        for first, block in zip(self._first, self._blocks, strict=False):
+            joined = block.joined if isinstance(block, Compound) else ()
+            pairs += [(first + joint.below, first + joint.above, joint.normal) for joint in joined]
+        return pairs
 
     def _frames(self, frame: int) -> Array:
         """Displacement and R - 1 of each body at a frame, shape (shown, 12)."""

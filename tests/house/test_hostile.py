@@ -294,6 +294,30 @@ CALLS = OF_NUMBERS | {
             "k_n": 1e9,
         },
     ),
+    "Masonry.arch, tapered": (
+        mr.Masonry.arch, {"radius": 5.0, "thickness": (0.9, 0.6), "span_angle": 3.0, "voussoirs": 5, "chords": 2},
+    ),
+    "Masonry.bridge": (
+        mr.Masonry.bridge,
+        {
+            "radius": 3.0, "thickness": 0.45, "span_angle": 3.0, "voussoirs": 5, "spans": 2, "pier_width": 1.6,
+            "pier_height": 2.0, "abutments": False, "density": 2e3, "length": 1.0,
+        },
+    ),
+    "Masonry.barrel_vault": (
+        mr.Masonry.barrel_vault,
+        {
+            "radius": 2.0, "thickness": 0.4, "length": 1.0, "unit": 0.5, "span_angle": 2.8, "courses": 3,
+            "density": 2e3,
+        },
+    ),
+    "Masonry.groin_vault": (
+        mr.Masonry.groin_vault,
+        {
+            "radius": 2.0, "thickness": 0.4, "length": 4.5, "unit": 1.0, "span_angle": 2.8, "courses": 3, "cut": False,
+            "density": 2e3,
+        },
+    ),
     "Masonry.running_bond": (
         mr.Masonry.running_bond,
         {"length": 1.0, "height": 1.0, "unit": (0.5, 0.25), "thickness": 0.1, "density": 2e3, "xi": 0.05},

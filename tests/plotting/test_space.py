@@ -75,6 +75,19 @@ def test_a_low_block_before_a_high_one_is_drawn_later_though_its_centroid_is_far
     assert solids.order(0).tolist() == [1, 0]
 
 
+def test_a_block_within_a_frame_hides_its_far_leg_and_is_hidden_by_the_near_one():
+    """Parts are drawn one by one: no order of whole bodies is right."""
+    legs = [mr.Polyhedron.box((1, 1, 1), (x, 0, 0.5)) for x in (-1.0, 1.0)]
+    frame = mr.Compound([*legs, mr.Polyhedron.box((3, 1, 1), (0, 0, 1.5))])
+    within = mr.Polyhedron.box((1, 0.8, 1), (0, 0, 0.5))
+    masonry = mr.Masonry((GROUND, frame, within), xi=0)
+    for azimuth, order in ((0.0, [0, 3, 1]), (180.0, [1, 3, 0])):
+        drawn = Solids(masonry, np.zeros(1), REST[None], camera=(20.0, azimuth)).order(0).tolist()
+        assert [part for part in drawn if part != 2] == order
+    top = Solids(masonry, np.zeros(1), REST[None], camera=(20.0, 0.0)).order(0)[-1]
+    assert top == 2
+
+
 def test_what_has_sunk_below_the_ground_is_left_out_and_fixed_blocks_are_grey():
     ax = axes()
     plotting.blocks(ax, MASONRY, moved(place=(0.0, 0.0, -3.0)))

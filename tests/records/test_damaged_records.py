@@ -127,7 +127,7 @@ def test_an_empty_file(tmp_path, ending, content):
 def test_a_file_of_another_format(tmp_path, ending, content):
     with pytest.raises(
         ValueError,
-        match=rf"a\.{ending}: .*(not an? (AT2|ESM or ITACA) file|not the plain text of a SAC|needed|only CR)",
+        match=rf"a\.{ending}: .*(not an? [\w ,-]+ file|not the plain text of a SAC|needed|only CR)",
     ):
         READ[ending](written(tmp_path / f"a.{ending}", content))
 

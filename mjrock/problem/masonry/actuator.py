@@ -113,7 +113,7 @@ def _unit(direction: Any, d: int) -> tuple[float, ...]:
     if given.shape == () and abs(float(given)) == 1:
         given = float(given) * np.eye(d)[0]
     vector = require_array("direction of the actuator", given, (d,))
-    length = float(np.linalg.norm(vector))
+    length = math.hypot(*vector)
     if not 1e-9 < length < math.inf:
         raise ValueError(f"direction of the actuator = {shown(direction)} has no length; it is above 1e-9 and finite")
     return tuple((vector / length).tolist())

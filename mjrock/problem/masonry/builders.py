@@ -8,16 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...quantities import (
-    require_flag,
-    require_kind,
-    require_real,
-    require_whole,
-    require_within,
-    shown,
-)
+from ...quantities import Array, require_flag, require_kind, require_whole, require_within, shown
 from ..wall.block import Block
 from ..wall.effects import SideStop
+from .compound import Compound, FlatBlock
 from .polygon import Polygon
 
 DEEP = 0.25
@@ -55,7 +49,7 @@ def extent_of_ground(wide: float, height: float) -> tuple[float, float]:
     return beyond, max(DEEP * wide, THINNEST_GROUND * (wide + 2 * beyond))
 
 
-def ground_below_all(blocks: Sequence[Polygon]) -> Polygon:
+def ground_below_all(blocks: Sequence[FlatBlock]) -> Polygon:
     """Fixed ground with its surface at the lowest point of some blocks, see `ground_under`."""
     corners = np.concatenate([block.corners for block in blocks])
     (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
@@ -116,37 +110,70 @@ def required_unit(unit: object) -> tuple[float, float]:
     return long, require_within("unit height", unit[1], 1e-2, 100.0, "m")
 
 
-def required_faces(radius: float, thickness: float, least: float) -> tuple[float, float]:
-    """Radii of the inner and the outer face of an arch or a dome, from that of the middle, at least so large [m]."""
-    radius, thickness = require_within("radius", radius, least, 1e3, "m"), require_real("thickness", thickness)
-    if not 1e-3 <= thickness / radius <= 1:
-        raise ValueError(f"thickness = {thickness:g} m is outside the valid range {1e-3 * radius:g} to {radius:g} m")
-    return radius - 0.5 * thickness, radius + 0.5 * thickness
+Ends = float | tuple[float, float]
+"""A measure [m], or a pair: what it is at one end and at the other, between which it changes linearly."""
+
+
+def required_ends(name: str, measure: Ends, low: float, high: float) -> tuple[float, float]:
+    """A measure at both ends [m]; a TypeError or ValueError says what is wrong with it."""
+    if not isinstance(measure, tuple | list):
+        measure = (measure, measure)
+    if len(measure) != 2:
+        raise ValueError(f"{name} = {shown(measure)} is neither a number nor a pair, one for each end")
+    return require_within(name, measure[0], low, high, "m"), require_within(name, measure[1], low, high, "m")
+
+
+def rings_of(radius: float, thickness: Ends, least: float, share: Array) -> tuple[Array, Array]:
+    """Radii of the inner and the outer face of an arch or a dome at its joints [m], from that of the middle.
+
+    Args:
+        radius: of the middle, at least so large [m].
+        thickness: at the springing and at the crown [m].
+        least: the least radius [m].
+        share: where the joints are, from 0 at the springing to 1 at the crown [-].
+    """
+    radius = require_within("radius", radius, least, 1e3, "m")
+    springing, crown = required_ends("thickness", thickness, 1e-3 * radius, radius)
+    half = 0.5 * (springing + (crown - springing) * share)
+    return radius - half, radius + half
 
 
 def arch_of(
-    radius: float, thickness: float, span_angle: float, voussoirs: int, density: float, length: float
+    radius: float, thickness: Ends, span_angle: float, voussoirs: int, density: float, length: float
 ) -> list[Polygon]:
-    """Equal voussoirs between two fixed abutments, from left to right, see `Masonry.arch`."""
-    inner, outer = required_faces(radius, thickness, 0.01)
+    """Voussoirs of equal angles between two fixed abutments, from left to right, see `Masonry.arch`."""
     span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
     count = require_whole("voussoirs", voussoirs, 1, 1000)
-    angles = 0.5 * math.pi + span_angle * (0.5 - np.arange(count + 1) / count)
+    along = np.arange(count + 1) / count
+    inner, outer = rings_of(radius, thickness, 0.01, 1 - np.abs(1 - 2 * along))
+    angles = 0.5 * math.pi + span_angle * (0.5 - along)
     directions = np.column_stack([np.cos(angles), np.sin(angles)])
+    intrados, extrados = inner[:, None] * directions, outer[:, None] * directions
     polygons = [
         Polygon(
-            [outer * directions[i], outer * directions[i + 1], inner * directions[i + 1], inner * directions[i]],
+            [extrados[i], extrados[i + 1], intrados[i + 1], intrados[i]],
             density=density,
             length=length,
             name=f"voussoir_{i}",
         )
         for i in range(count)
     ]
-    for name, at, side in (("left_abutment", directions[0], -1.0), ("right_abutment", directions[-1], 1.0)):
-        down = float(thickness) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
-        corners = [inner * at, outer * at, outer * at + down, inner * at + down]
+    for name, i, side in (("left_abutment", 0, -1.0), ("right_abutment", count, 1.0)):
+        at = directions[i]
+        down = (outer[i] - inner[i]) * side * np.array([at[1], -at[0]])  # along the axis of the arch, away from it
+        corners = [intrados[i], extrados[i], extrados[i] + down, intrados[i] + down]
         polygons.append(Polygon(corners, density=density, length=length, fixed=True, name=name))
     return [polygons[-2], *polygons[:-2], polygons[-1]]
+
+
+def curved(arch: Sequence[Polygon], chords: int) -> list[FlatBlock]:
+    """An arch in which so many voussoirs that follow each other are one, see `Masonry.arch`."""
+    if chords == 1:
+        return list(arch)
+    left, *pieces, right = arch
+    starts = range(0, len(pieces), chords)
+    joined = [Compound(pieces[k : k + chords], name=f"voussoir_{i}") for i, k in enumerate(starts)]
+    return [left, *joined, right]
 
 
 def bonded_wall(

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ...quantities import require_array, require_kind, require_real, require_whole, require_within, shown, spelt
 from ..wall.section import Opening
-from .builders import MOST_BLOCKS, SMALLEST_PIECE, extent_of_ground, required_faces, required_unit
+from .builders import MOST_BLOCKS, SMALLEST_PIECE, Ends, extent_of_ground, required_ends, required_unit, rings_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 
@@ -40,44 +40,46 @@ def box_on_ground(size: ArrayLike, density: float) -> list[Polyhedron]:
     return [ground_below(block.corners.min(axis=0), block.corners.max(axis=0)), block]
 
 
-def column_of(width: float, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
+def column_of(width: Ends, height: float, drums: int, sides: int, density: float) -> list[Polyhedron]:
     """The ground and prismatic drums on it, see `Masonry.column`."""
-    width = require_within("width", width, 1e-2, 100.0, "m")
+    ends = required_ends("width", width, 1e-2, 100.0)
     height = require_within("height", height, 1e-2, 1e3, "m")
     drums, sides = require_whole("drums", drums, 1, 1000), require_whole("sides", sides, 3, 100)
     angles = 2 * math.pi * (np.arange(sides) + 0.5) / sides
-    if not 1 / SLENDEREST <= (slender := height / (drums * width)) <= SLENDEREST:
-        raise ValueError(
-            f"height is {shown(height)} m for {drums} drums {shown(width)} m wide: a drum is {slender:.3g} times "
-            f"as high as wide; the valid range is [{1 / SLENDEREST:g}, {SLENDEREST:g}]"
-        )
-    ring = 0.5 * width / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
-    levels = np.linspace(0.0, height, drums + 1)
-    blocks = [ground_below((*ring.min(axis=0), 0.0), (*ring.max(axis=0), height))]
+    for wide in ends:
+        if not 1 / SLENDEREST <= (slender := height / (drums * wide)) <= SLENDEREST:
+            raise ValueError(
+                f"height is {height:g} m for {drums} drums {wide:g} m wide: a drum is {slender:.3g} times as high as "
+                f"wide; the valid range is [{1 / SLENDEREST:g}, {SLENDEREST:g}]"
+            )
+    ring = 0.5 / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
+    levels, widths = np.linspace(0.0, height, drums + 1), np.linspace(*ends, drums + 1)
+    blocks = [ground_below((*(max(ends) * ring.min(axis=0)), 0.0), (*(max(ends) * ring.max(axis=0)), height))]
     for i in range(drums):
-        vertices = [(x, y, z) for z in (levels[i], levels[i + 1]) for x, y in ring]
+        vertices = [(*(widths[j] * at), levels[j]) for j in (i, i + 1) for at in ring]
         blocks.append(Polyhedron(vertices, density, name=f"drum_{i}"))
     return blocks
 
 
-def dome_of(radius: float, thickness: float, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
+def dome_of(radius: float, thickness: Ends, lunes: int, hoops: int, oculus: float, density: float) -> list[Polyhedron]:
     """The ground and the voussoirs of a hemisphere on it, see `Masonry.dome`."""
-    inner, outer = required_faces(radius, thickness, 0.1)
     lunes, hoops = require_whole("lunes", lunes, 4, 360), require_whole("hoops", hoops, 1, 360)
     oculus = require_within("oculus", oculus, 0.01, 1.5, "rad")
     if lunes * hoops >= MOST_BLOCKS:
         raise ValueError(f"lunes = {lunes} times hoops = {hoops} is outside the valid range up to {MOST_BLOCKS}")
+    inner, outer = rings_of(radius, thickness, 0.1, np.arange(hoops + 1) / hoops)
     polar, around = np.linspace(0.5 * math.pi, oculus, hoops + 1), 2 * math.pi * np.arange(lunes + 1) / lunes
     sines, levels = np.sin(polar), np.append(0.0, np.cos(polar[1:]))
     rays = sines[:, None, None] * np.column_stack([np.cos(around), np.sin(around)])
     directions = np.dstack([rays, np.broadcast_to(levels[:, None], rays.shape[:2])])  # (hoops + 1, lunes + 1, 3)
     directions[:, -1] = directions[:, 0]
-    blocks = [ground_below((-outer, -outer, 0.0), (outer, outer, outer))]
+    wide = float(outer.max())
+    blocks = [ground_below((-wide, -wide, 0.0), (wide, wide, wide))]
+    faces = np.stack([face[:, None, None] * directions for face in (inner, outer)])
     for j in range(hoops):
         for i in range(lunes):
-            corners = directions[j : j + 2, i : i + 2].reshape(4, 3)
-            name = f"voussoir_{j}_{i}"
-            blocks.append(Polyhedron(np.vstack([inner * corners, outer * corners]), density, name=name))
+            corners = faces[:, j : j + 2, i : i + 2].reshape(8, 3)
+            blocks.append(Polyhedron(corners, density, name=f"voussoir_{j}_{i}"))
     return blocks
 
 

@@ -56,7 +56,7 @@ class Compound:
 
     def __init__(self, parts: Sequence[Polygon | Polyhedron], fixed: bool = False, name: str | None = None) -> None:
         keep(self, parts=checked_parts(parts), fixed=require_flag("fixed", fixed), name=checked_name(name))
-        _ = self._joined
+        _ = self.joined
 
     @classmethod
     def prism(cls, compound: Compound, middle: float = 0.0) -> Self:
@@ -93,7 +93,7 @@ class Compound:
         return float(np.ptp(self.corners[:, 1])) if self.in_space else self.polygons[0].length
 
     @cached_property
-    def _joined(self) -> tuple[Joint | SpaceJoint, ...]:
+    def joined(self) -> tuple[Joint | SpaceJoint, ...]:
         """Where the parts lie on each other; a ValueError says if they overlap or do not hang together."""
         find = joints_in_space if self.in_space else joints_in_plane
         try:
@@ -114,7 +114,7 @@ class Compound:
     @cached_property
     def surface(self) -> Surface:
         """The surface of the whole, and the sides of parts that lie inside it."""
-        return (surface_in_space if self.in_space else surface_in_plane)(self.parts, self._joined, CLOSE)  # type: ignore[arg-type]
+        return (surface_in_space if self.in_space else surface_in_plane)(self.parts, self.joined, CLOSE)  # type: ignore[arg-type]
 
     @property
     def sides(self) -> tuple[Side, ...]:

@@ -38,7 +38,7 @@ from ..wall.effects import SideStop
 from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
-from .builders import MOST_BLOCKS, arch_of, between_beams, bonded_wall, ground_below_all, side_of, stacked
+from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, curved, ground_below_all, side_of, stacked
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
@@ -53,7 +53,7 @@ from .of_joint import OF_JOINTS, ByKind, OfJoint, required, values_of
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 from .stack_law import retardations
-from .vaults import Span, barrel_of, bridge_of
+from .vaults import Span, barrel_of, bridge_of, groin_of
 
 AnyPath = str | PathLike[str]
 FAR = 30.0
@@ -377,39 +377,53 @@ class Masonry:
     def arch(
         cls,
         radius: float,
-        thickness: float,
+        thickness: Ends,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
         density: float = 2000.0,
         length: float = 1.0,
+        chords: int = 1,
         ground: bool = False,
         **options: Any,
     ) -> Self:
-        """A circular arch of equal voussoirs with straight edges, between two fixed abutments.
+        """A circular arch of voussoirs of equal angles, between two fixed abutments.
+
+        Edges are straight: halfway between joints that are delta apart [rad], an arch of one thickness is
+        cos(delta / 2) times as thick as at the joints.
 
         Args:
             radius: of the middle of the arch at the joints [m], 0.01 to 1000.
-            thickness: [m], 0.001 to 1 times the radius.
+            thickness: across the arch at the joints [m], 0.001 to 1 times the radius; or a pair, at the springing and
+                at the crown, between which it changes linearly with the angle.
             span_angle: angle between the two springings [rad], 0.1 to pi.
             voussoirs: how many, 1 to 1000. They are named `voussoir_0` and so on, from left to right.
             density: mass density [kg/m3], 100 to 30000.
             length: length out of the plane [m], 1e-3 to 1000.
+            chords: straight edges of the intrados and of the extrados of a voussoir, 1 to 50. With two or more a
+                voussoir is a `Compound`. Voussoirs times chords are at most 1000.
             ground: whether fixed ground lies under the lowest point of the abutments, two heights beyond them. Without
                 it voussoirs that leave the arch fall on, and explicit steps name them.
             options: further arguments of `Masonry`.
 
         Raises:
             TypeError, ValueError: for a value outside its range, or as `Masonry` does.
+
+        Examples:
+            >>> arch = mr.Masonry.arch(radius=5.0, thickness=(0.9, 0.6), voussoirs=16)
+            >>> sorted(round(joint.width, 2) for joint in arch.joints)[::8]
+            [0.6, 0.75, 0.9]
         """
-        blocks = arch_of(radius, thickness, span_angle, voussoirs, density, length)
+        chords = require_whole("chords", chords, 1, 50)
+        voussoirs = require_whole("voussoirs", voussoirs, 1, 1000 // chords)
+        blocks = curved(arch_of(radius, thickness, span_angle, voussoirs * chords, density, length), chords)
         return cls([*blocks, ground_below_all(blocks)] if require_flag("ground", ground) else blocks, **options)
 
     @classmethod
     def bridge(
         cls,
         radius: float,
-        thickness: float,
+        thickness: Ends,
         span_angle: float = math.pi,
         voussoirs: int = 17,
         *,
@@ -444,7 +458,7 @@ class Masonry:
     def barrel_vault(
         cls,
         radius: float,
-        thickness: float,
+        thickness: Ends,
         length: float,
         unit: float,
         span_angle: float = math.pi,
@@ -467,6 +481,42 @@ class Masonry:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
         return cls(barrel_of(Span(radius, thickness, span_angle, courses), length, unit, density), **options)
+
+    @classmethod
+    def groin_vault(
+        cls,
+        radius: float,
+        thickness: Ends,
+        length: float,
+        unit: float,
+        span_angle: float = math.pi,
+        courses: int = 17,
+        *,
+        cut: bool = False,
+        density: float = 2000.0,
+        **options: Any,
+    ) -> Self:
+        """A groin vault, or cross vault: two equal barrels that cross over a square bay, on four fixed piers.
+
+        The webs are in running bond, and end at the groins, two vertical planes across the corners of the bay. The
+        middle of the bay is x = y = 0. Its sides are front, where x is positive, back, left, where y is negative, and
+        right; a pier is named by its two sides, `pier_front_right`.
+
+        Args:
+            radius, thickness, span_angle: of the section of a web, as of `arch`.
+            length: of the sides of the bay [m], at least the span of the extrados.
+            unit: length of a voussoir of the webs [m], 0.01 to the length. `web_left_2_0` is the first of the third
+                course of the left web, from its side inwards, and what is left of a course belongs to the groin.
+            courses: voussoirs of the section of a web, 1 to 1000. An odd number has a keystone, with four arms.
+            cut: whether the stones of a groin are cut along it, each of one web. Otherwise a stone of two arms, a
+                `Compound`, belongs to both webs, `groin_front_right_0` above the pier, and binds them.
+            density: mass density [kg/m3], 100 to 30000.
+            options: further arguments of `Masonry`.
+
+        Raises:
+            ValueError: for a value outside its range, or as `Masonry` does.
+        """
+        return cls(groin_of(Span(radius, thickness, span_angle, courses), length, unit, cut, density), **options)
 
     @classmethod
     def running_bond(
@@ -593,12 +643,13 @@ class Masonry:
 
     @classmethod
     def column(
-        cls, width: float, height: float, drums: int, *, sides: int = 4, density: float = 2000.0, **options: Any
+        cls, width: Ends, height: float, drums: int, *, sides: int = 4, density: float = 2000.0, **options: Any
     ) -> Self:
-        """A column of equal prismatic drums on the ground.
+        """A column of drums of equal height on the ground.
 
         Args:
-            width: diameter of the circle within the section [m], 0.01 to 100: the side of a square.
+            width: diameter of the circle within the section [m], 0.01 to 100: the side of a square. A pair is that of
+                the bottom and of the top of a column that tapers.
             height: of the column [m], 0.01 to 1000.
             drums: how many, 1 to 1000, each of a height of 0.01 to 100 widths. They are named `drum_0` and so on, from
                 the lowest upwards.
@@ -615,7 +666,7 @@ class Masonry:
     def dome(
         cls,
         radius: float,
-        thickness: float,
+        thickness: Ends,
         lunes: int,
         hoops: int,
         *,
@@ -627,7 +678,8 @@ class Masonry:
 
         Args:
             radius: of the middle of the thickness at the corners of the voussoirs [m], 0.1 to 1000.
-            thickness: [m], 0.001 to 1 times the radius.
+            thickness: [m], 0.001 to 1 times the radius; or a pair, at the springing and at the oculus, between which it
+                changes linearly with the angle.
             lunes: how many voussoirs a hoop has, 4 to 360.
             hoops: how many hoops of equal angles, 1 to 360. `voussoir_0_3` is the fourth of the lowest hoop.
             oculus: angle at the centre between the axis and the edge of the opening at the crown [rad], 0.01 to 1.5.
