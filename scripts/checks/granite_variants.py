@@ -17,6 +17,8 @@ import mjrock as mr
 from scripts.shared import cli
 from scripts.studies.granite_walls import (
     ASSUMED,
+    COURSE,
+    COURSES,
     LENGTH,
     LOADS,
     SPAN,
@@ -26,7 +28,8 @@ from scripts.studies.granite_walls import (
     curve_of,
     measured,
     pushed,
-    wall_of,
+    rectangle,
+    units,
 )
 
 WALL = "WS250"
@@ -53,12 +56,11 @@ HEAVY = 25000.0
 
 def rigid_share(force: float) -> float:
     """What courses with rigid joints bear under a vertical force at the base [kN], over the rigid bound [-]."""
-    blocks = wall_of(force).masonry.blocks[:-1]
-    beam = blocks[-1]
-    own = sum(block.mass for block in blocks if not block.fixed) - beam.mass
-    scale = HEAVY / beam.density * beam.mass / (1e3 * force / mr.GRAVITY - own)
-    lighter = [replace(block, density=scale * block.density) for block in blocks[1:-1]]
-    masonry = mr.Masonry([blocks[0], *lighter, replace(beam, density=HEAVY)], friction=ASSUMED.friction)
+    (floor, *blocks), top = units(ASSUMED), COURSES * COURSE
+    beam = rectangle(0.0, top, LENGTH, 2 * (SPAN - top), HEAVY, "beam")
+    scale = beam.mass / (1e3 * force / mr.GRAVITY - sum(block.mass for block in blocks))
+    lighter = [replace(block, density=scale * block.density) for block in blocks]
+    masonry = mr.Masonry([floor, *lighter, beam], friction=ASSUMED.friction)
     push = mr.collapse_multiplier(masonry, None, associated=False, loads={"beam": (1.0, 0.0)}).multiplier
     return push / (scale * 1e3 * force * 0.5 * LENGTH / SPAN)
 
