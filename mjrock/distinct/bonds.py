@@ -63,8 +63,9 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
         bonds["torn"][which] = bond.tension / bond.opening_energy
         bonds["worn"][which] = bond.cohesion / bond.slip_energy
         if bond.crushing is not None and bond.crushing_energy is not None:
-            bonds["bears"][which] = bond.crushing * area[which]
-            bonds["crumbled"][which] = bond.crushing / bond.crushing_energy
+            bonds["bears"][which] = bond.elastic_limit * area[which]
+            bonds["peak"][which], bonds["hardens"][which] = bond.crushing * area[which], bond.hardening or 0.0
+            bonds["crumbled"][which] = bond.crushing / (bond.crushing_energy - bond.energy_of_hardening)
         lines["friction"][which], lines["grip"][which] = 0.0, 0.0
         if bond.tension > 0:
             bonds["secant"][which] = lines["k"][which]

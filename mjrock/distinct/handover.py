@@ -38,6 +38,8 @@ ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
 REGAINED = 1.25
 """Largest factor by which a find raises what presses of the overlap of a place [-]."""
+AS_NEAR = 1 + 1e-6
+"""Square of the distance of a place over that of the nearest one up to which it is as near [-]."""
 
 
 class Blocks(NamedTuple):
@@ -154,6 +156,14 @@ def place_of(line: Row, both: int, blocks: Blocks, axes: tuple[int, ...]) -> Pla
 
 
 @inlined
+def square_between(line: Row, at: Vector, both: int, blocks: Blocks, axes: tuple[int, ...]) -> float:
+    """Square of the distance of a line from a place [m2], see `nearest`."""
+    off = minus(place_of(line, both, blocks, axes).at, at)
+    square: float = dot(off, off)
+    return square
+
+
+@inlined
 def nearest(
     lines: Rows, ends: tuple[int, int], at: Vector, both: int, blocks: Blocks, axes: tuple[int, ...]
 ) -> tuple[int, float]:
@@ -168,9 +178,9 @@ def nearest(
     """
     best, least = -1, math.inf
     for j in range(ends[0], ends[1]):
-        off = minus(place_of(lines[j], both, blocks, axes).at, at)
-        if dot(off, off) < least:
-            best, least = j, dot(off, off)
+        square = square_between(lines[j], at, both, blocks, axes)
+        if square < least:
+            best, least = j, square
     return best, math.sqrt(least)
 
 
@@ -247,21 +257,37 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 
 
 @inlined
-def give(gone: Row, line: Row, old: Place, new: Place, poses: Poses, axes: tuple[int, ...]) -> None:
-    """Let a line take over the friction of one that is gone, and its push of the last step.
+def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks, axes: tuple[int, ...]) -> None:
+    """Let a line take over a share of the friction of one that is gone, and of its push of the last step.
 
     Of a spring along the face the force is kept, as that of rigid friction is.
     """
-    line.push, line.pressed = line.push + gone.push, line.pressed + gone.pressed
+    poses, old, new = blocks.poses, place_of(gone, both, blocks, axes), place_of(line, both, blocks, axes)
+    line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
     line.depth, line.rate = max(line.depth, gone.depth), gone.rate
-    grip = spin_components(gone.grip, axes)
+    grip = scaled(share, spin_components(gone.grip, axes))
     if len(axes) == 3 and gone.face >= 0:
         grip = turned(poses, old.face, grip)
     grip = along_new(grip, old, new)
     if len(axes) == 3 and line.face >= 0:
         grip = turned_back(poses, new.face, grip)
     increase(line.grip, scaled(gone.k_s / line.k_s if line.k_s < math.inf else 1.0, grip))
-    increase(line.dragged, along_new(spin_components(gone.dragged, axes), old, new))
+    increase(line.dragged, along_new(scaled(share, spin_components(gone.dragged, axes)), old, new))
+
+
+@inlined
+def give_to_nearest(
+    gone: Row, new: Rows, places: tuple[int, int], both: int, blocks: Blocks, axes: tuple[int, ...]
+) -> None:
+    """Let the nearest places of a pair take over what a line has that is gone. Places that are as near share it."""
+    at, count, near = place_of(gone, both, blocks, axes).at, 0, math.inf
+    for i in range(places[0], places[1]):
+        near = min(near, AS_NEAR * square_between(new[i], at, both, blocks, axes))
+    for i in range(places[0], places[1]):
+        count += square_between(new[i], at, both, blocks, axes) <= near
+    for i in range(places[0], places[1]):
+        if square_between(new[i], at, both, blocks, axes) <= near:
+            give(gone, new[i], 1 / count, both, blocks, axes)
 
 
 @compiled
@@ -271,7 +297,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
     What presses nothing of the overlap of a place is written too. It is the overlap of a place that no line was near,
     as long as it has it. So what a look has missed, or what touched at rest without a joint, puts no energy in. The
     places of a pair press as much in all as the lines before them where they can, and hold no more energy. Each line
-    that is gone gives all that it has along its face to the nearest new one, so that the forces of a pair stay.
+    that is gone gives all that it has along its face to the nearest new ones, so that the forces of a pair stay.
 
     Args:
         new: rows with the law of each place, and room for what presses of its overlap and what does not.
@@ -293,9 +319,7 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
         for j in range(ends[0], ends[1]):
             old = gone.rows[j]
             if old.push != 0 or old.depth > 0:
-                there = place_of(old, both, blocks, axes)
-                i, _ = nearest(new.rows, (begin, end), there.at, both, blocks, axes)
-                give(old, new.rows[i], there, place_of(new.rows[i], both, blocks, axes), blocks.poses, axes)
+                give_to_nearest(old, new.rows, (begin, end), both, blocks, axes)
         for i in range(begin, end):
             line = new.rows[i]
             if line.k_s < math.inf:

@@ -80,6 +80,13 @@ def width(polygon: Array) -> float:
     return float(np.ptp(polygon @ across.T, axis=0).min())
 
 
+def within(polygon: Array, points: Array) -> Array:
+    """How far points lie within the edges of a convex polygon, the least of all edges [m], negative outside, (p,)."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    inwards = cross(edges, points[:, None] - polygon) / np.hypot(*edges.T)
+    return np.asarray(inwards.min(axis=1))
+
+
 def shares(polygon: Array, point: Array) -> Array:
     """Weights of the corners of a convex polygon, all positive, whose sum is 1 and whose mean is a point inside, (n,).
 

@@ -76,9 +76,9 @@ def require_held(masonry: Masonry, scene: Scene, pose: Array) -> None:
     """Raise ValueError with the names of the joints whose bonds need more than their strength at the pose of rest."""
     contacts = scene.contacts
     push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
-    crushing = np.array([np.inf if bond is None or bond.crushing is None else bond.crushing for bond in masonry.bonds])
+    limit = np.array([np.inf if bond is None else bond.elastic_limit for bond in masonry.bonds])
     area = masonry.areas_of(contacts.k, contacts.joint)
-    share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / area / crushing[contacts.joint])
+    share = np.where(push < 0, -push / np.maximum(contacts.tension, 1e-300), push / area / limit[contacts.joint])
     torn = np.unique(contacts.joint[share > 1])
     if len(torn):
         names = named([masonry.joints[i].name for i in torn])

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -102,6 +103,7 @@ SETTINGS = {
     "5 lines, damping 0.005": Setting(points=5, xi=0.005),
     "5 lines, damping 0.1": Setting(points=5, xi=0.1),
     "5 lines, bricks that do not split": Setting(points=5, splits=False),
+    "5 lines, crushing hardens over 0.09 mm": Setting(points=5, mortar=replace(MORTAR, hardening=9e-5)),
     "J6D, 1.21 MPa": Setting(points=5, pressure=1.21e6, mortar=STRONGLY_PRESSED, k_n=60.3e9, k_s=26.9e9),
     "J7D, 2.12 MPa": Setting(points=5, pressure=2.12e6, mortar=STRONGLY_PRESSED, k_n=60.3e9, k_s=26.9e9),
 }

@@ -10,6 +10,21 @@ from bonded import MORTAR, joint
 import mjrock as mr
 
 HUGE = mr.Bond(1e9, 1e9, 1e12, 1e12)
+WEAK = {"k_n": 2e9, "k_s": 1e9, "points": 3, "frequency": 500.0, "bond": mr.Bond(2e3, 2.8e3, 0.05, 0.5)}
+
+
+def in_boxes(plane, options):
+    """Masonry of rectangles as boxes in space."""
+    boxes = []
+    for block in plane.blocks:
+        low, high = block.corners.min(axis=0), block.corners.max(axis=0)
+        size, middle = (high - low).tolist(), (0.5 * (low + high)).tolist()
+        boxes.append(
+            mr.Polyhedron.box(
+                (size[0], block.length, size[1]), (middle[0], 0, middle[1]), fixed=block.fixed, name=block.name
+            )
+        )
+    return mr.Masonry(boxes, **options)
 
 
 def cantilever(count, bond=MORTAR, **more):
@@ -203,23 +218,22 @@ def test_units_in_halves_have_the_mass_of_whole_ones_and_a_bond_within():
 
 
 def test_a_bonded_wall_that_cracks_moves_in_the_plane_as_in_space():
-    """A wall of four courses and its blocks as boxes in space, until its joints have cracked and it falls apart."""
-    options = {"k_n": 2e9, "k_s": 1e9, "points": 3, "frequency": 500.0, "bond": mr.Bond(2e3, 2.8e3, 0.05, 0.5)}
-    plane = mr.Masonry.running_bond(0.4, 0.8, (0.4, 0.2), thickness=0.2, **options)
-    boxes = []
-    for block in plane.blocks:
-        low, high = block.corners.min(axis=0), block.corners.max(axis=0)
-        size, middle = (high - low).tolist(), (0.5 * (low + high)).tolist()
-        boxes.append(
-            mr.Polyhedron.box(
-                (size[0], block.length, size[1]), (middle[0], 0, middle[1]), fixed=block.fixed, name=block.name
-            )
-        )
-    flat, deep = (shaken(one, 0.27, 9.0, timestep=2e-5) for one in (plane, mr.Masonry(boxes, **options)))
+    """A wall of four courses and its blocks as boxes in space, its joints cracked, and beyond as it falls apart."""
+    plane = mr.Masonry.running_bond(0.4, 0.8, (0.4, 0.2), thickness=0.2, **WEAK)
+    flat, deep = (shaken(one, 0.3, 9.0, timestep=2e-5) for one in (plane, in_boxes(plane, WEAK)))
     assert len(flat.cracked) > 3
     assert list(flat.cracked) == list(deep.cracked)
     gap = np.abs(deep.pose[..., [0, 2]] - flat.pose[..., :2]).max()
     assert gap < 1e-6 * np.abs(flat.pose - flat.pose[0]).max()
+
+
+def test_a_block_whose_joint_is_handed_over_moves_in_the_plane_as_in_space():
+    """It slides on a joint that has cracked. A point in the middle gives its friction to both places beside it."""
+    ground = mr.Polygon([(-0.5, -0.2), (0.5, -0.2), (0.5, 0), (-0.5, 0)], length=0.2, fixed=True)
+    plane = mr.Masonry([ground, mr.Polygon([(-0.1, 0), (0.1, 0), (0.1, 0.3), (-0.1, 0.3)], length=0.2)], **WEAK)
+    flat, deep = (shaken(one, 0.4, 9.0, timestep=2e-5) for one in (plane, in_boxes(plane, WEAK)))
+    assert np.abs(flat.pose[-1, 0, 0] - flat.pose[0, 0, 0]) > 0.05 * 0.2
+    assert np.abs(deep.pose[..., [0, 2]] - flat.pose[..., :2]).max() < 1e-9
 
 
 def frequencies(x, h, modes):

@@ -11,6 +11,7 @@ import mjrock as mr
 from mjrock.distinct.setup import setup_of
 
 CRUSHED = mr.Bond(0.25e6, 0.35e6, 18.0, 125.0, 10.5e6, 5e3)
+HARDENING = replace(CRUSHED, hardening=9e-5)
 PLACES = [{}, {"angle": 0.6}, {"space": True}, {"points": 5}]
 PEAK = MORTAR.tension / K_N
 
@@ -173,6 +174,63 @@ def test_a_crushed_joint_softens_and_is_unloaded_with_a_gap(place):
     taken = np.trapezoid(np.append(push, unloaded[1:]), whole)
     assert one.taken[2] == pytest.approx(taken, rel=1e-3)
     assert one.taken[2] == pytest.approx(5e3 * (1 - np.exp(-2.1e3 * gap[-1])), rel=3e-3)
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_joint_that_hardens_reaches_its_strength_and_takes_its_energy(place):
+    """The parabola of Lourenco and Rots up to a plastic closing of 0.09 mm, and softening so that the area is G_c."""
+    one = led(HARDENING, **place)
+    peak = HARDENING.crushing / K_N + HARDENING.hardening
+    closing = np.append(np.linspace(0, peak, 401)[1:], peak + softening(5e-3, 3000))
+    push, _ = one.along(path_of(one, 0.0, -closing))
+    assert push.max() == pytest.approx(HARDENING.crushing, rel=1e-6)
+    plastic = closing - push / K_N
+    share = np.clip(plastic / HARDENING.hardening, 0.0, 1.0)
+    expected = HARDENING.crushing / 3 * (1 + 2 * np.sqrt(share * (2 - share)))
+    rising = (plastic > 1e-12) & (share < 1)
+    assert rising.sum() > 100
+    assert push[rising] == pytest.approx(expected[rising], rel=1e-6)
+    assert push[plastic < 1e-12] == pytest.approx(K_N * closing[plastic < 1e-12])
+    taken = np.trapezoid(np.append(0.0, push), np.append(0.0, plastic))
+    assert taken == pytest.approx(HARDENING.crushing_energy, rel=1e-3)
+    assert one.taken[2] == pytest.approx(HARDENING.crushing_energy, rel=1e-3)
+    unloaded, _ = one.along(path_of(one, 0.0, -np.linspace(closing[-1], plastic[-1], 5)))
+    assert unloaded[-1] == pytest.approx(0.0, abs=1e-5 * HARDENING.crushing)
+
+
+def test_a_joint_that_hardens_keeps_its_bond_up_to_the_peak_and_is_unloaded_on_the_way_with_its_whole_stiffness():
+    one = led(HARDENING)
+    closing = np.linspace(0, 2e-4, 201)[1:]
+    push, _ = one.along(path_of(one, 0.0, -closing))
+    gap = closing[-1] - push[-1] / K_N
+    assert 0 < gap < HARDENING.hardening
+    assert (one.system.bonds["left"] == 1).all()
+    way = np.linspace(closing[-1], gap, 11)
+    unloaded, _ = one.along(path_of(one, 0.0, -way))
+    assert unloaded == pytest.approx(K_N * (way - gap), abs=1e-6 * HARDENING.crushing)
+    again, _ = one.along(path_of(one, 0.0, -way[::-1]))
+    assert again == pytest.approx(unloaded[::-1], abs=1e-6 * HARDENING.crushing)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"hardening": 0.0}, "1e-09"),
+        ({"hardening": 1e-3}, r"hardening = 0.001 m would take 8997.79 J/m2.*1e-9 to 0.00055"),
+        ({"hardening": 1e-5, "crushing": None, "crushing_energy": None}, "needs crushing"),
+    ],
+)
+def test_a_hardening_that_the_energy_does_not_hold_is_refused(more, message):
+    with pytest.raises(ValueError, match=message):
+        replace(HARDENING, **more)
+
+
+def test_masonry_that_presses_beyond_what_hardening_bears_elastically_is_refused():
+    heavy = mr.Bond(0.25e6, 0.35e6, 18.0, 125.0, 1e3, 1e3)
+    assert heavy.elastic_limit == 1e3
+    with pytest.raises(ValueError, match=r"2\.9.* times their strength"):
+        mr.solve_explicit(mr.MasonryCase(joint(replace(heavy, crushing=2e3, hardening=1e-4)), 1e-3))
+    mr.solve_explicit(mr.MasonryCase(joint(replace(heavy, crushing=2e3)), 1e-3))
 
 
 def test_shear_lowers_what_a_joint_bears():

@@ -32,6 +32,12 @@ def test_clipping_of_a_square_by_itself_turned_is_an_octagon():
     assert convex.width(common) == pytest.approx(1.0)
 
 
+def test_how_far_points_lie_within_a_square():
+    points = np.array([(0.5, 0.5), (0.1, 0.5), (1.0, 0.3), (1.2, 0.5), (0.5, -3.0)])
+    assert convex.within(SQUARE, points) == pytest.approx([0.5, 0.1, 0.0, -0.2, -3.0])
+    assert convex.within(2 * SQUARE, 2 * points) == pytest.approx([1.0, 0.2, 0.0, -0.4, -6.0])
+
+
 def test_what_is_apart_has_nothing_in_common():
     assert convex.clipped(SQUARE, SQUARE + np.array([3.0, 0.0])).shape == (0, 2)
 

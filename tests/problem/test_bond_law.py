@@ -15,7 +15,8 @@ def row(**changed):
     """An intact bond."""
     law = {"k": K, "tension": TENSION, "cohesion": 3e3, "bears": math.inf, "torn": TORN, "worn": 5e3, "crumbled": 50.0}
     state = {"left": 1.0, "drawn": 0.0, "crack": 0.0, "crushed": 0.0, "secant": K}
-    return SimpleNamespace(**law | state | {"k_s": 0.4 * K, "friction": 0.75} | changed)
+    plain = {"k_s": 0.4 * K, "friction": 0.75, "peak": math.inf, "hardens": 0.0}
+    return SimpleNamespace(**law | state | plain | changed)
 
 
 def state(bond):
@@ -83,6 +84,39 @@ def test_a_joint_is_crushed_until_it_bears_the_rest(sheared):
     assert bond.left == pytest.approx(math.exp(-50.0 * closing), rel=1e-12)
     assert crush(bond, 1.2 * gap + closing, sheared) > 0
     assert bond.crushed > closing
+
+
+@pytest.mark.parametrize("sheared", [0.0, 5e3])
+def test_a_joint_that_hardens_bears_a_parabola_up_to_its_peak_and_then_softens(sheared):
+    bond = row(bears=1e5 / 3, peak=1e5, hardens=2e-3)
+    assert crush(bond, -0.99 * math.sqrt((1e5 / 3) ** 2 - (3 * sheared) ** 2) / K, sheared) == 0.0
+    for pressed in (5e4, 8e4, 0.9999e5):
+        share = 1 - math.sqrt(1 - ((3 * pressed / 1e5 - 1) / 2) ** 2)
+        gap = -math.sqrt(pressed**2 - (3 * sheared) ** 2) / K - 2e-3 * share
+        crush(bond, gap + bond.crushed, sheared)
+        assert bond.crushed == pytest.approx(2e-3 * share, rel=1e-8)
+        assert bond.bears == pytest.approx(pressed, rel=1e-8)
+        assert bond.left == 1.0
+    closing = bond.crushed + crush(bond, -2e-3, sheared)
+    assert (bond.crushed, closing) == (pytest.approx(closing), pytest.approx(bond.crushed))
+    assert closing > 2e-3
+    assert bond.bears == pytest.approx(1e5 * math.exp(-50.0 * (closing - 2e-3)), rel=1e-9)
+    assert bond.left == pytest.approx(math.exp(-50.0 * (closing - 2e-3)), rel=1e-9)
+
+
+def test_a_joint_that_hardens_passes_its_peak_within_one_call():
+    once, twice = (row(bears=1e5 / 3, peak=1e5, hardens=2e-3) for _ in range(2))
+    crush(once, -4e-3, 1e3)
+    first = crush(twice, -2e-3, 1e3)
+    crush(twice, -4e-3 + first, 1e3)
+    assert once.crushed > 2e-3
+    assert (once.crushed, once.bears, once.left) == pytest.approx((twice.crushed, twice.bears, twice.left), rel=1e-9)
+
+
+def test_a_joint_that_hardens_and_closes_its_gap_under_shear_stays_below_its_peak():
+    bond = row(bears=1e5 / 3, peak=1e5, hardens=2e-3)
+    assert crush(bond, -1e-5, 3e4) == pytest.approx(1e-5)
+    assert bond.bears == pytest.approx(1e5 / 3 * (1 + 2 * math.sqrt(0.005 * 1.995)), rel=1e-9)
 
 
 def test_a_joint_that_shear_alone_crushes_gives_way_until_nothing_presses():

@@ -48,6 +48,21 @@ def test_a_wall_has_all_its_joints(angle):
     assert joints[0].name == "ground|block_1"
 
 
+def test_edges_of_the_block_below_that_lie_within_the_face_above_carry_their_points():
+    """As in the plane the whole line at an end where the upper block overhangs, not only its corners."""
+    masonry = mr.Masonry(
+        [GROUND, box((0.4, 0.3, 0.2), (0, 0, 0.1)), box((0.8, 0.3, 0.2), (0.2, 0, 0.3))], k_n=1e9, points=3
+    )
+    lines = masonry.lines
+    own = lines.joint == 1
+    at_end = np.isclose(lines.at[own][:, 0], 0.2)
+    assert at_end.sum() == 3
+    assert (lines.body[own] == np.where(at_end, 1, 2)).all()
+    assert lines.normal[own][:, 2] == pytest.approx(np.where(at_end, -1, 1))
+    on_ground = lines.joint == 0
+    assert (lines.body[on_ground] == 1).all()
+
+
 def test_a_joint_lies_halfway_and_is_the_common_part_of_two_faces():
     masonry = mr.Masonry([GROUND, box((1, 1, 1), (0, 0, 0.5 + 4e-6)), box((1, 1, 1), (0.75, 0.5, 1.5))])
     below, above = masonry.joints

@@ -93,6 +93,21 @@ def test_curved_voussoirs_come_close_to_a_ring_to_second_order():
         assert stands(arch)
 
 
+def test_vaults_and_bridges_taper_as_their_arch_does():
+    """Their weight is that of the arch, and a pier is as wide at the springing as the arch is thick there."""
+    arch = mr.Masonry.arch(2.0, (0.5, 0.3), 2.4, 6, length=1.5)
+    barrel = mr.Masonry.barrel_vault(2.0, (0.5, 0.3), 1.5, 0.75, 2.4, 6)
+    masses = [sum(masonry.blocks[i].mass for i in masonry.free) for masonry in (arch, barrel)]
+    assert masses[0] == pytest.approx(masses[1], rel=1e-9)
+    bridge = mr.Masonry.bridge(2.0, (0.5, 0.3), 2.4, 6, spans=2, pier_width=1.2, pier_height=1.0)
+    widths = [joint.width for joint in bridge.joints if "pier_1" in joint.name and "voussoir" in joint.name]
+    np.testing.assert_allclose(widths, [0.5, 0.5], rtol=1e-9)
+    groin = mr.Masonry.groin_vault(2.0, (0.5, 0.3), 4.4, 1.0, 2.4, 3)
+    assert stands(groin)
+    middle = np.average(groin.centroids[list(groin.free)], axis=0, weights=[groin.blocks[i].mass for i in groin.free])
+    np.testing.assert_allclose(middle[:2], 0.0, atol=1e-12)
+
+
 def test_a_tapered_column_overturns_as_its_centroid_says():
     """A frustum of a square section; its push is half of its width over the height of its centroid."""
     column = mr.Masonry.column((1.0, 0.6), 4.0, 4, xi=0)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ...quantities import Array, keep, require_kind, require_within, shown
+from .bond_law import HARDENED, YIELDS
 from .joints import Joint
 from .joints_in_space import SpaceJoint
 
@@ -30,6 +32,10 @@ class Bond:
         crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`.
         residual_friction: coefficient to which friction falls as the bond is lost [-], 0 to that of the joint. None
             keeps that of the joint.
+        hardening: plastic closing at which a joint that is crushed reaches f_c [m], 1e-9 to 0.1. Up to there it bears
+            f_c (1 + 2 sqrt(2 x - x^2)) / 3 at the share x of this closing (Lourenco and Rots, Journal of Engineering
+            Mechanics 123, 1997). G_c is the whole area, of which this part takes 0.857 f_c times the closing. None
+            bears f_c from the start.
 
     Raises:
         ValueError: for a value outside its range.
@@ -47,6 +53,7 @@ class Bond:
     crushing: float | None = None
     crushing_energy: float | None = None
     residual_friction: float | None = None
+    hardening: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for name in ("tension", "cohesion"):
@@ -62,6 +69,16 @@ class Bond:
             keep(self, crushing_energy=energy)
         if self.residual_friction is not None:
             keep(self, residual_friction=require_within("residual_friction", self.residual_friction, 0.0, 10.0))
+        if self.hardening is not None:
+            if self.crushing is None:
+                raise ValueError(f"hardening = {self.hardening} needs crushing and crushing_energy; give them, or None")
+            keep(self, hardening=require_within("hardening", self.hardening, 1e-9, 0.1, "m"))
+            if self.energy_of_hardening >= float(self.crushing_energy or 0.0):
+                most = self.hardening * float(self.crushing_energy or 0.0) / self.energy_of_hardening
+                raise ValueError(
+                    f"hardening = {self.hardening:g} m would take {self.energy_of_hardening:g} J/m2 of the "
+                    f"crushing_energy = {self.crushing_energy:g} J/m2; the valid range is 1e-9 to {most:g} m"
+                )
         if self.cohesion > 0 and self.tension == 0:
             raise ValueError(
                 f"cohesion = {self.cohesion:g} Pa with a tension of 0: cohesion ends where a joint opens; the valid "
@@ -72,6 +89,18 @@ class Bond:
     def is_dry(self) -> bool:
         """Whether the joint has no bond at all."""
         return self.tension == 0 and self.cohesion == 0 and self.crushing is None
+
+    @property
+    def elastic_limit(self) -> float:
+        """Pressure that it bears without closing for good [Pa], infinite where it is not crushed."""
+        if self.crushing is None:
+            return math.inf
+        return self.crushing if self.hardening is None else YIELDS * self.crushing
+
+    @property
+    def energy_of_hardening(self) -> float:
+        """Part of the energy of crushing that is taken before the peak [J/m2]."""
+        return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,12 @@ so that opening, slip and crushing each harm both. Friction falls with them, fro
 bond pulls at most f_t (1 - D). Below its largest opening it pulls
 along the secant to the origin, and a joint that closes has its whole stiffness. Along the face it holds c (1 - D)
 beside friction. Crushing keeps sqrt(sigma^2 + 9 tau^2) within f_c exp(-(f_c / G_c) v), and a joint that is crushed by v
-is unloaded with a gap of v.
+is unloaded with a gap of v. With a hardening v_p it bears
+
+    f_c (1 + 2 sqrt(2 v/v_p - (v/v_p)^2)) / 3   up to v = v_p, and f_c exp(-r (v - v_p)) beyond,
+
+the parabola to the peak of Lourenco and Rots (Journal of Engineering Mechanics 123, 1997), with r such that the whole
+area is G_c. Tension and cohesion suffer from what is crushed beyond the peak.
 
 A row is anything with these numbers by name, see `rows`. Strengths are forces of the line there.
 """
@@ -26,6 +31,12 @@ PASSES = 8
 """Passes of the search for the opening of a crack, by Newton's method, and for a plastic closing."""
 BRITTLE = 0.9
 """Rate at which a crack softens, over the stiffness of its spring, from which it breaks at once [-]."""
+YIELDS = 1 / 3
+"""Share of the crushing strength that a joint which hardens bears before it closes for good [-]."""
+HARDENED = YIELDS + (1 - YIELDS) * math.pi / 4
+"""Mean share of the crushing strength that it bears from there to the peak [-]."""
+HALVINGS = 40
+"""Halvings of the closing that is looked for while a joint hardens."""
 
 
 @inlined
@@ -51,12 +62,49 @@ def tear(bond: Any, gap: float) -> None:
 
 
 @inlined
+def hardened(bond: Any, closing: float) -> float:
+    """What a joint that hardens bears after it has closed by so much more, up to its peak [N]."""
+    share = min((bond.crushed + closing) / bond.hardens, 1.0)
+    bears: float = bond.peak * (YIELDS + (1 - YIELDS) * math.sqrt(share * (2 - share)))
+    return bears
+
+
+@inlined
+def harden(bond: Any, gap: float, sheared: float) -> float:
+    """Close a joint at a gap [m] for good until it bears what presses, or to its peak, see `crush`. Returns by how much
+    [m]."""
+    left: float = bond.hardens - bond.crushed
+    low, high = 0.0, min(left, -gap)
+    if math.hypot(bond.k * (gap + high), sheared) < hardened(bond, high):
+        for _ in range(HALVINGS):
+            closing = 0.5 * (low + high)
+            if math.hypot(bond.k * (gap + closing), sheared) < hardened(bond, closing):
+                high = closing
+            else:
+                low = closing
+    bond.bears = hardened(bond, high)
+    bond.crushed = bond.crushed + high if high < left else bond.hardens
+    return high
+
+
+@inlined
 def crush(bond: Any, gap: float, sheared: float) -> float:
     """Crush a joint at a gap [m] under a force along the face [N]. Returns by how much it closes for good [m]."""
     sheared *= 3
     closing: float = 0.0
     if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears * bond.bears:
         return 0.0
+    if bond.crushed < bond.hardens:
+        closing = harden(bond, gap, sheared)
+    if bond.crushed >= bond.hardens:
+        closing += soften(bond, gap + closing, sheared)
+    return closing
+
+
+@inlined
+def soften(bond: Any, gap: float, sheared: float) -> float:
+    """Crush a joint beyond its peak, see `crush`."""
+    closing: float = 0.0
     for _ in range(PASSES):
         left = bond.bears * math.exp(-bond.crumbled * closing)
         closing = max(-gap - math.sqrt(max(left * left - sheared * sheared, 0.0)) / bond.k, 0.0)

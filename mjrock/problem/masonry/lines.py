@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, vstack
 
-from ...geometry.convex import spread
+from ...geometry.convex import spread, within
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
@@ -21,6 +21,8 @@ from .sides import Side
 
 RIGID = 1e-12
 """Square of a frequency, over that of the highest, below which a mode is a motion that no joint resists [-]."""
+EDGE = 1e-5
+"""Distance from an edge of a face up to which a point is on it [m]."""
 
 
 class Lines(NamedTuple):
@@ -64,14 +66,18 @@ class Lines(NamedTuple):
 def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
-    The point is on the block above. Where that one overhangs, the corner is that of the block below, and the point is
-    on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,). A joint
-    has so many lines as `points` says, in space see `geometry.convex.spread`.
+    The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
+    point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,).
+    A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
     """
     rows, at, normal, k = [], [], [], []
     for number, joint in enumerate(joints):
         k_joint = k_n[number]
-        own = _on_edge(joint, points, k_joint) if isinstance(joint, Joint) else _on_face(joint, points, k_joint)
+        if isinstance(joint, Joint):
+            own = _on_edge(joint, points, k_joint)
+        else:
+            faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
+            own = _on_face(joint, faces, points, k_joint)
         for place, stiffness, overhangs in own:
             turned = overhangs and not blocks[joint.below].fixed
             rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
@@ -92,12 +98,15 @@ def _on_edge(joint: Joint, points: int, k_n: float) -> Iterator[tuple[Array, flo
         yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
 
 
-def _on_face(joint: SpaceJoint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
-    """The same of the points of a joint in space; those at its corners may be of the block below alone."""
+def _on_face(joint: SpaceJoint, faces: Sequence[Array], points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+    """The same of the points of a joint in space. Those at its corners may be of the block below alone, and those on an
+    edge of the face below that lies within the face above are."""
     flat, areas = spread(joint.flat, points)
-    for place, area in zip(joint.outline[0] + flat @ joint.axes, areas, strict=True):
+    below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
+    edges = (within(below, flat) < EDGE) & (within(above[::-1], flat) > EDGE)
+    for place, area, on_edge in zip(joint.outline[0] + flat @ joint.axes, areas, edges.tolist(), strict=True):
         apart = np.abs(joint.outline - place).max(axis=1)
-        yield place, k_n * area, bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
+        yield place, k_n * area, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
 
 
 def edge_ends(edge: Side, joint: Joint) -> tuple[float, float]:
