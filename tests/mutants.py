@@ -100,6 +100,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/pair_law.py": ("pair_law",),
     "distinct/turning.py": ("turning",),
     "problem/masonry/actuator.py": ("actuator_inputs",),
+    "scene/rest.py": ("search_for_rest", "potential", "scene_in_space"),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
 ROUNDS = (
@@ -166,6 +167,10 @@ EQUIVALENT = {
     "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
     "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
     "contact.py: if push <= 0 and line.push > 0:": "a push of zero has no friction in this way, too",
+    "contact.py: PASSES = 6": "more passes take time only",
+    "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
+        "at a gap of zero nothing presses"
+    ),
     "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
     "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",

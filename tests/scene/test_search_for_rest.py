@@ -1,0 +1,169 @@
+"""The search for rest, one function at a time: sliders, energy, stiffness and where bodies are let fall to."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import changed, two_blocks
+
+import mjrock as mr
+from mjrock.scene import rest
+from mjrock.scene.parts import ConstantForces, Links
+
+WEIGHT = 2000.0 * 0.6 * 2.1 * mr.GRAVITY
+LIMITED, HELD = rest.Search(1e3, 20), rest.Search(1e3, 20, limited=False)
+
+
+def sliders(scene, push, search=LIMITED, slipped=None):
+    slipped = np.zeros((len(scene.contacts.k), 1)) if slipped is None else slipped
+    return rest.sliders_at(scene.contacts, search, np.array(push, dtype=float), slipped)
+
+
+def test_a_slider_holds_friction_times_push_and_only_where_faces_touch():
+    scene = two_blocks()
+    found = sliders(scene, [10.0, 0.0, -1.0, 1e-3])
+    np.testing.assert_allclose(found.limit, [7.0, 0.0, -np.inf, 7e-4])
+    np.testing.assert_allclose(found.stiffness, 1e3 * scene.contacts.k)
+    np.testing.assert_array_equal(found.shares.toarray(), np.diag([1.0, 1.0, 0.0, 1.0]))
+    smooth = sliders(changed(scene, contacts={"friction": [0.7, 0.0, 0.7, 0.7]}), [10.0] * 4)
+    np.testing.assert_allclose(smooth.limit, [7.0, -np.inf, 7.0, 7.0])
+
+
+def test_without_a_limit_sliders_hold_the_mean_slip_of_the_points_of_a_joint_that_touch():
+    found = sliders(two_blocks(), [10.0, 1.0, -1.0, 5.0], HELD)
+    np.testing.assert_array_equal(found.limit, [np.inf, np.inf, -np.inf, np.inf])
+    means = np.zeros((4, 4))
+    means[:2, :2], means[3, 3] = 0.5, 1.0
+    np.testing.assert_allclose(found.shares.toarray(), means)
+
+
+@pytest.mark.parametrize(("slid", "slips"), [(1e-6, False), (1e-3, True), (-1e-3, True)])
+def test_a_slider_sticks_or_has_what_the_face_holds_against_its_slip(slid, slips):
+    """The lower block has slid on the ground, whose sliders had moved by a micrometre before."""
+    scene = two_blocks()
+    before = np.array([[1e-7], [0.0], [0.0], [0.0]])
+    found = sliders(scene, [1e6, 2e6, 1.0, 1.0], slipped=before)
+    pose = np.array([slid, 0.0, 0.0, slid, 0.0, 0.0])
+    grips = rest.grips_at(scene.potential, pose, found)
+    stretch = np.array([slid, slid, 0.0, 0.0]) - before[:, 0]
+    k = 1e3 * scene.contacts.k
+    sense = np.sign(scene.potential.slips(pose)[0, 0] * slid)
+    assert abs(sense) == 1
+    held = np.clip(k * (sense * np.array([slid, slid, 0.0, 0.0]) - before[:, 0]), -found.limit, found.limit)
+    np.testing.assert_allclose(grips.drag[:, 0], -held, rtol=1e-9, atol=1e-9)
+    assert (grips.slips[:2] == slips).all()
+    assert not grips.slips[2:].any()
+    stretch = sense * np.array([slid, slid, 0.0, 0.0]) - before[:, 0]
+    np.testing.assert_allclose(grips.slider[:, 0], before[:, 0] + stretch - held / k, rtol=1e-9, atol=1e-15)
+    chord = np.divide(held, stretch, out=k.copy(), where=stretch != 0)
+    np.testing.assert_allclose(grips.stiffness, chord, rtol=1e-9)
+    np.testing.assert_allclose(grips.held[0], -sense * held.sum(), rtol=1e-9)
+    whole, half = rest.shear_stiffness(grips, 1.0).toarray(), rest.shear_stiffness(grips, 0.25).toarray()
+    assert whole[0, 0] == pytest.approx(chord.sum())
+    assert whole[3, 3] == pytest.approx(chord[2:].sum())
+    assert half[0, 0] == pytest.approx((0.25 if slips else 1.0) * chord[:2].sum() + chord[2:].sum())
+    elastic = np.abs(held) / k
+    stored = (k * elastic * (np.abs(stretch) - 0.5 * elastic)).sum()
+    energy = rest.energy_with(found, scene.potential, pose) - scene.potential.energy(pose)
+    assert energy == pytest.approx(stored, rel=1e-9, abs=1e-15 * WEIGHT)
+
+
+def test_open_sliders_hold_nothing():
+    scene = two_blocks()
+    found = sliders(scene, [-1.0] * 4)
+    grips = rest.grips_at(scene.potential, np.array([1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0]), found)
+    assert not grips.drag.any()
+    assert not grips.stiffness.any()
+    assert not rest.shear_stiffness(grips, 0.5).toarray().any()
+
+
+def test_friction_in_space_is_softer_along_its_slip_alone():
+    """k (1 - a a) + share k a a with a the way of the slip, along two ways of the face."""
+    rates = [np.array([[1.0, 0.0, 0.3]]), np.array([[0.0, 1.0, -0.2]])]
+    one = rest.csr_array
+    grips = rest.Grips(
+        tuple(one(rate) for rate in rates), np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True]), np.zeros((1, 2))
+    )
+    way = np.array([-0.6, 0.8])
+    matrix = 7.0 * (np.eye(2) - 0.75 * np.outer(way, way))
+    both = np.vstack(rates)
+    np.testing.assert_allclose(rest.shear_stiffness(grips, 0.25).toarray(), both.T @ matrix @ both, rtol=1e-12)
+    np.testing.assert_allclose(grips.held, both.T @ [-3.0, 4.0])
+
+
+def test_what_may_be_missing_is_a_billionth_of_the_heaviest_body_or_the_rounding_of_a_tie():
+    scene = changed(two_blocks(), bodies={"mass": [3000.0, 1000.0]})
+    assert rest.heaviest(scene.potential) == pytest.approx(3000.0 * mr.GRAVITY)
+    assert rest.tolerance(scene.potential) == pytest.approx(1e-9 * 3000.0 * mr.GRAVITY)
+    tie = Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], k=[3e12], reach=[0.5])
+    rounding = 16 * np.finfo(float).eps * 3e12 * 0.5
+    assert rest.tolerance(changed(scene, links=tie).potential) == pytest.approx(rounding)
+    closed = rest.touching(changed(scene, links=tie).potential, np.zeros(6))
+    length = math.hypot(0.6, 2.6)
+    np.testing.assert_array_equal(closed, [True] * 4 + [length > 0.5])
+    slack = changed(scene, links=Links(("tie",), [1], [(0.3, 0.7)], [0], [(-0.3, 0.2)], k=[3e6], reach=[9.0]))
+    np.testing.assert_array_equal(rest.touching(slack.potential, np.zeros(6)), [True] * 4 + [False])
+
+
+@pytest.mark.parametrize("pull", [0.0, -4e4, 3e4])
+@pytest.mark.parametrize("theta", [0.0, 1e-4, 1e-3])
+def test_bodies_are_lowered_until_level_ground_carries_them(pull, theta):
+    """Rotations stay. The springs of the ground carry both weights less what pulls upwards."""
+    scene = two_blocks()
+    places, masses = scene.potential.structure.places, scene.potential.structure.masses
+    forces = changed(scene, forces=ConstantForces(("pull",), [1], [(0.1, 0.9)], [(3e4, pull)])).forces
+    applied = rest.AppliedForces(*(np.asarray(getattr(forces, name)) for name in rest.AppliedForces._fields))
+    pose = np.array([[0.0, 0.01, theta], [0.002, 0.0, -theta]])
+    found = rest.lowered(places, scene.contacts.k, applied, masses, pose)
+    moved = found - pose
+    np.testing.assert_allclose(moved, moved[0, 1] * np.array([[0, 1, 0], [0, 1, 0]]), atol=1e-15)
+    openings = scene.potential.openings(found.ravel())[:2]
+    carried = float((np.maximum(-openings, 0) * scene.contacts.k[:2]).sum())
+    assert carried == pytest.approx(2 * WEIGHT - pull, rel=1e-9)
+    assert (openings < 0).sum() == (2 if theta < 1e-3 else 1)
+
+
+def test_a_stack_settles_by_its_weight_over_its_springs():
+    scene = two_blocks()
+    k = scene.contacts.k[:2].sum()
+    np.testing.assert_allclose(scene.at_rest[:, 1], [-2 * WEIGHT / k, -3 * WEIGHT / k], rtol=1e-9)
+    pose = scene.at_rest.ravel()
+    grips = rest.grips_at(scene.potential, pose, sliders(scene, scene.contacts.k * scene.bears))
+    assert rest.falling_way(scene.potential, grips, pose) is None
+
+
+def test_the_whole_motion_is_made_where_it_takes_energy_and_a_part_where_it_gives_some():
+    scene = two_blocks()
+    rests, found = scene.at_rest.ravel(), sliders(scene, [-1.0] * 4)
+    down = np.array([0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
+    above = rests + 1e-4 * down
+    np.testing.assert_allclose(rest.lowering(scene.potential, above, -1e-4 * down, found), rests, atol=1e-15)
+    far = rest.lowering(scene.potential, above, -1e-3 * down, found)
+    assert far[1] == pytest.approx(rests[1] + 1e-4 - 1.25e-4)  # the eighth is the first that raises no energy
+    assert far[4] - far[1] == pytest.approx(rests[4] - rests[1])
+
+
+def test_bodies_fall_along_the_way_that_takes_the_most_energy():
+    """Two blocks upright on springs too soft for their height tilt, and are let go to where energy ends to fall."""
+    scene = two_blocks(k_n=1e6)
+    k = scene.contacts.k[:2].sum()
+    pose = np.array([0.0, -2 * WEIGHT / k, 0.0, 0.0, -3 * WEIGHT / k, 0.0])
+    grips = rest.grips_at(scene.potential, pose, sliders(scene, scene.potential.pushes(pose)))
+    way = rest.falling_way(scene.potential, grips, pose)
+    assert way is not None
+    assert abs(way[2]) > 0
+    assert way[2] * way[5] > 0
+    fallen = rest.let_go(scene.potential, grips, pose, way)
+    far = (fallen - pose)[2] / way[2]
+    np.testing.assert_allclose(fallen[[2, 5]], pose[[2, 5]] + far * way[[2, 5]], rtol=1e-9)
+    held, stiffness = way @ grips.held, way @ rest.shear_stiffness(grips, 1.0) @ way
+
+    def energy(part):
+        held_too = -part * far * held + 0.5 * (part * far) ** 2 * stiffness
+        return scene.potential.energy(pose + part * far * way) + held_too
+
+    first = 1e-2 * scene.potential.pressed(pose).max() / np.abs(way).max()
+    assert math.log2(abs(far) / first) == pytest.approx(round(math.log2(abs(far) / first)), abs=1e-6)
+    assert far > first
+    assert energy(1.0) < energy(0.5) < energy(0.0)
+    assert energy(2.0) >= energy(1.0) or np.abs(far * way).max() >= rest.TURNED
