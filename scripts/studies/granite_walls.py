@@ -1,10 +1,14 @@
 """Dry granite walls of Vasconcelos (2005), pushed in their plane under a constant load, beside the tests.
 
 The walls are 1.0 x 1.2 x 0.2 m, of blocks of 0.2 x 0.15 m without mortar. A beam stands on the wall and may turn; the
-actuator pushes it 1.325 m above the base. The vertical load is taken to come through rollers, so that its line stays
-where it is as the beam moves: a plate on rollers, held by an actuator that rests, carries it. Prints a table and draws
-the curves over the tests, which are in `tests/records/granite_walls` (stone masonry database of EPFL's EESD group, MIT
-licence; Vanin et al. 2017, doi 10.1007/s10518-017-0188-5).
+actuator pushes it 1.325 m above the base. The vertical load is taken to come through rollers from a head that stays
+level. A roller between the level head and a beam that has moved by u and turned by theta has moved by u / 2, and the
+line of its two contacts, along which it presses, leans against the push by theta / 2. So half of the load is put on a
+plate that slides without friction on the beam, held by an actuator that rests, whose part stays where it is and presses
+square on the beam, and half on the beam itself, whose part moves with it and stays vertical: to first order their sum
+is the force of the roller. Prints a table and draws the curves over the tests, which are in
+`tests/records/granite_walls` (stone masonry database of EPFL's EESD group, MIT licence; Vanin et al. 2017, doi
+10.1007/s10518-017-0188-5).
 
 The stiffness of the joints is fitted on WS.175; the other walls are shown with it.
 """
@@ -17,7 +21,7 @@ import time
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -33,8 +37,8 @@ LENGTH, THICK, UNIT, COURSE, COURSES, SPAN = 1.0, 0.2, 0.2, 0.15, 8, 1.325
 """Wall, blocks, courses and height of the push [m]."""
 DENSITY, FRICTION = 2040.0, 0.62
 """Of the blocks, from the weight that the source gives [kg/m3], and of the joints [-]."""
-ROLLERS = 1e-3
-"""Friction of the rollers below the plate [-]: without any it would not stand before it is held."""
+ON_PLATE, SLIDING = 0.5, 1e-3
+"""Share of the load on the plate, and friction below it [-]: without any it would not stand before it is held."""
 BEAM = 500.0
 """Density of beam and plate [kg/m3]: their weight is part of the load."""
 STIFFNESS, SHEAR = 9e9, 0.4
@@ -53,7 +57,7 @@ class Wall(NamedTuple):
     """A wall with its beam and plate, what loads it, and the actuator that pushes it."""
 
     masonry: mr.Masonry
-    effects: tuple[mr.Load, mr.Actuator]
+    effects: tuple[mr.Load | mr.Actuator, ...]
     jack: mr.Actuator
 
 
@@ -63,9 +67,41 @@ def rectangle(x: float, z: float, width: float, height: float, density: float, n
     return mr.Polygon(corners, density=density, length=THICK, name=name, fixed=name == "floor")
 
 
-def wall_of(force: float, stiffness: float = STIFFNESS, shear: float = SHEAR) -> Wall:
-    """A wall with a vertical force at its base [kN]."""
-    blocks = [rectangle(-0.5, -0.2, 2.0, 0.2, DENSITY, "floor")]
+class Assumed(NamedTuple):
+    """What is taken of a wall that the source does not say.
+
+    Args:
+        stiffness, shear: k_n of the joints [N/m3], and k_s over it.
+        friction: of the joints [-].
+        points: lines of a joint.
+        on_plate: share of the load on the plate [-]: 1 is a plate that slides on the beam, 0 a load that follows it.
+        sliding: friction below the plate [-].
+        guided: how the beam is guided, see `Actuator`.
+        inset: how far the joint on the floor ends from the faces of the wall [m].
+        courses: False for a wall of one block.
+    """
+
+    stiffness: float = STIFFNESS
+    shear: float = SHEAR
+    friction: float = FRICTION
+    points: int = POINTS
+    on_plate: float = ON_PLATE
+    sliding: float = SLIDING
+    guided: Literal["upright"] | None = None
+    inset: float = 0.0
+    courses: bool = True
+
+
+ASSUMED = Assumed()
+"""What the study takes."""
+
+
+def units(assumed: Assumed) -> list[mr.Polygon]:
+    """The floor and the blocks of the wall."""
+    left = assumed.inset or -0.5
+    blocks = [rectangle(left, -0.2, LENGTH - 2 * left, 0.2, DENSITY, "floor")]
+    if not assumed.courses:
+        return [*blocks, rectangle(0.0, 0.0, LENGTH, COURSES * COURSE, DENSITY, "wall")]
     for course in range(COURSES):
         edges = np.arange(0.0, LENGTH + 1e-9, UNIT)
         if course % 2:
@@ -73,20 +109,29 @@ def wall_of(force: float, stiffness: float = STIFFNESS, shear: float = SHEAR) ->
         for i, (left, right) in enumerate(pairwise(edges)):
             name = f"course_{course}_{i}"
             blocks.append(rectangle(float(left), course * COURSE, float(right - left), COURSE, DENSITY, name))
-    top = COURSES * COURSE
+    return blocks
+
+
+def wall_of(force: float, assumed: Assumed = ASSUMED) -> Wall:
+    """A wall with a vertical force at its base [kN]."""
+    blocks, top = units(assumed), COURSES * COURSE
     rise = 2 * (SPAN - top)
     blocks.append(rectangle(0.0, top, LENGTH, rise, BEAM, "beam"))
     blocks.append(rectangle(0.4, top + rise, 0.2, 0.1, BEAM, "plate"))
 
     def friction(joint: mr.Joint) -> float:
-        return ROLLERS if "plate" in joint.name else FRICTION
+        return assumed.sliding if "plate" in joint.name else assumed.friction
 
-    masonry = mr.Masonry(blocks, k_n=stiffness, k_s=shear * stiffness, friction=friction, xi=0.1, points=POINTS)
-    own = sum(block.mass for block in blocks if not block.fixed) * mr.GRAVITY
-    number = masonry.names.index("plate")
-    load = mr.Load(1e3 * force - own, top + rise, block=number)
+    k_n, k_s = assumed.stiffness, assumed.shear * assumed.stiffness
+    masonry = mr.Masonry(blocks, k_n=k_n, k_s=k_s, friction=friction, xi=0.1, points=assumed.points)
+    load = 1e3 * force - sum(block.mass for block in blocks if not block.fixed) * mr.GRAVITY
+    parts = (("plate", assumed.on_plate), ("beam", 1.0 - assumed.on_plate))
+    loads = tuple(
+        mr.Load(share * load, top + rise, block=masonry.names.index(name)) for name, share in parts if share > 0
+    )
     held = mr.Actuator("plate", (0.5, top + rise), 1, None, JACK, damping=1e4)
-    return Wall(masonry, (load, held), mr.Actuator("beam", (0.0, SPAN), 1, None, JACK, damping=1e5))
+    jack = mr.Actuator("beam", (0.0, SPAN), 1, None, JACK, damping=1e5, guided=assumed.guided)
+    return Wall(masonry, (*loads, held), jack)
 
 
 def measured(name: str) -> Array:
@@ -94,9 +139,9 @@ def measured(name: str) -> Array:
     return np.loadtxt(RECORDS / f"{name}.csv", delimiter=",", skiprows=4, usecols=(0, 1))
 
 
-def pushed(force: float, to: Sequence[float] = (0.04,), **joints: float) -> tuple[mr.Push, float]:
+def pushed(force: float, to: Sequence[float] = (0.04,), assumed: Assumed = ASSUMED) -> tuple[mr.Push, float]:
     """The push of a wall under a vertical force [kN], to displacements [m], and the processor time [s]."""
-    wall, begun = wall_of(force, **joints), time.process_time()
+    wall, begun = wall_of(force, assumed), time.process_time()
     push = mr.push(wall.masonry, wall.jack, to, effects=wall.effects, inertia=0.02)
     return push, time.process_time() - begun
 
@@ -144,8 +189,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     cyclic.plot(*curve_of(push).T, color="C1", linewidth=0.9, label="found, pushed to and fro")
     for each, title in ((ax, "pushed to 40 mm; tests broad"), (cyclic, "104.8 kN, cyclic")):
         each.set(xlabel="displacement at 1.325 m [mm]", ylabel="horizontal force [kN]", title=title)
-        each.legend(frameon=False)
-    ax.set(xlim=(0, 45), ylim=(0, None))
+        each.legend(frameon=False, loc="upper left", ncols=2 if each is ax else 1)
+    ax.set(xlim=(0, 45), ylim=(0, 115))
     plotting.save(figure, out / "granite_walls.png")
     ends = [
         f"{at_turn(test, turn):.1f} / {at_turn(curve_of(push), turn):.1f}"

@@ -48,6 +48,7 @@ WRITES = {
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},
     "thrust_lines": {"thrust_lines.png", "thrust_lines.txt"},
+    "granite_variants": {"granite_variants.csv", "granite_variants.txt"},
     "granite_walls": {f"granite_walls.{ending}" for ending in ("png", "csv", "txt")},
     "many_blocks": {f"many_blocks.{ending}" for ending in ("png", "csv", "txt")},
     "many_records": {f"many_records.{ending}" for ending in ("png", "csv", "txt")},
@@ -66,6 +67,7 @@ WRITES = {
     "stack_losses": {f"stack_losses.{ending}" for ending in ("png", "csv", "txt")},
     "arching": {f"arching.{ending}" for ending in ("png", "csv", "txt")},
     "shear_wall": {f"shear_wall.{ending}" for ending in ("png", "csv", "txt")},
+    "shaken_wall": {f"shaken_wall.{ending}" for ending in ("png", "csv", "txt")},
     "panel": {f"panel.{ending}" for ending in ("png", "csv", "txt")},
     "effect_costs": {f"effect_costs.{ending}" for ending in ("png", "csv", "txt")},
     "facade": {"facade.png", "facade.txt"},
@@ -177,6 +179,7 @@ LONG = {
     "peers",
     "cracked_facade",
     "granite_walls",
+    "granite_variants",
     "drums",
     "panel",
     "masonry_precision",
@@ -204,6 +207,7 @@ LONG = {
     "arching",
     "slow_push",
     "opened_in_vtk",
+    "shaken_wall",
 }
 """Scripts that take a while even with --quick."""
 

@@ -65,3 +65,19 @@ def test_closed_forms_of_a_tilting_table(name):
     level = math.atan(expected)
     angle = bracket(lambda tilt: not falling(tilted(masonry, tilt)), 0.5 * level, 1.5 * level, 9)
     assert math.tan(angle) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize(("sides", "corner"), [(4, math.pi / 4), (6, math.pi / 6), (12, math.pi / 12)])
+def test_a_column_of_drums_turns_about_its_foot(sides, corner):
+    """About an edge of its section, 0.3 m from the middle, along x, and about a corner between two of these."""
+    column = mr.Masonry.column(0.6, 2.4, 4, sides=sides, k_n=1e9, friction=0.7, xi=0)
+    for angle, reach in ((0.0, 0.3), (corner, 0.3 / math.cos(corner))):
+        assert mr.collapse_multiplier(column, angle=angle).multiplier == pytest.approx(reach / 1.2, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_column_of_drums_falls_at_the_angle_of_its_foot():
+    """In time, by explicit steps: most of the half per cent is the time until a block moves by 2 mm/s."""
+    from scripts.checks.tilting_table import DRUMS, REACH, tangent
+
+    assert tangent(DRUMS, REACH / 1.2) == pytest.approx(REACH / 1.2, rel=0.01)
