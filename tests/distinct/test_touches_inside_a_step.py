@@ -63,8 +63,9 @@ def rebound(masonry, speed):
     ],
 )
 def test_a_flat_impact_is_that_of_exact_integration(in_space, xi, share, mean, scatter):
-    """At the default step, 0.4 of the longest stable one, and of strong dashpots at 0.25. Wherever in its step it falls,
-    the energy of the motion upwards is its restitution, and the ledger closes."""
+    """At the default step, 0.4 of the longest stable one, and with strong dashpots at 0.25.
+
+    Wherever in its step it falls, the energy of the motion upwards is its restitution, and the ledger closes."""
     masonry, errors = block(in_space, xi), []
     step = share * bounced(masonry, 1e-3).stats["stable_timestep"]
     for speed in PHASES:
