@@ -27,8 +27,8 @@ from ..geometry.vectors import (
     put,
     scaled,
     spin_components,
-    spun,
     tangent,
+    tangents,
     times,
     vector,
 )
@@ -119,32 +119,41 @@ def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
 
 
 @inlined
-def way_along(normal: Vector, number: int) -> Vector:
-    """One of the directions along a face."""
-    if len(normal) == 2:
-        return tangent(normal)
-    x, y, z = normal
-    if abs(z) > 0.5:
-        size = 1 / math.sqrt(x * x + z * z)
-        first = (z * size, 0.0, -x * size)
-    else:
-        size = 1 / math.sqrt(x * x + y * y)
-        first = (-y * size, x * size, 0.0)
-    return first if number == 0 else spun(normal, first)
-
-
-@inlined
 def yielding(body: Row, way: Vector) -> float:
     """Velocity that a unit impulse along a unit vector gives to the centroid of a body along it [1/kg].
 
     It is not quite zero of a body that a guide holds, so that it can be divided by.
     """
-    light: float = max(dot(way, times(components(body.inverse_mass, way), way)), HELD / body.mass)
-    return light
+    light: float = dot(way, times(components(body.inverse_mass, way), way))
+    return light if light * body.mass > HELD else HELD / body.mass
 
 
 @inlined
-def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vector, face_arm: Vector) -> None:
+def list_way(
+    system: System, line: Row, number: int, way: Vector, arm: Vector, face_arm: Vector, velocity: Vector
+) -> None:
+    """Prepare one way of a line that sticks rigidly, see `list_rigid`."""
+    row, body, on_face = system.ways[number], system.bodies[line.body], line.face >= 0
+    row.body, row.face, row.support, row.slip = line.body, line.face, line.support, dot(way, velocity)
+    lever = moment(arm, way)
+    spin = spin_from_many(body, lever)
+    put(row.way, way)
+    put(row.lever, lever)
+    put(row.spin, spin)
+    compliance = yielding(body, way) + dot(lever, spin)
+    if on_face:
+        face, lever = system.bodies[line.face], moment(face_arm, way)
+        spin = spin_from_many(face, lever)
+        put(row.lever_on_face, lever)
+        put(row.spin_of_face, spin)
+        compliance += yielding(face, way) + dot(lever, spin)
+    row.compliance = compliance
+
+
+@inlined
+def list_rigid(
+    system: System, line: Row, first: int, normal: Vector, arm: Vector, face_arm: Vector, velocity: Vector
+) -> None:
     """Prepare the ways of a line that sticks rigidly.
 
     Args:
@@ -153,31 +162,21 @@ def list_rigid(system: System, line: Row, first: int, normal: Vector, arm: Vecto
         first: number of its first way.
         normal: of its face.
         arm, face_arm: from the two centroids to where friction acts [m].
+        velocity: of the point there against its face, before the forces act [m/s].
     """
-    body, face, on_face = system.bodies[line.body], system.bodies[max(line.face, 0)], line.face >= 0
-    for i in range(len(normal) - 1):
-        row, way = system.ways[first + i], way_along(normal, i)
-        row.body, row.face, row.support = line.body, line.face, line.support
-        lever = moment(arm, way)
-        spin = spin_from_many(body, lever)
-        put(row.way, way)
-        put(row.lever, lever)
-        put(row.spin, spin)
-        row.compliance = yielding(body, way) + dot(lever, spin)
-        if on_face:
-            lever = moment(face_arm, way)
-            spin = spin_from_many(face, lever)
-            put(row.lever_on_face, lever)
-            put(row.spin_of_face, spin)
-            row.compliance += yielding(face, way) + dot(lever, spin)
-        row.stiffness, row.shared = 1 / row.compliance, 0.0
-    if len(normal) == 3:
-        a, b = system.ways[first], system.ways[first + 1]
-        a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
-        if on_face:
-            a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
-        area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
-        a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
+    a = system.ways[first]
+    if len(normal) == 2:
+        list_way(system, line, first, tangent(normal), arm, face_arm, velocity)
+        a.stiffness = 1 / a.compliance
+        return
+    b, (way, other) = system.ways[first + 1], tangents(normal)
+    list_way(system, line, first, way, arm, face_arm, velocity)
+    list_way(system, line, first + 1, other, arm, face_arm, velocity)
+    a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
+    if line.face >= 0:
+        a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
+    area = 1 / (a.compliance * b.compliance - a.coupling * a.coupling)
+    a.stiffness, a.shared, b.stiffness = area * b.compliance, area * a.coupling, area * a.compliance
 
 
 @inlined
@@ -194,15 +193,33 @@ def slip_along(system: System, row: Row, axes: tuple[int, ...]) -> float:
 
 
 @inlined
-def strike(system: System, row: Row, impulse: float, axes: tuple[int, ...]) -> None:
-    """Let an impulse along a way act on the velocities of the body of its line and of that of its face [N s]."""
-    body, way = system.bodies[row.body], components(row.way, axes)
-    kick_place(body, scaled(impulse, way))
-    increase(body.spin, scaled(impulse, spin_components(row.spin, axes)))
-    if row.face >= 0:
-        face = system.bodies[row.face]
-        kick_place(face, scaled(-impulse, way))
-        increase(face.spin, scaled(-impulse, spin_components(row.spin_of_face, axes)))
+def along_ways(impulses: Vector, first: Vector, second: Vector) -> Vector:
+    """What impulses along the ways of a line do, from what a unit impulse along each does; the plane has one way."""
+    if len(impulses) == 1:
+        return scaled(impulses[0], first)
+    return plus(scaled(impulses[0], first), scaled(impulses[1], second))
+
+
+@inlined
+def strike(system: System, first: int, impulses: Vector, axes: tuple[int, ...]) -> None:
+    """Let impulses along the ways of a line act on the velocities of its body and of that of its face [N s]."""
+    a, b = system.ways[first], system.ways[first + len(impulses) - 1]
+    body, kick = system.bodies[a.body], along_ways(impulses, components(a.way, axes), components(b.way, axes))
+    kick_place(body, kick)
+    increase(body.spin, along_ways(impulses, spin_components(a.spin, axes), spin_components(b.spin, axes)))
+    if a.face >= 0:
+        face = system.bodies[a.face]
+        kick_place(face, scaled(-1.0, kick))
+        spin = along_ways(impulses, spin_components(a.spin_of_face, axes), spin_components(b.spin_of_face, axes))
+        increase(face.spin, scaled(-1.0, spin))
+
+
+@inlined
+def impulses_of(system: System, first: int, axes: tuple[int, ...]) -> Vector:
+    """The impulses along the ways of a line [N s]."""
+    if len(axes) == 2:
+        return (system.ways[first].impulse,)
+    return system.ways[first].impulse, system.ways[first + 1].impulse
 
 
 @inlined
@@ -245,14 +262,14 @@ def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
 @inlined
 def stop(system: System, first: int, axes: tuple[int, ...]) -> float:
     """Stop the slip of one line as far as its face can. Returns by how much its impulses have changed [N s]."""
-    impulses, changed = stopping(system, first, axes), 0.0
-    for i in range(len(axes) - 1):
-        row = system.ways[first + i]
-        change = impulses[i] - row.impulse
-        strike(system, row, change, axes)
-        row.impulse = impulses[i]
-        changed = max(changed, abs(change))
-    return changed
+    impulses = stopping(system, first, axes)
+    change = minus(impulses, impulses_of(system, first, axes))
+    strike(system, first, change, axes)
+    system.ways[first].impulse = impulses[0]
+    if len(axes) == 2:
+        return abs(change[0])
+    system.ways[first + 1].impulse = impulses[1]
+    return max(abs(change[0]), abs(change[1]))
 
 
 @inlined
@@ -263,10 +280,9 @@ def stick(system: System, active: Integers, count: int, kick: float, axes: tuple
     third line, then the next ones.
     """
     each, largest = len(axes) - 1, 0.0
-    for i in range(each * count):
-        row = system.ways[i]
-        largest = max(largest, row.limit)
-        strike(system, row, row.impulse, axes)
+    for i in range(count):
+        largest = max(largest, system.ways[each * i].limit)
+        strike(system, each * i, impulses_of(system, each * i, axes), axes)
     for sweep in range(SWEEPS):
         changed = 0.0
         for start in range(STRIDE):
@@ -282,42 +298,29 @@ def stick(system: System, active: Integers, count: int, kick: float, axes: tuple
 @inlined
 def keep_rigid(system: System, line: Row, first: int, kick: float, axes: tuple[int, ...]) -> None:
     """Keep the friction of a line that sticks rigidly for the next step [N], and what it turns the bodies by."""
-    for i in range(len(axes) - 1):
-        row = system.ways[first + i]
-        turn_momentum(system.bodies[row.body], scaled(row.impulse, spin_components(row.lever, axes)))
-        if row.face >= 0:
-            turn_momentum(system.bodies[row.face], scaled(-row.impulse, spin_components(row.lever_on_face, axes)))
-    a = system.ways[first]
+    impulses = impulses_of(system, first, axes)
     if len(axes) == 2:
-        line.grip[0] = a.impulse / kick
-    else:
-        b = system.ways[first + 1]
-        grip = plus(
-            scaled(a.impulse / kick, components(a.way, axes)), scaled(b.impulse / kick, components(b.way, axes))
-        )
-        if line.face >= 0:
-            grip = in_body(system.bodies[line.face], grip)
-        put(line.grip, grip)
-
-
-@inlined
-def note_slips(system: System, count: int, axes: tuple[int, ...]) -> None:
-    """Keep the slip of the lines that stick rigidly before the forces act."""
-    each = len(axes) - 1
-    for i in range(each * count):
-        row = system.ways[i]
-        row.slip = slip_along(system, row, axes)
+        line.grip[0] = impulses[0] / kick
+        return
+    a, b = system.ways[first], system.ways[first + 1]
+    lever = along_ways(impulses, spin_components(a.lever, axes), spin_components(b.lever, axes))
+    turn_momentum(system.bodies[a.body], lever)
+    grip = scaled(1 / kick, along_ways(impulses, components(a.way, axes), components(b.way, axes)))
+    if a.face >= 0:
+        lever = along_ways(impulses, spin_components(a.lever_on_face, axes), spin_components(b.lever_on_face, axes))
+        turn_momentum(system.bodies[a.face], scaled(-1.0, lever))
+        grip = in_body(system.bodies[a.face], grip)
+    put(line.grip, grip)
 
 
 @inlined
 def book_rubbing(system: System, books: Books, count: int, axes: tuple[int, ...]) -> tuple[float, float]:
     """Book what rigid friction takes in a step, its impulses along the mean of the slips before and after, and what
     the supports put in through it. Returns the halves of both before the pose [J]."""
-    totals, each, rubbed, put_in = books.totals[0], len(axes) - 1, 0.0, 0.0
-    for i in range(each * count):
+    totals, rubbed, put_in = books.totals[0], 0.0, 0.0
+    for i in range((len(axes) - 1) * count):
         row = system.ways[i]
-        slip = 0.5 * (row.slip + slip_along(system, row, axes))
-        totals.friction -= row.impulse * slip
+        totals.friction -= 0.5 * row.impulse * (row.slip + slip_along(system, row, axes))
         work = row.impulse * carried(row, system.supports, components(row.way, axes))
         totals.ground += work
         rubbed -= 0.5 * row.impulse * row.slip

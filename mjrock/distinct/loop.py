@@ -28,7 +28,7 @@ from ..quantities import GRAVITY, Array
 from ..scene.ground import Ground, mean_acceleration
 from .bonds import bonded_energy, hold_bonds
 from .contact import press_lines, settle_touches
-from .friction import book_rubbing, note_slips, stick
+from .friction import book_rubbing, stick
 from .gathering import keep_burden, keep_forces
 from .links import linked_energy, move_supports, pull_links
 from .rows import Rows
@@ -276,8 +276,6 @@ def make_steps(
         sticking, touched = press_lines(system, books, before, kick, clock.lead, axes)
         if sampled or looked:
             keep_pose(system, books, samples, kept, before, axes)
-        if accounted:
-            note_slips(system, sticking, axes)
         if clock.local > 0:
             oppose(system, books, clock.local, kick, axes)
         kick_bodies(system.bodies, kick, axes)
