@@ -189,6 +189,8 @@ EQUIVALENT = {
     },
     "rest.py: FLAT = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
+    "handover.py: if overlap == 1 or ends[0] == ends[1]:": "of no overlap nothing presses in the last line, either",
+    "handover.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: PASSES = 6": "more passes take time only",
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
         "at a gap of zero nothing presses"

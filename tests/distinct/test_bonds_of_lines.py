@@ -235,6 +235,7 @@ def test_a_bond_goes_at_nine_times_the_opening_that_softens_it(softened, goes):
     ("changed", "holds"),
     [
         ({}, True),
+        ({"k": 0.5}, True),
         ({"k": 0.0}, False),
         ({"tension": 0.0}, False),
         ({"left": 1e-5}, False),
