@@ -108,7 +108,8 @@ def directions(repeats: int, h: float = 1e-4) -> str:
         moved = np.einsum("b,nbd->nd", mass, np.diff(run.pose[:, :, :2], n=2, axis=0)) / h**2
         rubs = 0.6 * run.forces.normal[1:-1].sum(axis=1)
         apart = np.abs(np.sum(list(run.reactions.values()), axis=0)[1:-1, :2] - moved).max(axis=1)
-        share = (apart / rubs)[rubs > 0.1 * mr.GRAVITY * mass.sum()]
+        pressed = rubs > 0.1 * mr.GRAVITY * mass.sum()
+        share = apart[pressed] / rubs[pressed]
         runs = [mr.simulate(case, timestep=h, coulomb=True, method=method).stats for _ in range(repeats)]
         took = min(each["stepping_time"] / each["steps"] for each in runs)
         mean = float(np.sqrt(np.mean(share**2)))
