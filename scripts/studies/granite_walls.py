@@ -184,7 +184,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         for curve, line in ((test, {"linewidth": 3, "alpha": 0.35}), (found, {"label": f"{name}, {force:g} kN"})):
             ax.plot(*curve.T, color=f"C{i}", **line)
     test = measured("WS1100_cyclic_envelope")
-    push, took = pushed(LOADS["WS100"], TURNS[:1] if args.quick else TURNS)
+    if not args.quick:
+        push, took = pushed(LOADS["WS100"], TURNS)
     cyclic.plot(*test.T, "o", color="0.4", markersize=4, label="envelope of WS1.100")
     cyclic.plot(*curve_of(push).T, color="C1", linewidth=0.9, label="found, pushed to and fro")
     for each, title in ((ax, "pushed to 40 mm; tests broad"), (cyclic, "104.8 kN, cyclic")):
