@@ -280,9 +280,9 @@ def give_to_nearest(
     gone: Row, new: Rows, places: tuple[int, int], both: int, blocks: Blocks, axes: tuple[int, ...]
 ) -> None:
     """Let the nearest places of a pair take over what a line has that is gone. Places that are as near share it."""
-    at, count, near = place_of(gone, both, blocks, axes).at, 0, math.inf
-    for i in range(places[0], places[1]):
-        near = min(near, AS_NEAR * square_between(new[i], at, both, blocks, axes))
+    at, count = place_of(gone, both, blocks, axes).at, 0
+    _, off = nearest(new, places, at, both, blocks, axes)
+    near = AS_NEAR * off * off
     for i in range(places[0], places[1]):
         count += square_between(new[i], at, both, blocks, axes) <= near
     for i in range(places[0], places[1]):

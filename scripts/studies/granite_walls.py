@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import mjrock as mr
@@ -163,6 +164,19 @@ def at_turn(curve: Array, place: float) -> float:
     return float(forces[np.abs(forces).argmax()]) if near.any() else math.nan
 
 
+def to_and_fro(ax: Axes) -> str:
+    """Draw the cyclic push over the envelope of its test; the forces of both in a sentence."""
+    test = measured("WS1100_cyclic_envelope")
+    push, took = pushed(LOADS["WS100"], TURNS)
+    found = curve_of(push)
+    ax.plot(*test.T, "o", color="0.4", markersize=4, label="envelope of WS1.100")
+    ax.plot(*found.T, color="C1", linewidth=0.9, label="found, pushed to and fro")
+    ax.legend(frameon=False, loc="upper left")
+    turns = (6e-3, -6e-3, 16e-3, -16e-3, 25e-3)
+    ends = ", ".join(f"{at_turn(test, turn):.1f} / {at_turn(found, turn):.1f}" for turn in turns)
+    return f"cyclic, test / found at 6, -6, 16, -16 and 25 mm [kN]: {ends}, processor {took:.0f} s"
+
+
 def main(argv: Sequence[str] | None = None) -> None:
     """Push the walls, print the table, draw the curves."""
     args = cli.parser(__doc__, "granite_walls").parse_args(argv)
@@ -183,22 +197,13 @@ def main(argv: Sequence[str] | None = None) -> None:
         )
         for curve, line in ((test, {"linewidth": 3, "alpha": 0.35}), (found, {"label": f"{name}, {force:g} kN"})):
             ax.plot(*curve.T, color=f"C{i}", **line)
-    test = measured("WS1100_cyclic_envelope")
-    if not args.quick:
-        push, took = pushed(LOADS["WS100"], TURNS)
-    cyclic.plot(*test.T, "o", color="0.4", markersize=4, label="envelope of WS1.100")
-    cyclic.plot(*curve_of(push).T, color="C1", linewidth=0.9, label="found, pushed to and fro")
+    said = "" if args.quick else to_and_fro(cyclic)
     for each, title in ((ax, "pushed to 40 mm; tests broad"), (cyclic, "104.8 kN, cyclic")):
         each.set(xlabel="displacement at 1.325 m [mm]", ylabel="horizontal force [kN]", title=title)
-        each.legend(frameon=False, loc="upper left", ncols=2 if each is ax else 1)
+    ax.legend(frameon=False, loc="upper left", ncols=2)
     ax.set(xlim=(0, 45), ylim=(0, 115))
     plotting.save(figure, out / "granite_walls.png")
-    ends = [
-        f"{at_turn(test, turn):.1f} / {at_turn(curve_of(push), turn):.1f}"
-        for turn in (6e-3, -6e-3, 16e-3, -16e-3, 25e-3)
-    ]
     header = ("wall", "N [kN]", "V max, test / found [kN]", "at 2 mm", "at 6 mm", "V at the end / max", "processor [s]")
-    said = f"cyclic, test / found at 6, -6, 16, -16 and 25 mm [kN]: {', '.join(ends)}, processor {took:.0f} s"
     cli.report(out / "granite_walls", said, header, rows)
 
 

@@ -24,6 +24,8 @@ SMALLEST_PIECE = 0.1
 """Length of the shortest piece of a unit at the end of a course, over the length of the unit [-]."""
 DEEP_BEAM, BEYOND_BEAM = 0.2, 0.2
 """Depth of a loading beam, and how far it reaches beyond the wall at either end, over the length of the wall [-]."""
+LEAST_RADIUS = 0.01
+"""Least radius of an arch [m]."""
 MOST_BLOCKS = 5000
 """Most blocks of a wall."""
 
@@ -145,7 +147,7 @@ def arch_of(
     span_angle = require_within("span_angle", span_angle, 0.1, math.pi, "rad")
     count = require_whole("voussoirs", voussoirs, 1, 1000)
     along = np.arange(count + 1) / count
-    inner, outer = rings_of(radius, thickness, 0.01, 1 - np.abs(1 - 2 * along))
+    inner, outer = rings_of(radius, thickness, LEAST_RADIUS, 1 - np.abs(1 - 2 * along))
     angles = 0.5 * math.pi + span_angle * (0.5 - along)
     directions = np.column_stack([np.cos(angles), np.sin(angles)])
     intrados, extrados = inner[:, None] * directions, outer[:, None] * directions

@@ -27,8 +27,8 @@ def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
     """Fixed ground under what stands on it between two corners x, y, z [m]."""
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     wide = (high - low)[:2]
-    extents = [extent_of_ground(float(each), float(high[2] - low[2])) for each in wide]
-    beyond, deep = np.array([reach for reach, _ in extents]), max(depth for _, depth in extents)
+    beyond, depths = np.array([extent_of_ground(each, high[2] - low[2]) for each in wide]).T
+    deep = float(depths.max())
     middle = 0.5 * (low + high)[:2]
     return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
 

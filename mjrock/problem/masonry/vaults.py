@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...quantities import Array, require_flag, require_whole, require_within
-from .builders import MOST_BLOCKS, Ends, arch_of, ground_under, required_ends
+from .builders import LEAST_RADIUS, MOST_BLOCKS, Ends, arch_of, ground_under, rings_of
 from .builders_in_space import ROUNDED
 from .compound import Compound, SolidBlock
 from .polygon import Polygon
@@ -29,9 +29,8 @@ class Span(NamedTuple):
     @property
     def springing(self) -> Array:
         """Inner and outer corner of the right springing, from the centre [m], shape (2, 2)."""
-        half, radius = 0.5 * self.angle, self.radius
-        t = required_ends("thickness", self.thickness, 1e-3 * radius, radius)[0]
-        return np.outer([radius - 0.5 * t, radius + 0.5 * t], [math.sin(half), math.cos(half)])
+        half, faces = 0.5 * self.angle, rings_of(self.radius, self.thickness, LEAST_RADIUS, np.zeros(1))
+        return np.outer(np.concatenate(faces), [math.sin(half), math.cos(half)])
 
 
 def bridge_of(
