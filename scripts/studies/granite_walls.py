@@ -183,7 +183,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     figure = Figure(figsize=(10.5, 4.0), layout="constrained")
     ax, cyclic = figure.subplots(1, 2)
-    rows = []
+    rows: list[list[object]] = []
     for i, (name, force) in enumerate(list(LOADS.items())[: 1 if args.quick else None]):
         test = measured(name)
         push, took = pushed(force, (0.002 if args.quick else 0.04,))
@@ -193,7 +193,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         told = [f"{a:.1f} / {b:.1f} ({b / a - 1:+.0%})" for a, b in rises]
         share = found[-1, 1] / top
         rows.append(
-            (name, force, f"{peak:.1f} / {top:.1f} ({top / peak - 1:+.1%})", *told, f"{share:.2f}", f"{took:.0f}")
+            [name, force, f"{peak:.1f} / {top:.1f} ({top / peak - 1:+.1%})", *told, f"{share:.2f}", f"{took:.0f}"]
         )
         for curve, line in ((test, {"linewidth": 3, "alpha": 0.35}), (found, {"label": f"{name}, {force:g} kN"})):
             ax.plot(*curve.T, color=f"C{i}", **line)
@@ -204,7 +204,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ax.set(xlim=(0, 45), ylim=(0, 115))
     plotting.save(figure, out / "granite_walls.png")
     header = ("wall", "N [kN]", "V max, test / found [kN]", "at 2 mm", "at 6 mm", "V at the end / max", "processor [s]")
-    cli.report(out / "granite_walls", said, header, rows)
+    cli.report(out / "granite_walls", f"{cli.table(header, rows)}\n\n{said}".rstrip(), header, rows)
 
 
 if __name__ == "__main__":
