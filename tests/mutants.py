@@ -100,6 +100,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/handover.py": ("handing_over",),
     "distinct/looking.py": ("looking",),
+    "distinct/loop.py": ("loop_of_steps",),
     "distinct/pair_law.py": ("pair_law",),
     "distinct/slowing.py": ("slowing",),
     "distinct/touches.py": ("touches_of_lines",),
@@ -194,6 +195,10 @@ EQUIVALENT = {
     },
     "rest.py: FLAT = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
+    "handover.py: sense = old.sense / new.sense": "a sense is 1 or -1",
+    "handover.py: share = min(REGAINED, had / force, math.sqrt(held / energy)) if force > 0 else 1": (
+        "where no place presses, none has an overlap that a share is taken of"
+    ),
     "handover.py: if overlap == 1 or ends[0] == ends[1]:": "of no overlap nothing presses in the last line, either",
     "handover.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: PASSES = 6": "more passes take time only",
@@ -202,6 +207,7 @@ EQUIVALENT = {
     ),
     "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
     "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
+    "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
     "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",

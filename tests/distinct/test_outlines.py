@@ -60,7 +60,7 @@ def outline(width, middle=0.0):
 
 @pytest.mark.parametrize(("other", "shorter"), [(3.0, 2.0), (0.5, 0.5)])
 def test_a_face_is_longer_by_a_share_of_the_shorter_one(other, shorter):
-    """Of 2 m about x = 7, from a centroid at 6.8. Over as much beyond either end of it, and of that, the normal turns."""
+    """Of 2 m about x = 7, from a centroid at 6.8. The normal turns over as much beyond either end."""
     edges = faces.edges_of(outline(2.0, 7.0), np.array([6.8, 1.0]), outline(other, 7.3))
     np.testing.assert_allclose(edges["reach"], [0.8 + 0.02 * shorter, 1.2 + 0.02 * shorter], rtol=1e-12)
     np.testing.assert_allclose(edges["band"], 0.02 * shorter + 2 * 0.02**2 * shorter, rtol=1e-12)

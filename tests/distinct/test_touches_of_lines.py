@@ -73,7 +73,7 @@ def left(depth, rate, before=0.2, c=C, h=H):
 
 @pytest.mark.parametrize("since", [0.25 * H, 0.8 * H])
 def test_the_spring_of_a_line_that_has_left_takes_back_what_it_pushed_too_long(since):
-    """The impulse -m rate with m = k tau (h - tau) / 2, and the dashpot what the law would pull, held by what it was."""
+    """The impulse -m rate with m = k tau (h - tau) / 2, and the dashpot half of what the law would pull."""
     rate = 0.2
     row, (sprung, push), tau = left(rate * since, rate, before=0.1)
     mass = 0.5 * K * tau * (H - tau)
