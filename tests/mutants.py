@@ -94,8 +94,10 @@ OWN = {
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/bonds.py": ("bonds_of_lines",),
+    "distinct/clipping.py": ("clipping",),
     "distinct/contact.py": ("contact_lines",),
     "distinct/faces.py": ("outlines",),
+    "distinct/finder.py": ("finder",),
     "distinct/friction.py": ("friction_of_lines",),
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/handover.py": ("handing_over",),
@@ -212,6 +214,9 @@ EQUIVALENT = {
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
     "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",
     "friction.py: HELD = 2e-09": "any small number serves to divide by",
+    "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
+        "a line that met its face a step ago was closed for the step, in both ways"
+    ),
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""

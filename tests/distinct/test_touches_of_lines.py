@@ -62,6 +62,7 @@ def test_a_line_that_has_not_moved_into_its_face_has_the_law(gap, rate):
 def test_at_a_start_that_no_step_led_to_a_line_has_the_law():
     row = line(depth=0.5)
     assert touches.touched_forces(row, -0.001, -0.2, 0.0) == pytest.approx((30.0, 38.0))
+    assert touches.touched_forces(line(depth=0.001, rate=0.1), -0.0002, 0.4, 0.0) == pytest.approx((6.0, 0.0))
     assert row.due == 0.0
 
 
