@@ -93,18 +93,19 @@ def test_a_dashpot_that_has_held_the_spring_back_takes_what_it_held():
     assert (push, row.due) == (0.0, 0.0)
 
 
-def test_a_line_that_ceases_to_press_within_its_face_takes_back_half():
+@pytest.mark.parametrize("size", [1.0, 1e-3])
+def test_a_line_that_ceases_to_press_within_its_face_takes_back_half(size):
     """Closed before and after, where the dashpot would pull: half of the one force and the other in series."""
-    row, rate = line(depth=0.001, rate=0.1), 0.4
-    gap = -0.0002
+    law, gap, rate = {"k": size * K, "c": size * C}, -0.0002, 0.4
+    row = line(depth=0.001, rate=0.1, **law)
     sprung, push = touches.touched_forces(row, gap, rate, H)
-    held, pull = 0.001 * K - C * 0.1, K * gap + C * rate
+    held, pull = size * (0.001 * K - C * 0.1), size * (K * gap + C * rate)
     assert min(held, pull) > 0
-    assert sprung == pytest.approx(-K * gap)
+    assert sprung == pytest.approx(-size * K * gap)
     assert push == pytest.approx(-0.5 * held * pull / (held + pull), rel=1e-12)
     assert row.due == 0.0
-    row = line(depth=0.001, rate=1.0)  # what did not push before takes nothing back
-    assert touches.touched_forces(row, gap, rate, H) == (pytest.approx(-K * gap), 0.0)
+    row = line(depth=0.001, rate=1.0, **law)  # what did not push before takes nothing back
+    assert touches.touched_forces(row, gap, rate, H) == (pytest.approx(-size * K * gap), 0.0)
 
 
 def test_a_line_that_presses_before_and_after_has_the_law():
