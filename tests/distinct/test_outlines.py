@@ -21,12 +21,12 @@ def rectangle(left, right, low, high, **more):
 
 
 def test_the_outlines_of_a_joint_of_the_plane_are_the_two_whole_sides():
-    """A block of 1 m on a slope of 4 m."""
-    blocks = [rectangle(-1, 3, -1, 0, fixed=True), rectangle(0.5, 1.5, 0, 1)]
+    """A block of 1 m on a slope of 5 m."""
+    blocks = [rectangle(-1, 4, -1, 0, fixed=True), rectangle(0.5, 1.5, 0, 1)]
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.6)
     along, up = np.array([C, S]), np.array([-S, C])
     ((below, above),) = faces.outlines_of_joints(masonry)
-    for outline, ends, normal in ((below, (-1, 3), up), (above, (0.5, 1.5), -up)):
+    for outline, ends, normal in ((below, (-1, 4), up), (above, (0.5, 1.5), -up)):
         np.testing.assert_allclose(sorted((outline.corners @ along).tolist()), ends, rtol=1e-12)
         np.testing.assert_allclose(outline.corners @ up, 0.0, atol=1e-12)
         np.testing.assert_allclose(outline.normal, normal, rtol=1e-12)
@@ -59,10 +59,11 @@ def outline(width, middle=0.0):
 
 
 @pytest.mark.parametrize(("other", "shorter"), [(3.0, 2.0), (0.5, 0.5)])
-def test_a_face_is_longer_by_a_share_of_the_shorter_one(other, shorter):
-    """Of 2 m about x = 7, from a centroid at 6.8. The normal turns over as much beyond either end."""
-    edges = faces.edges_of(outline(2.0, 7.0), np.array([6.8, 1.0]), outline(other, 7.3))
-    np.testing.assert_allclose(edges["reach"], [0.8 + 0.02 * shorter, 1.2 + 0.02 * shorter], rtol=1e-12)
+@pytest.mark.parametrize("centroid", [6.8, 5.5])
+def test_a_face_is_longer_by_a_share_of_the_shorter_one(other, shorter, centroid):
+    """Of 2 m about x = 7. The normal turns over as much beyond either end."""
+    edges = faces.edges_of(outline(2.0, 7.0), np.array([centroid, 1.0]), outline(other, 7.3))
+    np.testing.assert_allclose(edges["reach"], np.add([centroid - 6, 8 - centroid], 0.02 * shorter), rtol=1e-12)
     np.testing.assert_allclose(edges["band"], 0.02 * shorter + 2 * 0.02**2 * shorter, rtol=1e-12)
     np.testing.assert_array_equal(edges["way"], [[-1.0, 0.0], [1.0, 0.0]])
 
