@@ -101,13 +101,19 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/friction.py": ("friction_of_lines",),
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/handover.py": ("handing_over",),
+    "distinct/links.py": ("pulls_of_links",),
     "distinct/looking.py": ("looking",),
     "distinct/loop.py": ("loop_of_steps",),
+    "distinct/overlap.py": ("overlap_of_blocks",),
     "distinct/pair_law.py": ("pair_law",),
     "distinct/slowing.py": ("slowing",),
+    "distinct/solids.py": ("solids", "overlap_of_blocks", "finder"),
     "distinct/touches.py": ("touches_of_lines",),
     "distinct/turning.py": ("turning",),
+    "geometry/vectors.py": ("contact_lines", "friction_of_lines", "clipping", "pulls_of_links"),
     "problem/masonry/actuator.py": ("actuator_inputs",),
+    "problem/masonry/bond_law.py": ("bond_law", "bonds_of_lines"),
+    "problem/masonry/joint_law.py": ("joint_law", "contact_lines", "looking"),
     "scene/rest.py": ("search_for_rest", "potential", "scene_in_space"),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
@@ -218,6 +224,8 @@ EQUIVALENT = {
     "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
         "a line that met its face a step ago was closed for the step, in both ways"
     ),
+    "looking.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
+    "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""

@@ -163,6 +163,11 @@ def test_a_body_is_astray_beyond_a_million_metres_or_where_a_run_follows_no_rota
     assert [loop.is_astray(bodies, ends, (0, 2)) for ends in (0.71, 0.69)] == [False, True]
 
 
+def test_unless_it_is_asked_to_a_run_damps_nothing_and_looks_not_ahead():
+    asked_nothing = clock(2, 1)
+    assert (asked_nothing.lead, asked_nothing.drag, asked_nothing.local) == (0.0, 0.0, 0.0)
+
+
 @BOTH
 @pytest.mark.parametrize(("drag", "local"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.2)])
 def test_a_motion_is_slowed_down_as_it_is_asked_to(d, drag, local):
