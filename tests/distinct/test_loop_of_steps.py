@@ -303,6 +303,43 @@ def test_forces_start_with_weight_and_the_ground(d):
 
 
 @BOTH
+@pytest.mark.parametrize("ledger", [False, True])
+def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
+    """Along the normal with what a touch still does, along the face, where it is no friction yet, and of bonds."""
+    whole, before = system(d, 3), 0.02
+    account = Books.empty(whole, 1)
+    samples = Samples.room(2, 2, account, PLANE if d == 2 else SPACE, ledger=ledger)
+    lines, grip = whole.lines, np.arange(9.0).reshape(3, 3)[:, : 2 * d - 3] * 1e-3
+    lines["k"], lines["depth"], lines["push"], lines["pressed"] = (
+        2e3,
+        [0.01, 0.0, 0.0],
+        [27.0, -6.0, 0.0],
+        [3.0, 0.0, 9.0],
+    )
+    lines["rate"], lines["grip"], lines["k_s"] = 0.5, grip, [math.inf, 400.0, 500.0]
+    bond = whole.bonds[0]
+    bond.k, bond.secant, bond.gap, bond.k_s, bond.grip[:] = 1.0, 900.0, -0.02, 300.0, 2e-3
+    account.totals[0].friction, account.totals[0].ground = 7.0, 5.0
+    account.dashpots[:], account.ends[:], account.bonds[:] = 11.0, [1.0, 2.0], [3.0, 4.0, 5.0]
+    loop.keep_pose(whole, account, samples, 1, before, whole.axes)
+    squares = (grip**2).sum(axis=1)
+    sheared = 0.5 * (400.0 * squares[1] + 500.0 * squares[2] + 300.0 * 4e-6 * (2 * d - 3))
+    late = 0.5 * before * 0.5 * np.array([27.0 - 3.0 - 20.0, -6.0])
+    sample = samples.energy[1]
+    assert sample.elastic == pytest.approx(0.1 + late.sum() + 0.5 * 900.0 * 4e-4 + sheared, rel=1e-12)
+    assert sample.friction == pytest.approx(7.0 - sheared, rel=1e-12)
+    assert (sample.ground, sample.driven, sample.potential) == (5.0, 0.0, 0.0)
+    assert (*sample.ends, *sample.bonds) == (1.0, 2.0, 3.0, 4.0, 5.0)
+    lines["push"][1], lines["pressed"][1] = -6.0, -2.0  # the dashpot pulls
+    loop.keep_pose(whole, account, samples, 0, before, whole.axes)
+    by_spring = 0.5 * before * (-6.0 + 2.0) * 0.5
+    assert samples.energy[0].elastic == pytest.approx(sample.elastic, rel=1e-12)
+    assert samples.dashpots[:2].tolist() == (
+        [[pytest.approx(11.0 + by_spring - late[1])], [11.0]] if ledger else [[], []]
+    )
+
+
+@BOTH
 @pytest.mark.parametrize("before", [0.0, 0.5])
 def test_kept_velocities_are_those_of_the_pose_and_the_energy_is_that_of_the_steps(d, before):
     """A spin in the axes of the body from the mean momentum, and half the products of velocity and momentum before and
