@@ -215,6 +215,24 @@ EQUIVALENT = {
     ),
     "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
     "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
+    "clipping.py: best, largest = -2, -math.inf": "every block has a face",
+    "clipping.py: normal, edge, from_edge = normal_of(solids, face), -2, math.inf": "every face has an edge",
+    "clipping.py: crossed, from_crossed = -2, math.inf": "every face has an edge",
+    **{
+        f"clipping.py: {line}": "no place is so far from a corner to the last bit"
+        for line in (
+            "if length_of(minus(at, corner)) <= SAME * length_of(along):",
+            "if length_of(off) <= SAME * length_of(own):",
+        )
+    },
+    **{
+        f"clipping.py: {line}": "what is no corner lies on one edge alone"
+        for line in ("if distance <= from_edge:", "if distance <= from_crossed:")
+    },
+    "clipping.py: distance = distance_from(off, scaled(1, own), own)": "both ends of an edge lie on its line",
+    "clipping.py: faces = face, face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
+        "a direction may have any length"
+    ),
     "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",

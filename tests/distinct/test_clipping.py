@@ -122,13 +122,14 @@ def test_the_part_of_a_face_that_lies_over_another(place, low, high):
 
 
 @pytest.mark.parametrize(("beyond", "left"), [(0.5e-9, 1.0), (1.5e-9, 0.0)])
-def test_a_corner_that_is_hardly_beyond_an_edge_stays_there(beyond, left):
+@pytest.mark.parametrize("size", [1.0, 0.125])
+def test_a_corner_that_is_hardly_beyond_an_edge_stays_there(beyond, left, size):
     """By a thousand millionth of the length of the edges."""
-    shift = 2.0 * beyond
-    solids = solids_about(LOWER, turned((1.0, 1.0, 1.0), (0.5 + shift, 0.0, 0.0)))
+    lower = mr.Polyhedron.box((2.0 * size, 2.0 * size, 1.0), (0.0, 0.0, -0.5))
+    solids = solids_about(lower, turned((size, size, 1.0), ((0.5 + 2.0 * beyond) * size, 0.0, 0.0)))
     room = polygon_in([], 24)
     count = clipping.lying_over(solids, face_of(solids, 0, UP)[0], face_of(solids, 1, DOWN)[0], room)
-    assert room[:count, 0].max() - 1.0 == pytest.approx(left * shift, abs=2e-16)
+    assert room[:count, 0].max() / size - 1.0 == pytest.approx(left * 2.0 * beyond, abs=4e-16)
 
 
 def test_corners_that_fall_on_those_before_them_are_left_out():
@@ -206,6 +207,15 @@ def test_a_place_stands_for_the_angle_by_which_the_outline_turns():
     assert clipped(LOWER, turned((1.0, 1.0, 1.0), (1.6, 0.0, 0.0)))[1] == 0
 
 
+def test_a_corner_of_a_block_lies_over_an_edge_of_another():
+    """The part is a triangle: three eighths of a turn at each side of the corner, and a quarter there."""
+    turn = Rotation.from_rotvec([0.0, 0.0, math.pi / 4])
+    table, count = clipped(LOWER, turned((1.0, 1.0, 1.0), (1.0 + math.sqrt(0.5) - 0.2, 0.0, 0.01), turn))
+    assert count == 3
+    np.testing.assert_allclose(np.sort(table[:3, 9]), [0.25, 0.375, 0.375], rtol=1e-9)
+    np.testing.assert_allclose(table[:3, 10], 0.04, rtol=1e-9)
+
+
 def test_places_are_written_after_others_where_there_is_room():
     block = turned((1.0, 1.0, 1.0), (0.0, 0.0, -0.01))
     whole, count = clipped(LOWER, block)
@@ -261,7 +271,7 @@ def met(block, at, over=DOWN):
 def crossing(turn):
     """The middle of an edge of a block, 0.3 above the edge of the lower one, where edges cross."""
     at = np.array([0.2, 1.0, 0.3])
-    block = turned((1.0, 1.0, 1.0), at + turn.apply([0.5, 0.0, 0.0]), turn)
+    block = turned((1.0, 2.0, 1.0), at + turn.apply([0.5, 0.0, 0.0]), turn)
     return met(block, at, turn.apply(DOWN)), turn.apply([0.0, 1.0, 0.0])
 
 

@@ -43,8 +43,8 @@ def flying(d, lines=0):
     return whole._replace(ground=ground(d), supports=no_supports(d))
 
 
-def room(whole, count, ledger=True, looks=2):
-    account = Books.empty(whole, 3)
+def room(whole, count, ledger=True, looks=2, groups=3):
+    account = Books.empty(whole, groups)
     freedom = PLANE if len(whole.axes) == 2 else SPACE
     driven = len(whole.actuators)
     return account, Samples.room(count, 2, account, freedom, ledger=ledger, looks=looks, actuators=driven)
@@ -145,6 +145,20 @@ def test_a_run_in_two_parts_is_that_in_one(d):
 
 
 @BOTH
+def test_a_look_leaves_the_samples_as_they_are(d):
+    """That of the fifth step, after the sample of the fourth one."""
+    runs = []
+    for options in ({"every": 3, "look": 2}, {"every": 3}):
+        whole = flying(d)
+        account, samples = room(whole, 2, looks=3)
+        loop.make_steps(whole, account, samples, clock(d, 6, **options), whole.axes)
+        runs.append(samples)
+    for one, other in zip(runs[0][:3], runs[1][:3], strict=True):
+        np.testing.assert_array_equal(one[:2], other[:2])
+    assert (runs[0].looks["kinetic"] != 0).all()
+
+
+@BOTH
 def test_a_run_ends_where_a_body_is_astray(d):
     whole = flying(d)
     whole.bodies["velocity"][1, -1] = 1e8
@@ -241,9 +255,9 @@ def test_the_energy_of_bodies_that_strike_and_slide_is_that_of_the_accounts(d, f
 def test_what_friction_takes_is_kept_where_there_is_a_ledger_or_a_support(d, ledger):
     """Without both, that of shear springs alone."""
     whole = striking(d)
-    whole.lines["support"] = -1
+    whole.lines["support"], whole.lines["group"] = -1, 0
     whole = whole._replace(supports=no_supports(d))
-    account, samples = room(whole, 9, ledger=ledger)
+    account, samples = room(whole, 9, ledger=ledger, groups=1)
     loop.make_steps(whole, account, samples, clock(d, 9, last=8), whole.axes)
     assert (samples.energy["friction"][8] > 0.1) == ledger
     other = striking(d)
@@ -279,6 +293,26 @@ def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     np.testing.assert_allclose(np.diff(after), H * pulled[1:-1] / MASSES[0], rtol=1e-9)
     np.testing.assert_allclose(total(samples, count), total(samples, 1)[0], rtol=1e-10)
     assert samples.energy["driven"][count - 1] == samples.driven[count - 1].sum() != 0.0
+
+
+@BOTH
+def test_a_tie_breaks_when_a_body_has_fallen_so_far(d):
+    """On a straight line, by what its spring and its yielding let it."""
+    whole, count, up = flying(d), 31, np.eye(d)[-1]
+    law = {"k": 300.0, "strength": 1.0, "ultimate": 0.05, "reach": 1.0, "broken": math.inf}
+    tie = rows(kinds(d).link, 1, body=1, between=-up, anchor=-1, support=-1, **law)
+    whole = whole._replace(ground=Ground.of(None), ties=tie)
+    for name in ("place", "velocity", "spin", "inverse_inertia"):
+        whole.bodies[name][1] = 0.0
+    if d == 3:
+        whole.bodies["momentum"][1] = 0.0
+    account, samples = room(whole, count)
+    loop.make_steps(whole, account, samples, clock(d, count, last=count - 1), whole.axes)
+    fallen = -samples.pose[:count, 1, d - 1]
+    broken = np.interp(1.0 / 300.0 + 0.05, fallen, H * np.arange(count))
+    np.testing.assert_allclose(whole.ties[0].broken, broken, atol=1e-4)
+    assert account.ties[0] == pytest.approx(0.05)
+    np.testing.assert_allclose(total(samples, count), total(samples, 1)[0], atol=1e-3)
 
 
 @BOTH
