@@ -233,6 +233,18 @@ EQUIVALENT = {
     "clipping.py: faces = face, face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
         "a direction may have any length"
     ),
+    **{
+        f"finder.py: {line}": "there is more room than is taken"
+        for line in (
+            "self._table, self._room = np.empty((512, 11)), np.empty((4 * most + 4, 3))",
+            "self._table, self._room = np.empty((256, 22)), np.empty((4 * most + 4, 3))",
+            "self._table, self._room = np.empty((256, 11)), np.empty((8 * most + 4, 3))",
+            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 8, 3))",
+            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 6))",
+            "self._table = np.empty((4 * count, 11))",
+            "self._table = np.empty((2 * count, 22))",
+        )
+    },
     "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",

@@ -298,6 +298,12 @@ def test_pairs_that_are_nearer_than_both_reach_are_found(axis):
     assert found(blocks, skipped=[(0, 3)])[0] == found(blocks, skipped=[(3, 0), (2, 3)])[0] == [(0, 2), (1, 3)]
 
 
+def test_blocks_are_found_in_any_order():
+    """The farthest one is the last one, too."""
+    for order, pairs in (((0, 2, 1, 3), [(0, 2), (1, 2), (1, 3)]), ((3, 2, 1, 0, 4), [(0, 1), (0, 4), (1, 2), (2, 3)])):
+        assert found([BOX((1.0, 1.0, 1.0), (1.005 * i, 0.0, 0.0)) for i in order])[0] == pairs
+
+
 def test_fixed_blocks_do_not_meet_each_other():
     blocks = [BOX((1.0, 1.0, 1.0), (1.005 * i, 0.0, 0.0), fixed=i in (1, 2)) for i in (2, 0, 3, 1)]
     assert found(blocks)[0] == [(0, 2), (1, 3)]
