@@ -245,6 +245,22 @@ EQUIVALENT = {
             "self._table = np.empty((2 * count, 22))",
         )
     },
+    **{
+        f"finder.py: {line}": "the two ends of a prism are alike, and no place is between them"
+        for line in (
+            "kept = found.only(found.place[:, 1] < 0.5 * self._half)",
+            "kept = found.only(found.place[:, 1] > 0.25 * self._half)",
+        )
+    },
+    "finder.py: normal = kept.normal[:, ::2] * np.hypot(*kept.normal[:, ::2].T)[:, None]": (
+        "sides of prisms have normals in the plane, of unit length but for rounding"
+    ),
+    "finder.py: share = found.share * np.where(over, found.area / np.where(over, in_pair, 2.0), 1.0)": (
+        "what an edge is divided by is not taken"
+    ),
+    "finder.py: other_face, other_apart = (-2, -math.inf) if apart > reach else face_between(solids, b, a, reach)": (
+        "what is far is not looked at"
+    ),
     "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",

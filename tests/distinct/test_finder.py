@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 import mjrock as mr
 from mjrock.distinct import finder
-from mjrock.distinct.finder import Finder, Near
+from mjrock.distinct.finder import Finder, Found, Near
 from mjrock.distinct.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
@@ -295,6 +295,7 @@ def test_pairs_that_are_nearer_than_both_reach_are_found(axis):
     assert found(blocks, watched=[0])[0] == [(0, 2), (0, 3)]
     assert found(blocks, watched=[1, 2])[0] == [(0, 2), (1, 3)]
     assert found(blocks, watched=[])[0] == []
+    assert found(blocks, skipped=[(1, 3)])[0] == [(0, 2), (0, 3)]
     assert found(blocks, skipped=[(0, 3)])[0] == found(blocks, skipped=[(3, 0), (2, 3)])[0] == [(0, 2), (1, 3)]
 
 
@@ -334,23 +335,26 @@ def test_blocks_meet_where_they_have_moved_to():
     np.testing.assert_allclose(places.place[:, 2], 0.499, rtol=1e-9)
 
 
-def test_blocks_of_the_plane_meet_at_one_end_of_their_prisms():
-    """Two lines share what a pair has, over the length along which the sides lie over each other."""
-    blocks = [box(-2, 2, -1, 0, fixed=True), box(0.5, 1.5, 3, 4), box(5, 6, 0, 1)]
-    turn = np.zeros((3, 2, 2))
-    c, s = math.cos(0.1), math.sin(0.1)
-    turn[1] = turn[0] = [[c - 1, s], [-s, c - 1]]
-    down = np.array([[c, s], [-s, c]]) @ [0.0, 1.0]
+@pytest.mark.parametrize("size", [1.0, 0.1])
+def test_blocks_of_the_plane_meet_at_one_end_of_their_prisms(size):
+    """Two lines share what a pair has, over the length along which the sides lie over each other. Both blocks are
+    turned about the centroid of the first one."""
+    sides = ((-2, 2, -1, 0), (0.5, 1.5, 3, 4), (5, 6, 0, 1))
+    blocks = [box(*(size * x for x in one)) for one in sides]
+    turn, turns = np.array([[math.cos(0.1), math.sin(0.1)], [-math.sin(0.1), math.cos(0.1)]]), np.zeros((3, 2, 2))
+    turns[:2] = turn - np.eye(2)
     drawn = np.array([block.centroid for block in blocks])
-    # both turned about the centroid of the first one, and moved together
-    place = np.array([[c, s], [-s, c]]) @ (np.array([1.2, 0.5 - 0.004]) - drawn[0]) + drawn[0]
-    pairs, places = found(blocks, [(0, 0), place - drawn[1], (0, 0)], turn)
+
+    def after(x, z):
+        return turn @ (size * np.array([x, z]) - drawn[0]) + drawn[0]
+
+    pairs, places = found(blocks, [(0, 0), after(1.2, 0.5 - 0.004) - drawn[1], (0, 0)], turns)
     assert pairs == [(0, 1)]
-    np.testing.assert_allclose(places.gap, -0.004, rtol=1e-6)
+    np.testing.assert_allclose(places.gap, [-0.004 * size] * 2, rtol=1e-6)
     np.testing.assert_allclose(places.share, 0.5, rtol=1e-9)
-    np.testing.assert_allclose(places.area, 1.0, rtol=1e-9)
-    np.testing.assert_allclose(places.normal, [down, down], atol=1e-9)
-    ends = [np.array([[c, s], [-s, c]]) @ (np.array([x, -0.002]) - drawn[0]) + drawn[0] for x in (0.7, 1.7)]
+    np.testing.assert_allclose(places.area, size, rtol=1e-9)
+    np.testing.assert_allclose(places.normal, np.tile(turn @ [0.0, 1.0], (2, 1)), atol=1e-9)
+    ends = [after(x, -0.002) for x in (0.7, 1.7)]
     np.testing.assert_allclose(places.place[places.place[:, 0].argsort()], ends, atol=1e-9)
 
 
@@ -373,6 +377,12 @@ def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
     np.testing.assert_allclose(places.area[~over], 0.3, rtol=1e-9)
     drawn, _ = poses_of(blocks)
     whole = Finder(blocks, drawn)
+    each = np.ones(3)
+    pair = Found(
+        *(np.array(of) for of in ([3, 1, 1], [1, 3, 2])), each, each, each, 0.25 * each, np.array([0.0, 0.0, 2.0])
+    )
+    edges = whole._among_blocks(pair)  # edges have the share that they have, and no area
+    np.testing.assert_array_equal((edges.share, edges.area), [[0.25] * 3, [0.0, 0.0, 2.0]])
     assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3], [4]]
     np.testing.assert_array_equal(whole.between(np.array([2, 1]), np.array([3, 0])), [2 * 5 + 4, 3 * 5 + 4, 1])
     np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 2.997, 4.0, 0.3])
