@@ -261,6 +261,14 @@ EQUIVALENT = {
     "finder.py: other_face, other_apart = (-2, -math.inf) if apart > reach else face_between(solids, b, a, reach)": (
         "what is far is not looked at"
     ),
+    "finder.py: over = face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
+        "a direction may have any length"
+    ),
+    **{
+        f"finder.py: best: Vector = {way}": "where no direction is across both, none is taken"
+        for way in ("(1, 0.0, 0.0)", "(0.0, 1, 0.0)", "(0.0, 0.0, 1)")
+    },
+    "finder.py: if size <= ACROSS:": "no sine is the bound to the last bit",
     "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",

@@ -251,6 +251,7 @@ def test_faces_that_come_into_question_are_deeper_by_a_share_of_the_smaller_outl
         ({"cosine": -0.69, "across": -0.161}, False),
         ({"cosine": -1.0, "gap": -math.inf, "across": -9.0}, True),
         ({"cosine": 0.5, "across": 0.009}, True),
+        ({"cosine": 0.5, "across": 0.01}, None),
         ({"cosine": 0.5, "across": 0.011}, None),
     ],
 )
