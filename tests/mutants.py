@@ -261,9 +261,13 @@ EQUIVALENT = {
     "finder.py: other_face, other_apart = (-2, -math.inf) if apart > reach else face_between(solids, b, a, reach)": (
         "what is far is not looked at"
     ),
-    "finder.py: over = face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
-        "a direction may have any length"
-    ),
+    **{
+        f"finder.py: {line}": "a direction may have any length"
+        for line in (
+            "over = face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))",
+            "other, way = edge_towards(solids, blocks[1], scaled(-2.0, normal))",
+        )
+    },
     **{
         f"finder.py: best: Vector = {way}": "where no direction is across both, none is taken"
         for way in ("(1, 0.0, 0.0)", "(0.0, 1, 0.0)", "(0.0, 0.0, 1)")
