@@ -142,6 +142,16 @@ def test_a_tie_breaks_where_it_has_been_drawn_out_as_far_as_it_can_be(d, end, le
     assert tie.pulled == 0.0
 
 
+@pytest.mark.parametrize(("ultimate", "broken"), [(0.5, True), (0.75, False)])
+def test_a_tie_that_is_drawn_out_just_to_its_limit_breaks(ultimate, broken):
+    """It is 1 m longer than its slack, of which its spring holds half a metre."""
+    tie = {"k": 2.0, "strength": 1.0, "reach": 1.0, "ultimate": ultimate, "broken": math.inf}
+    whole = system(2, still=True)
+    whole = whole._replace(ties=rows(kinds(2).link, 1, anchor=-1, support=-1, between=[2.0, 0.0], **tie))
+    links.pull_links(whole, books(whole), 5.0, H, whole.axes)
+    assert (whole.ties[0].broken == 5.0) == broken
+
+
 def test_a_link_that_only_pulls_is_slack_where_one_that_pushes_too_is_shorter():
     for push, elongation in ((0.0, 0.0), (0.5, -0.1)):
         tie = rows(kinds(2).link, 1, reach=1.0, push=push)[0]
