@@ -18,11 +18,10 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 def loops() -> list[Callable[[], object]]:
     """Short runs that call the loops which take seconds to compile; MuJoCo and explicit steps in turn."""
-    block, ground = mr.Polyhedron.box((0.6, 0.4, 2.0), (0, 0, 1)), mr.Polyhedron.box((4, 4, 1), (0, 0, -0.5), fixed=True)
-    contacts, case = mr.Contacts.from_damping(FIGURE_3, k_base=K_N, xi_base=0.05), mr.Case(FIGURE_3, 0.01, 0.02, side_stop=False)
-    push = mr.GroundMotion.half_sine(9.0, 0.5)
+    contacts = mr.Contacts.from_damping(FIGURE_3, k_base=K_N, xi_base=0.05)
+    case, push = mr.Case(FIGURE_3, 0.01, 0.02, side_stop=False), mr.GroundMotion.half_sine(9.0, 0.5)
     plane = mr.MasonryCase(mr.Masonry.stack([FIGURE_3], K_N), 1.0, motion=push)
-    space = mr.MasonryCase(mr.Masonry([ground, block], k_n=K_N), 1.0, motion=push)
+    space = mr.MasonryCase(mr.Masonry.box((0.6, 0.4, 2.0), k_n=K_N), 1.0, motion=push)
     short = mr.MasonryCase(space.masonry, 0.02)
     e = mr.Restitution.from_geometry(FIGURE_3)
     return [
