@@ -16,6 +16,15 @@ def pytest_sessionstart(session: pytest.Session) -> None:
             run()
 
 
+LONG = {"test_hostile", "test_wheel", "test_pages", "test_scripts", "test_earthquakes", "test_plausible_masonry"}
+"""Files with the longest tests."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest tests start first, so that no process waits at the end for one that another has just begun."""
+    items.sort(key=lambda item: item.path.stem not in LONG)
+
+
 def loops() -> list[Callable[[], object]]:
     """Short runs that call the loops which take seconds to compile; MuJoCo and explicit steps in turn."""
     contacts = mr.Contacts.from_damping(FIGURE_3, k_base=K_N, xi_base=0.05)
