@@ -18,7 +18,7 @@ MOVED = np.array([0.21, -0.32, 0.23])
 
 def cut(a, d):
     """The components of a vector that the plane has."""
-    return np.asarray(a)[..., [0, 2] if d == 2 else [0, 1, 2]]
+    return np.ascontiguousarray(np.asarray(a)[..., [0, 2] if d == 2 else [0, 1, 2]])
 
 
 def blocks(d):
