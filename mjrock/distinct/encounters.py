@@ -22,12 +22,12 @@ from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
 from .limit import Sides, shares_within
-from .looking import Wear, held, wears
+from .looking import Motion, Wear, held, take_motion, wears
 from .pair_law import SHARED, PairLaw, least_among, pair_number
-from .rows import joined, rows
+from .rows import joined, rows, taken
 from .solids import Poses
 from .system import Books, System
-from .turning import inverse_masses, rotations
+from .turning import inverse_masses
 
 LOOK, SOONEST = 5e-3, 5e-4
 """Longest and shortest time between two looks [s]."""
@@ -100,7 +100,7 @@ class Encounters:
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
         self.jointed = _jointed(masonry, self.finder, of)
-        self.kind, self.start = system.lines.dtype, self.poses(system)
+        self.kind, self.start = system.lines.dtype, self.motion(system).poses
         self.limits, free, slip, gap = self._limits(), self.blocks.free, np.zeros(len(left)), np.zeros(len(left))
         self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
         self.met = self._nothing_met()
@@ -136,24 +136,13 @@ class Encounters:
     def _numbers(self, found: Found) -> Integers:
         return pair_number(found.face, found.other, self.count)
 
-    def poses(self, system: System) -> Poses:
-        """Where all blocks are."""
-        blocks, still, d = self.blocks, self.blocks.poses, len(system.axes)
-        moved, change, moves = np.zeros((self.count, d)), np.zeros((self.count, d, d)), blocks.support >= 0
-        bodies = np.asarray(system.bodies)  # whose columns are found faster than those of a record array
-        moved[blocks.free], change[blocks.free] = bodies["place"], rotations(bodies)
-        moved[moves] = system.supports.moved[blocks.support[moves]]
-        return Poses(still.drawn, moved, change)
-
-    def _velocities(self, system: System) -> tuple[Array, Array]:
-        """Velocity of each block, and the largest of a corner about its centroid [m/s], (blocks, d) and (blocks,)."""
-        free, support = self.blocks.free, self.blocks.support
-        velocity, about, moves = np.zeros((self.count, len(system.axes))), np.zeros(self.count), support >= 0
-        bodies = np.asarray(system.bodies)
-        velocity[free] = bodies["velocity"]
-        velocity[moves] = system.supports.moving[support[moves]]
-        about[free] = np.linalg.norm(bodies["spin"], axis=1) * self.sizes[free]
-        return velocity, about
+    def motion(self, system: System) -> Motion:
+        """Where all blocks are, and how fast."""
+        still = self.blocks.poses
+        poses = Poses(still.drawn, np.zeros_like(still.moved), np.zeros_like(still.change))
+        motion = Motion(poses, np.zeros_like(still.moved), np.zeros(self.count))
+        take_motion(system, self.blocks, motion)
+        return motion
 
     def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, float]:
         """The system with the lines of the encounters that may happen until the next look, its books with room for
@@ -162,8 +151,9 @@ class Encounters:
         if not (wears(system, wear, LOOK) or met.watched.any() or system.supports.moved.any()):
             return system, books, LOOK
         worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
-        worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
-        poses, (velocity, about) = self.poses(system), self._velocities(system)
+        if len(system.bonds):
+            worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
+        poses, velocity, about = self.motion(system)
         ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
         watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
         watched[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
@@ -174,7 +164,7 @@ class Encounters:
         met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
         stays = self._moves_of(met.pair) == met.found
         intact = self.jointed[1][~met.handed[self.jointed[0]]]
-        known = np.unique(np.append(intact, self.finder.between(*np.divmod(met.pair[stays], self.count))))
+        known = np.sort(np.append(intact, self.finder.between(met.pair[stays])))
         found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
         until, soon = self._until(found, velocity, about)
         of_gone = np.append(worn[wear.pairs], ~stays)
@@ -213,11 +203,12 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(lines[which], slack[which], np.empty(len(which)))
+        gone = Lines(taken(lines, which), slack[which], np.empty(len(which)))
         new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
         before = held(system, which, gone.depth)
-        share, pressed = np.append(np.ones(count), met.share)[which], gone.depth > 0
-        share = least_among(number, pair[which][pressed], share[pressed])
+        share = np.append(np.ones(count), met.share)[which]
+        soft = (share < 1) & (gone.depth > 0)
+        share = least_among(number, pair[which][soft], share[soft])
         law = self.law.of_places(number, found.share, found.area, self.count)
         share = np.minimum(share, self._stable(found, law, poses, system, h))
         for name, column in law.items():
@@ -231,7 +222,7 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
-        lines = joined(joints, others[stays], np.asarray(new.rows))
+        lines = joined(joints, taken(others, stays), np.asarray(new.rows))
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
@@ -248,8 +239,7 @@ class Encounters:
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
-        inverse = inverse_masses(np.asarray(system.bodies), poses.change[self.blocks.free])
-        return shares_within(sides, law, inverse, h / STABLE)
+        return shares_within(sides, law, inverse_masses(np.asarray(system.bodies)), h / STABLE)
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:

@@ -93,6 +93,24 @@ class Sides(NamedTuple):
     normals: Array
 
 
+class Room(NamedTuple):
+    """Room for `soften`.
+
+    Args:
+        shares: of each spring that its two bodies take, shape (2, n).
+        loads: trace of the springs of each body over its masses, shape (bodies,).
+        stiffness: of each body, in the axes of the world, shape (bodies, nv, nv).
+        powers: two matrices, shape (2, nv, nv).
+        share: of its law that the places of each body have left, and 1 for fixed blocks, shape (bodies + 1,).
+    """
+
+    shares: Array
+    loads: Array
+    stiffness: Array
+    powers: Array
+    share: Array
+
+
 @inlined
 def add_spring(sides: Sides, p: int, way: Vector, k: float, shares: Array, stiffness: Array) -> None:
     """Add a spring of stiffness k at place p along a way to the stiffness of both bodies, over their shares of it."""
@@ -105,28 +123,69 @@ def add_spring(sides: Sides, p: int, way: Vector, k: float, shares: Array, stiff
                     stiffness[body, i, j] += k_here * rate[i] * rate[j]
 
 
+@inlined
+def add_springs(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
+    """Add the springs of places along their normal and their face to the stiffness of their bodies."""
+    for p in range(len(along)):
+        normal = vector(sides.normals, p, axes)
+        add_spring(sides, p, normal, along[p], room.shares, room.stiffness)
+        if across[p] > 0:
+            if len(axes) == 2:
+                add_spring(sides, p, tangent(normal), across[p], room.shares, room.stiffness)
+            else:
+                for way in tangents(normal):
+                    add_spring(sides, p, way, across[p], room.shares, room.stiffness)
+
+
+@inlined
+def split(sides: Sides, room: Room) -> None:
+    """Let the two bodies of each place take shares of its springs that go as their loads."""
+    for p in range(sides.bodies.shape[1]):
+        if sides.bodies[0, p] >= 0 and sides.bodies[1, p] >= 0:
+            one, other = room.loads[sides.bodies[0, p]], room.loads[sides.bodies[1, p]]
+            if one > 0 and other > 0:
+                room.shares[0, p], room.shares[1, p] = one / (one + other), other / (one + other)
+
+
+@inlined
+def multiply(a: Array, b: Array, product: Array) -> float:
+    """Write the product of two square matrices. Returns its trace."""
+    trace = 0.0
+    for i in range(len(a)):
+        for j in range(len(a)):
+            product[i, j] = 0.0
+            for k in range(len(a)):
+                product[i, j] += a[i, k] * b[k, j]
+        trace += product[i, i]
+    return trace
+
+
 @compiled
-def add_springs(
-    sides: Sides, along: Array, across: Array, shares: Array, stiffness: Array, axes: tuple[int, ...]
-) -> None:
-    """Add springs at places to the stiffness of their bodies, in the axes of the world, shape (bodies, nv, nv).
+def soften(sides: Sides, along: Array, across: Array, inverse: Array, room: Room, axes: tuple[int, ...]) -> None:
+    """Write the share of their law that the places of each body have left, see `shares_within`.
 
     Args:
         sides: the two blocks of each place.
         along, across: stiffness along the normal and along the face of each place, shape (n,).
-        shares: of each spring that its two bodies take, shape (2, n).
-        stiffness: of each body, shape (bodies, nv, nv).
+        inverse: of the masses of each body, shape (bodies, nv, nv).
+        room: with shares of 1.
         axes: of the system.
     """
-    for p in range(len(along)):
-        normal = vector(sides.normals, p, axes)
-        add_spring(sides, p, normal, along[p], shares, stiffness)
-        if across[p] > 0:
-            if len(axes) == 2:
-                add_spring(sides, p, tangent(normal), across[p], shares, stiffness)
-            else:
-                for way in tangents(normal):
-                    add_spring(sides, p, way, across[p], shares, stiffness)
+    for turn in range(2):
+        for b in range(len(inverse)):
+            for i in range(inverse.shape[1]):
+                for j in range(inverse.shape[1]):
+                    room.stiffness[b, i, j] = 0.0
+        add_springs(sides, along, across, room, axes)
+        for b in range(len(inverse)):
+            room.loads[b] = multiply(inverse[b], room.stiffness[b], room.powers[0])
+            if turn == 1 and room.loads[b] > 4:
+                trace = 0.0
+                for i in range(SQUARED):
+                    trace = multiply(room.powers[i % 2], room.powers[i % 2], room.powers[1 - i % 2])
+                room.share[b] = 4 / max(trace ** (0.5**SQUARED), 4.0)
+        if turn == 0:
+            split(sides, room)
 
 
 def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: float) -> Array:
@@ -145,26 +204,11 @@ def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: flo
     """
     along = step**2 * law["k"] + 2 * step * law["c"]
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
-
-    def rates(shares: Array) -> Array:
-        stiffness, axes = np.zeros_like(inverse), tuple(range(sides.normals.shape[1]))
-        add_springs(sides, along, across, shares, stiffness, axes)
-        return np.asarray(inverse @ stiffness)
-
-    loads = np.append(_traces(rates(np.ones(sides.bodies.shape))), 0.0)[sides.bodies]  # zero for fixed blocks
-    if loads.sum(axis=0).max(initial=0.0) <= 4:  # no trace of a split is more than the largest sum over both blocks
-        return np.ones(len(along))
-    split = rates(np.where(loads > 0, loads / np.maximum(loads.sum(axis=0), 1e-300), 1.0))
-    doubtful, share = np.flatnonzero(_traces(split) > 4), np.ones(len(inverse) + 1)
-    power = split[doubtful]
-    for _ in range(SQUARED):
-        power = power @ power
-    share[doubtful] = 4 / np.maximum(_traces(power) ** (0.5**SQUARED), 4.0)
+    bodies, nv = inverse.shape[:2]
+    shares, share, powers = np.ones(sides.bodies.shape), np.ones(bodies + 1), np.empty((2, nv, nv))
+    room = Room(shares, np.empty(bodies), np.empty_like(inverse), powers, share)
+    soften(sides, along, across, inverse, room, tuple(range(sides.normals.shape[1])))
     return np.asarray(share[sides.bodies].min(axis=0))
-
-
-def _traces(matrices: Array) -> Array:
-    return np.asarray(np.trace(matrices, axis1=1, axis2=2))
 
 
 def link_rates(links: Rows, bodies: int) -> csr_array:

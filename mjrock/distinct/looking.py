@@ -1,4 +1,4 @@
-"""Looking at lines: which joints hold no longer, what springs hold, and which place was nearest."""
+"""Looking at blocks and lines: where and how fast blocks are, which joints hold no longer, and what springs hold."""
 
 from __future__ import annotations
 
@@ -8,16 +8,58 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled, inlined
-from ..geometry.vectors import components, dot, minus, plus, spin_components, vector
+from ..geometry.vectors import components, dot, minus, plus, put, spin_components, vector
 from ..problem.masonry.joint_law import stored
 from ..quantities import Array, Integers
 from .contact import meeting
+from .handover import Blocks
 from .rows import Rows
+from .solids import Poses
 from .system import System
-from .turning import rotation_change, take_turn
+from .turning import rotation_change, take_inverse_inertia, take_turn
 
 AXES = np.eye(3)
 """Unit vectors."""
+
+
+class Motion(NamedTuple):
+    """Where all blocks are, and how fast.
+
+    Args:
+        poses: where they are.
+        velocity: of their centroids [m/s], shape (blocks, d).
+        about: the largest velocity of a corner about the centroid of its block [m/s], shape (blocks,).
+    """
+
+    poses: Poses
+    velocity: Array
+    about: Array
+
+
+@compiled
+def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
+    """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
+    write_motion(system, blocks, motion, system.axes)
+
+
+@inlined
+def write_motion(system: System, blocks: Blocks, motion: Motion, axes: tuple[int, ...]) -> None:
+    """`take_motion`, in the plane or in space."""
+    poses, supports = motion.poses, system.supports
+    for b in range(len(blocks.free)):
+        body, block = system.bodies[b], blocks.free[b]
+        take_turn(body, axes)
+        take_inverse_inertia(body, axes)
+        for i in range(len(axes)):
+            put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, axes)))
+        spin = spin_components(body.spin, axes)
+        put(poses.moved[block], components(body.place, axes))
+        put(motion.velocity[block], components(body.velocity, axes))
+        motion.about[block] = math.sqrt(dot(spin, spin)) * blocks.sizes[block]
+    for block in range(len(blocks.support)):
+        if blocks.support[block] >= 0:
+            put(poses.moved[block], vector(supports.moved, blocks.support[block], axes))
+            put(motion.velocity[block], vector(supports.moving, blocks.support[block], axes))
 
 
 class Wear(NamedTuple):

@@ -78,7 +78,7 @@ def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: 
     bodies["place"] = pose[:, :d]
     start_turning(bodies, pose, np.zeros((len(pose), 3 * d - 3)))
     moved = np.concatenate([np.empty((0, d)), *(support.at(np.array([t])) for support in case.supports)])
-    return encounters.poses(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved)))
+    return encounters.motion(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved))).poses
 
 
 def common_volume(solids: Solids, a: int, b: int) -> float:
