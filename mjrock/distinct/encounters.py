@@ -21,13 +21,12 @@ from ..quantities import GRAVITY, Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
-from .limit import Sides, shares_within
 from .looking import Motion, Wear, held, take_motion, wears
 from .pair_law import SHARED, PairLaw, least_among, pair_number
 from .rows import joined, rows, taken
+from .softening import Sides, shares_within
 from .solids import Poses
 from .system import Books, System
-from .turning import inverse_masses
 
 LOOK, SOONEST = 5e-3, 5e-4
 """Longest and shortest time between two looks [s]."""
@@ -239,7 +238,7 @@ class Encounters:
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
-        return shares_within(sides, law, inverse_masses(np.asarray(system.bodies)), h / STABLE)
+        return shares_within(sides, law, system.bodies, h / STABLE)
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:

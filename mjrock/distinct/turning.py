@@ -288,12 +288,3 @@ def roots_of_masses(bodies: Rows) -> Array:
     turning = bodies["inverse_inertia"].any(axis=(1, 2))  # guides keep the others from it
     roots[turning, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"][turning])
     return roots
-
-
-def inverse_masses(bodies: Rows) -> Array:
-    """The inverse of the masses of each body in the axes of the world, for which its inertia is taken, (n, nv, nv)."""
-    inverse = bodies["inverse_inertia" if is_flat(bodies) else "inverse_in_world"]
-    d, nv = bodies["place"].shape[1], bodies["place"].shape[1] + inverse.shape[2]
-    masses = np.zeros((len(inverse), nv, nv))
-    masses[:, range(d), range(d)], masses[:, d:, d:] = bodies["inverse_mass"], inverse
-    return masses
