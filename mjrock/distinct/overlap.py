@@ -43,7 +43,7 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
         UserWarning: of 1 % more than at the start, with the names of the two blocks, and when.
     """
     encounters = setup.encounters
-    if encounters is None or not encounters.met.watched.any():
+    if encounters is None or not encounters.met.seen.watched.any():
         return 0.0
     chosen = np.unique(np.linspace(0, len(t) - 1, min(LOOKS, len(t))).round().astype(int))
     poses = {i: _posed(encounters, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}

@@ -95,11 +95,6 @@ class Poses(NamedTuple):
     moved: Array
     change: Array
 
-    def far(self, other: Poses, sizes: Array) -> Array:
-        """How far a corner of each block may be from where it is in other poses [m], shape (blocks,)."""
-        way = np.linalg.norm(self.moved - other.moved, axis=1)
-        return np.asarray(way + np.linalg.norm(self.change - other.change, axis=(1, 2)) * sizes)
-
 
 @inlined
 def changed(change: Array, a: Vector) -> Vector:
