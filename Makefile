@@ -10,6 +10,8 @@ INSTALLED := out/installed
 
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
 test test-slow test-oldest test-installed mutants: export OPENBLAS_NUM_THREADS = 1
+# Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
+test test-slow test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
 	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo

@@ -94,12 +94,26 @@ OWN = {
 """Tests that run before the rounds on the mutants of a module, with the loops compiled."""
 BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/bonds.py": ("bonds_of_lines",),
+    "distinct/clipping.py": ("clipping",),
     "distinct/contact.py": ("contact_lines",),
+    "distinct/faces.py": ("outlines",),
+    "distinct/finder.py": ("finder",),
     "distinct/friction.py": ("friction_of_lines",),
+    "distinct/gathering.py": ("forces_of_lines",),
     "distinct/handover.py": ("handing_over",),
+    "distinct/links.py": ("pulls_of_links",),
+    "distinct/looking.py": ("looking",),
+    "distinct/loop.py": ("loop_of_steps",),
+    "distinct/overlap.py": ("overlap_of_blocks",),
     "distinct/pair_law.py": ("pair_law",),
+    "distinct/slowing.py": ("slowing",),
+    "distinct/solids.py": ("solids", "overlap_of_blocks", "finder"),
+    "distinct/touches.py": ("touches_of_lines",),
     "distinct/turning.py": ("turning",),
+    "geometry/vectors.py": ("contact_lines", "friction_of_lines", "clipping", "pulls_of_links"),
     "problem/masonry/actuator.py": ("actuator_inputs",),
+    "problem/masonry/bond_law.py": ("bond_law", "bonds_of_lines"),
+    "problem/masonry/joint_law.py": ("joint_law", "contact_lines", "looking"),
     "scene/rest.py": ("search_for_rest", "potential", "scene_in_space"),
 }
 """Tests that run before all others on the mutants of a module, in plain Python."""
@@ -189,6 +203,10 @@ EQUIVALENT = {
     },
     "rest.py: FLAT = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
+    "handover.py: sense = old.sense / new.sense": "a sense is 1 or -1",
+    "handover.py: share = min(REGAINED, had / force, math.sqrt(held / energy)) if force > 0 else 1": (
+        "where no place presses, none has an overlap that a share is taken of"
+    ),
     "handover.py: if overlap == 1 or ends[0] == ends[1]:": "of no overlap nothing presses in the last line, either",
     "handover.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: PASSES = 6": "more passes take time only",
@@ -197,10 +215,75 @@ EQUIVALENT = {
     ),
     "contact.py: OPEN = 2.0": "at no gap above zero is anything left of a line",
     "contact.py: TURNED_OVER = 4 * OPEN": "it is a number that no gap is",
+    "clipping.py: best, largest = -2, -math.inf": "every block has a face",
+    "clipping.py: normal, edge, from_edge = normal_of(solids, face), -2, math.inf": "every face has an edge",
+    "clipping.py: crossed, from_crossed = -2, math.inf": "every face has an edge",
+    **{
+        f"clipping.py: {line}": "no place is so far from a corner to the last bit"
+        for line in (
+            "if length_of(minus(at, corner)) <= SAME * length_of(along):",
+            "if length_of(off) <= SAME * length_of(own):",
+        )
+    },
+    **{
+        f"clipping.py: {line}": "what is no corner lies on one edge alone"
+        for line in ("if distance <= from_edge:", "if distance <= from_crossed:")
+    },
+    "clipping.py: distance = distance_from(off, scaled(1, own), own)": "both ends of an edge lie on its line",
+    "clipping.py: faces = face, face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
+        "a direction may have any length"
+    ),
+    **{
+        f"finder.py: {line}": "there is more room than is taken"
+        for line in (
+            "self._table, self._room = np.empty((512, 11)), np.empty((4 * most + 4, 3))",
+            "self._table, self._room = np.empty((256, 22)), np.empty((4 * most + 4, 3))",
+            "self._table, self._room = np.empty((256, 11)), np.empty((8 * most + 4, 3))",
+            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 8, 3))",
+            "self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 6))",
+            "self._table = np.empty((4 * count, 11))",
+            "self._table = np.empty((2 * count, 22))",
+        )
+    },
+    **{
+        f"finder.py: {line}": "the two ends of a prism are alike, and no place is between them"
+        for line in (
+            "kept = found.only(found.place[:, 1] < 0.5 * self._half)",
+            "kept = found.only(found.place[:, 1] > 0.25 * self._half)",
+        )
+    },
+    "finder.py: normal = kept.normal[:, ::2] * np.hypot(*kept.normal[:, ::2].T)[:, None]": (
+        "sides of prisms have normals in the plane, of unit length but for rounding"
+    ),
+    "finder.py: share = found.share * np.where(over, found.area / np.where(over, in_pair, 2.0), 1.0)": (
+        "what an edge is divided by is not taken"
+    ),
+    "finder.py: other_face, other_apart = (-2, -math.inf) if apart > reach else face_between(solids, b, a, reach)": (
+        "what is far is not looked at"
+    ),
+    **{
+        f"finder.py: {line}": "a direction may have any length"
+        for line in (
+            "over = face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))",
+            "other, way = edge_towards(solids, blocks[1], scaled(-2.0, normal))",
+        )
+    },
+    **{
+        f"finder.py: best: Vector = {way}": "where no direction is across both, none is taken"
+        for way in ("(1, 0.0, 0.0)", "(0.0, 1, 0.0)", "(0.0, 0.0, 1)")
+    },
+    "finder.py: if size <= ACROSS:": "no sine is the bound to the last bit",
+    "faces.py: ROUNDS = 6": "more rounds take time only",
     "friction.py: SWEEPS = 100": "the sweeps have ended before",
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
     "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",
     "friction.py: HELD = 2e-09": "any small number serves to divide by",
+    "touches.py: if line.push <= 0:": "a line that does not push has nothing that is still to act",
+    "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
+        "a line that met its face a step ago was closed for the step, in both ways"
+    ),
+    "looking.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
+    "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""

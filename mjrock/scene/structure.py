@@ -12,7 +12,7 @@ from ..geometry.frames import Freedom, take_frames
 from ..geometry.kinematics import AppliedForces, Places, Ties, depth, displacement, slack, stretch
 from ..geometry.vectors import dot, vector
 from ..problem.masonry.joint_law import Law, stored
-from ..quantities import GRAVITY, Array, Integers
+from ..quantities import GRAVITY, Array, Integers, frozen
 from .masses import coupling
 
 NO_PRODUCTS: Array = np.empty((0, 3))
@@ -83,7 +83,7 @@ def energies(structure: Structure, q: Array, v: Array, broken: Integers | None =
     ties = structure.ties._replace(reach=np.array(structure.ties.reach))
     freedom, until = structure.places.freedom, np.full(taken.shape[1], len(q)) if broken is None else broken
     frames = freedom.frames(q.shape[1] // freedom.nq)
-    _energies(structure._replace(ties=ties), q, v, frames, until, parts, taken)
+    _energies(structure._replace(ties=ties), frozen(q), frozen(v), frames, until, parts, taken)
     return parts, taken
 
 

@@ -191,7 +191,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         serve()
         return
     out = cli.folder(args.out)
-    repeats = 2 if args.quick else 25
+    repeats = 1 if args.quick else 25
     rows: list[list[object]] = []
 
     def row(task: str, here: list[float], there: list[float]) -> None:

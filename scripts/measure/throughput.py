@@ -42,9 +42,9 @@ def fixed(seed: int, pga: float) -> mr.Analysis:
 
 
 def cases(solver: str, count: int) -> Watched:
-    """`count` cases, a multiple of 200, over record, slenderness, intensity and polarity."""
-    levels, slenderness = np.linspace(0.1, 0.8, 10).tolist(), np.linspace(5, 12, 10).tolist()
-    seeds = range(count // 200)
+    """`count` cases, a multiple of 200, or of 20 below, over record, slenderness, intensity and polarity."""
+    levels, slenderness = np.linspace(0.1, 0.8, 10).tolist(), np.linspace(5, 12, min(count // 20, 10)).tolist()
+    seeds = range(max(count // 200, 1))
     return Watched(shaken, solver=[solver], seed=seeds, slenderness=slenderness, pga=levels, polarity=(0, 1))
 
 
@@ -121,7 +121,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return
     out = cli.folder(args.out)
     store, cores = out / "throughput.sqlite", os.cpu_count() or 1
-    sizes = {"analytical": 2_000 if args.quick else 10_000, "MuJoCo": 200 if args.quick else 2_000}
+    sizes = {"analytical": 2_000 if args.quick else 10_000, "MuJoCo": 40 if args.quick else 2_000}
     rows: list[list[object]] = []
     undisturbed = ""
     for solver, count in sizes.items():

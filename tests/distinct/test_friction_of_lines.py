@@ -146,6 +146,8 @@ def test_a_body_that_a_guide_holds_hardly_yields():
     body.inverse_mass[:] = [0.5, 0.25, 0.0]
     assert friction.yielding(body, (0.6, 0.8, 0.0)) == pytest.approx(0.36 * 0.5 + 0.64 * 0.25)
     assert friction.yielding(body, (0.0, 0.0, 1.0)) == friction.HELD / 5.0
+    body.mass, body.inverse_mass[:] = 1e6, 1e-6
+    assert friction.yielding(body, (0.6, 0.8, 0.0)) == pytest.approx(1e-6)
 
 
 @BOTH
@@ -195,6 +197,20 @@ def test_a_line_stops_its_slip_where_the_face_holds_it(d, on_face):
     np.testing.assert_allclose(slip_of(whole, on_face), 0.0, atol=1e-14)
     assert changed == pytest.approx(np.abs(whole.ways["impulse"] - before).max())
     assert changed > 0.1
+
+
+@BOTH
+def test_a_line_stops_its_slip_where_the_face_just_holds_it(d):
+    for slower in (1.0, 1e-3):
+        held = 1e6
+        for _ in range(2):
+            whole = rigid(d)
+            for name in ("velocity", "spin"):
+                whole.bodies[name] *= slower
+            whole.ways["limit"] = held
+            friction.stop(whole, 0, whole.axes)
+            np.testing.assert_allclose(slip_of(whole), 0.0, atol=1e-14)
+            held = 1.0001 * np.linalg.norm(whole.ways["impulse"])
 
 
 @BOTH
@@ -290,8 +306,25 @@ def test_each_sweep_takes_every_line_once(d, monkeypatch):
     monkeypatch.setattr(friction, "stop", lambda *given: calls.append(given[1]) or stop(*given))
     friction.stick(whole, active, 7, KICK, whole.axes)
     assert len(calls) % 7 == 0
-    for sweep in np.reshape(calls, (-1, 7)):
+    sweeps = np.reshape(calls, (-1, 7))
+    for sweep in sweeps:
         assert sorted(sweep) == [(d - 1) * i for i in range(7)]
+    np.testing.assert_array_equal(sweeps[2:], sweeps[:-2])  # to and fro
+    assert (sweeps[0] != sweeps[1]).any()
+
+
+@BOTH
+def test_a_slow_motion_has_its_impulses_as_exactly_as_a_fast_one(d):
+    """At velocities and forces that are a million times smaller they are so, too, to the last bit."""
+    impulses = []
+    for scale in (1.0, 2.0**-20):
+        whole, active = many(d, 8.0 * scale)
+        for name in ("velocity", "spin"):
+            whole.bodies[name] *= scale
+        whole.supports.moving[:] *= scale
+        friction.stick(whole, active, 7, KICK, whole.axes)
+        impulses.append(whole.ways["impulse"] / scale)
+    np.testing.assert_array_equal(*impulses)
 
 
 @BOTH

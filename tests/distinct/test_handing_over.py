@@ -18,7 +18,7 @@ MOVED = np.array([0.21, -0.32, 0.23])
 
 def cut(a, d):
     """The components of a vector that the plane has."""
-    return np.asarray(a)[..., [0, 2] if d == 2 else [0, 1, 2]]
+    return np.ascontiguousarray(np.asarray(a)[..., [0, 2] if d == 2 else [0, 1, 2]])
 
 
 def blocks(d):
@@ -116,6 +116,8 @@ def test_the_nearest_of_some_lines_is_found(d):
     j, off = handover.nearest(table, (2, 4), tuple(aim), 3, numbers, axes)
     assert (j, off) == (2, pytest.approx(np.linalg.norm(where[2] - aim)))
     assert handover.nearest(table, (3, 3), tuple(aim), 3, numbers, axes) == (-1, math.inf)
+    table[2] = table[1]
+    assert handover.nearest(table, (0, 4), tuple(aim), 3, numbers, axes)[0] == 1
     assert handover.nearest(table, (0, 4), tuple(aim + 1e6), 3, numbers, axes)[0] == 3
 
 
@@ -155,6 +157,15 @@ def test_a_line_was_there_within_a_fifth_of_the_smaller_block_and_with_a_like_no
     for cosine, there in ((0.71, True), (0.69, False)):
         normal = cosine * NORMAL[d] + math.sqrt(1 - cosine**2) * across
         assert bool(presses(d, gone_at(d, normal=normal)) > 0) is there
+        swapped = found(d, 2, 1)
+        swapped.normal[0] *= -1
+        assert bool(presses(d, gone_at(d, normal=normal), swapped) > 0) is there
+
+
+@pytest.mark.parametrize(("off", "there"), [(0.0999, True), (0.2 * 0.5, False)])
+def test_at_a_fifth_of_the_smaller_block_no_line_was_there(off, there, monkeypatch):
+    monkeypatch.setattr(handover, "nearest", lambda *given: (0, off))
+    assert bool(presses(2, gone_at(2)) > 0) is there
 
 
 @BOTH

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from everyday import slow
 from masonry_blocks import GROUND, box
 from scipy.integrate import solve_ivp
 
@@ -57,8 +58,8 @@ def rebound(masonry, speed):
     [
         (0.0, 0.4, 1e-4, 1e-4),
         (0.05, 0.4, 3e-3, 1e-3),
-        (0.1, 0.4, 3e-3, 2e-3),
-        (0.2, 0.25, 1e-2, 3e-3),
+        slow((0.1, 0.4, 3e-3, 2e-3)),
+        slow((0.2, 0.25, 1e-2, 3e-3)),
         (0.3, 0.25, 1e-2, 4e-3),
     ],
 )

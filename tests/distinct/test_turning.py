@@ -139,6 +139,17 @@ def test_the_spin_in_the_middle_of_a_step_is_that_of_the_momentum_there(turned, 
     assert np.linalg.norm(found - near) > 0.01 * turned * np.linalg.norm(near)
 
 
+@pytest.mark.parametrize(
+    ("spin", "h", "passes"), [(1.0, 0.99e-3, 2), (1.0, 1e-3, 3), (2.0, 0.4e-3, 2), (2.0, 0.6e-3, 3)]
+)
+def test_a_body_that_turns_slowly_in_a_step_takes_fewer_passes(spin, h, passes, monkeypatch):
+    calls, rotated = [], turning.rotated
+    monkeypatch.setattr(turning, "rotated", lambda *given: calls.append(given) or rotated(*given))
+    body = rows(kinds(3).body, 1, quaternion=[1.0, 0.0, 0.0, 0.0], inverse_inertia=np.eye(3))[0]
+    turning.middle_spin(body, (spin, 0.0, 0.0), h)
+    assert len(calls) == passes
+
+
 @pytest.mark.parametrize("h", [1e-9, 1e-4, 2.2e-4, 0.1, 1.0])
 def test_a_step_turns_a_body_by_its_spin(h):
     body = deep()

@@ -37,6 +37,7 @@ from mjrock.geometry.kinematics import (
     where_friction_acts,
 )
 from mjrock.geometry.vectors import dot, plus, scaled, spun, tangent
+from mjrock.quantities import frozen
 from mjrock.scene.ground import Ground, push_ground
 from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.potential import Potential
@@ -47,7 +48,7 @@ AXES = SPACE.axes
 
 def lifted(vectors):
     """Vectors of the plane as vectors of space."""
-    return np.insert(np.reshape(vectors, (-1, 2)), 1, 0.0, axis=1)
+    return frozen(np.insert(np.reshape(vectors, (-1, 2)), 1, 0.0, axis=1))
 
 
 def pose_in_space(q):
@@ -72,11 +73,9 @@ def in_space(scene):
             axes=AXES, **{name: lifted(getattr(places, name)) for name in ("at", "face_at", "normal", "between")}
         ),
         flat.k,
-        ties._replace(
-            reach=np.array(ties.reach), **{name: lifted(getattr(ties, name)) for name in ("at", "anchor_at", "between")}
-        ),
+        ties._replace(**{name: lifted(getattr(ties, name)) for name in ("at", "anchor_at", "between")}),
         forces._replace(at=lifted(forces.at), force=lifted(forces.force)),
-        np.column_stack([scene.bodies.mass] * 3 + [scene.bodies.inertia] * 3).ravel(),
+        frozen(np.column_stack([scene.bodies.mass] * 3 + [scene.bodies.inertia] * 3).ravel()),
     )
 
 

@@ -1,6 +1,7 @@
 """The rules of the house: imports run down its floors, solvers do not know each other, and pieces are short."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -39,6 +40,7 @@ def room(name):
     return ".".join(parts[: 2 if parts[0] == "problem" else 1])
 
 
+@cache
 def imports(path):
     """Modules of the package that a module imports, as names below the package, and all others that it imports."""
     own, others, here = [], [], path.relative_to(ROOT).with_suffix("").parts

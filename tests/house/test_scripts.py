@@ -208,6 +208,10 @@ LONG = {
     "slow_push",
     "opened_in_vtk",
     "shaken_wall",
+    "vaults",
+    "bonded_facade",
+    "first_pictures",
+    "collapse",
 }
 """Scripts that take a while even with --quick."""
 

@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+import shutil
 import site
 import subprocess
 import sys
@@ -80,6 +81,14 @@ def readme():
     return "\n\n".join(re.findall(r"(?s)```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8")))
 
 
+def copy_loops(target):
+    """Copy the compiled loops of this package to one that is installed in a folder."""
+    for stored in (ROOT / "mjrock").rglob("__pycache__/*.nb?"):
+        copy = target / stored.relative_to(ROOT)
+        copy.parent.mkdir(exist_ok=True)
+        shutil.copy(stored, copy)
+
+
 def installed_here(folder):
     """The Python of an environment that sees the packages of this one, but for mjrock."""
     venv.create(folder, with_pip=False)
@@ -103,15 +112,20 @@ def test_the_wheel_holds_the_package_alone(wheel):
 
 @pytest.mark.slow
 def test_the_readme_runs_from_the_wheel(wheel, tmp_path):
-    """With packages of the registry, or with those of this environment where there is none."""
+    """With packages of the registry, or with those of this environment where there is none.
+
+    It takes along the loops that the checkout has stored, for their sources are the same. That loops are compiled where
+    none are stored is a matter of test_compiled.
+    """
     venv.create(tmp_path / "env", with_pip=True)
     python = tmp_path / "env" / "bin" / "python"
-    done = run(python, "-m", "pip", "install", "--quiet", f"{wheel}[frames]")
+    done = run(python, "-m", "pip", "install", "--quiet", "--no-compile", f"{wheel}[frames]")
     if done.returncode and any(sign in done.stderr for sign in OFFLINE):
         python = installed_here(tmp_path / "here")
         target = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").stdout.strip()
         done = run(sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", target, wheel)
     assert done.returncode == 0, done.stderr
+    copy_loops(Path(run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").stdout.strip()))
     (tmp_path / "away").mkdir()
     program = tmp_path / "away" / "readme.py"
     program.write_text(readme() + CHECKS.format(version=mr.__version__), encoding="utf-8")

@@ -1,0 +1,389 @@
+"""Where blocks meet, one function at a time, and how it is decided whether they meet as faces or as edges."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry_blocks import box
+from scipy.spatial.transform import Rotation
+
+import mjrock as mr
+from mjrock.distinct import finder
+from mjrock.distinct.finder import Finder, Found, Near
+from mjrock.distinct.solids import Poses, Solids
+
+BOX = mr.Polyhedron.box
+LOWER, UPPER = BOX((2.0, 3.0, 1.0), (0.0, 0.0, -0.5)), BOX((1.0, 0.5, 0.4), (0.2, 0.1, 0.2))
+"""Two boxes that touch at z = 0."""
+
+
+def solids_about(*blocks, inside=()):
+    """Blocks where they are drawn, some of their faces inside, by block and number."""
+    outer = [np.zeros(len(block.faces), dtype=bool) for block in blocks]
+    for block, face in inside:
+        outer[block][face] = True
+    return Solids.about(blocks, np.zeros((len(blocks), 3)), outer, np.arange(len(blocks)))
+
+
+def moved(block, by, turn=None):
+    corners = np.array(block.corners)
+    return mr.Polyhedron((corners if turn is None else turn.apply(corners)) + np.array(by))
+
+
+def face_of(solids, block, way):
+    return finder.face_towards(solids, block, tuple(map(float, way)))
+
+
+@pytest.mark.parametrize("values", [[], [4], [1, 4], [1, 4, 9], [1, 4, 9, 12, 13, 20]])
+def test_a_number_is_looked_for_among_increasing_ones(values):
+    for number in range(-1, 23):
+        assert bool(finder.among(np.array(values, dtype=np.int64), number)) is (number in values)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_blocks_are_apart_along_an_axis(axis):
+    for low, apart in ((0.9, False), (1.0, False), (1.1, True)):
+        at = np.zeros(3)
+        at[axis] = low
+        near = Near(np.array([np.zeros(3), at]), np.array([np.ones(3), at + 1]), *[None] * 6)
+        assert bool(finder.are_apart(near, 0, 1)) is bool(finder.are_apart(near, 1, 0)) is apart
+
+
+def test_how_far_a_block_is_outside_of_a_face_and_reaches():
+    solids = solids_about(moved(LOWER, (0.3, 0.0, 0.0)), moved(UPPER, (0.0, 0.0, 0.25)))
+    for way, reaches in (((1.0, 0.0, 0.0), 1.3), ((0.0, 0.0, 1.0), 0.0), ((0.0, -2.0, 0.0), 3.0)):
+        assert finder.farthest(solids, 0, way) == pytest.approx(reaches)
+    assert finder.outside(solids, face_of(solids, 0, (0, 0, 1)), 1) == pytest.approx(0.25)
+    assert finder.outside(solids, face_of(solids, 1, (0, 0, -1)), 0) == pytest.approx(0.25)
+    assert finder.outside(solids, face_of(solids, 0, (1, 0, 0)), 1) == pytest.approx(-1.6)
+    assert finder.extent(solids, face_of(solids, 0, (0, 0, 1))) == pytest.approx(10.0)
+    assert finder.extent(solids, face_of(solids, 1, (0, 1, 0))) == pytest.approx(2.8)
+
+
+def test_the_face_that_another_block_is_farthest_outside_of():
+    for by, way, apart in (
+        ((0, 0, 0.25), (0, 0, 1), 0.25),
+        ((0, 0, -0.1), (0, 0, 1), -0.1),
+        ((1.2, 0, -0.2), (1, 0, 0), -0.1),
+    ):
+        solids = solids_about(LOWER, moved(UPPER, by))
+        face, most = finder.face_between(solids, 0, 1, 1.0)
+        assert (face, most) == (face_of(solids, 0, way), pytest.approx(apart))
+    solids = solids_about(LOWER, moved(UPPER, (9.0, 9.0, 9.0)))  # the first face that is far enough will do
+    face, most = finder.face_between(solids, 0, 1, 0.5)
+    assert face == min(face_of(solids, 0, way) for way in np.eye(3))
+    assert most > 5
+    cube = BOX((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+    solids = solids_about(cube, moved(cube, (0.5, 0.5, 0.5)))  # of three that are as far the first one
+    face, most = finder.face_between(solids, 0, 1, 1.0)
+    assert face == min(face_of(solids, 0, way) for way in np.eye(3))
+    assert most == pytest.approx(-0.5)
+
+
+@pytest.mark.parametrize(("height", "apart"), [(0.25, math.inf), (0.0, math.inf), (-0.1, -0.6)])
+def test_nothing_meets_a_face_inside_its_block(height, apart):
+    """What is outside of it counts as far, and is nearest to another face otherwise."""
+    top = face_of(solids_about(LOWER), 0, (0, 0, 1))
+    solids = solids_about(LOWER, moved(UPPER, (0.8 if apart < 0 else 0.0, 0.0, height)), inside=[(0, top)])
+    face, most = finder.face_between(solids, 0, 1, 1.0)
+    assert most == (apart if math.isinf(apart) else pytest.approx(-0.5))
+    assert (face == top) is math.isinf(apart)
+    every = solids_about(LOWER, moved(UPPER, (0.0, 0.0, -0.3)), inside=[(0, i) for i in range(6)])
+    assert finder.face_between(every, 0, 1, 1.0) == (-1, -math.inf)
+
+
+ROOF = [(x, y, z) for x in (-1.0, 1.0) for y, z in ((0.0, 0.0), (0.5, -0.5), (-0.5, -0.5))]
+"""A ridge along x."""
+KEEL = [(x, y, z) for y in (-0.8, 0.8) for x, z in ((0.0, 0.0), (0.6, 0.6), (-0.6, 0.6))]
+"""A keel along y."""
+
+
+@pytest.mark.parametrize("gap", [-0.01, 0.02])
+def test_edges_that_cross_are_apart_along_the_direction_across_both(gap):
+    """A ridge along x and a keel above it that is turned from y."""
+    turn = Rotation.from_rotvec([0.0, 0.0, 0.3])
+    blocks = mr.Polyhedron(ROOF), moved(mr.Polyhedron(KEEL), (0.2, 0.1, gap), turn)
+    for order, up in ((1, 1.0), (-1, -1.0)):
+        solids = solids_about(*blocks[::order])
+        way, apart = finder.across_edges(solids, 0, 1)
+        np.testing.assert_allclose(way, [0.0, 0.0, up], atol=1e-12)
+        assert apart == pytest.approx(gap, abs=1e-12)
+        end, along = finder.edge_towards(solids, 0, way)
+        expected = [1.0, 0.0, 0.0] if up > 0 else turn.apply([0.0, 1.0, 0.0])
+        assert (
+            abs(np.dot(along, expected))
+            == pytest.approx(np.linalg.norm(along))
+            == pytest.approx(2.0 if up > 0 else 1.6)
+        )
+        assert end[2] == pytest.approx(0.0 if up > 0 else gap)
+        table = np.zeros((3, 11))
+        assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        y, x = 0.0, 0.2 + 0.1 * math.tan(0.3)  # where the keel passes over the ridge
+        np.testing.assert_allclose(table[1], [0, 1, x, y, 0.5 * gap, *way, gap, 0.25, 0.0], atol=1e-12)
+        assert not table[[0, 2]].any()
+        table = np.zeros((1, 11))
+        assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        assert not table.any()
+
+
+@pytest.mark.parametrize(("sine", "across"), [(0.9e-3, False), (1.5e-3, True)])
+def test_edges_that_are_nearly_parallel_have_no_direction_across_both(sine, across):
+    solids = solids_about(LOWER, UPPER)._replace(
+        ways=np.array([[1.0, 0.0, 0.0], [math.sqrt(1 - sine**2), sine, 0.0]]), way=np.array([0, 1, 2])
+    )
+    assert np.isfinite(finder.across_edges(solids, 0, 1)[1]) == across
+
+
+def test_the_first_of_edges_that_reach_as_far_is_taken():
+    solids = solids_about(LOWER)
+    top = face_of(solids, 0, (0, 0, 1))
+    end, along = finder.edge_towards(solids, 0, (0.0, 1.0, 1.0))
+    np.testing.assert_allclose([end[1:], np.add(end, along)[1:]], [[1.5, 0.0]] * 2)
+    faces = min(top, face_of(solids, 0, (0, 1, 0)))
+    corners = [finder.corner_of(solids, i) for i in range(solids.first[faces], solids.first[faces + 1])]
+    following = corners[(corners.index(end) + 1) % 4]
+    np.testing.assert_allclose(np.add(end, along), following)
+
+
+def test_the_deepest_of_places_counts():
+    table = np.zeros((6, 11))
+    table[:, 8] = [-9.0, -0.1, -0.3, -0.2, -8.0, -7.0]
+    assert finder.deepest(table, 1, 4) == -0.3
+    assert finder.deepest(table, 1, 6) == -8.0
+    assert finder.deepest(table, 2, 2) == finder.deepest(table, 4, 7) == -math.inf
+
+
+def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
+    """Of those of either block that the other one is outside of by more than some number, which do not lie inside."""
+    solids = solids_about(LOWER, UPPER, inside=[(1, 5)])
+    depth = {0: -0.5, 2: -0.1, 3: -0.02, 7: -0.3, 8: -0.01, 11: -0.001}
+    out = {2: -0.4, 3: -0.9, 7: -0.5, 8: -0.6, 11: 0.0}
+    asked = []
+
+    def clip(_, face, blocks, table, count, room):
+        asked.append((face, blocks))
+        table[count, 8] = depth[face]
+        return count + 1
+
+    monkeypatch.setattr(finder, "clip", clip)
+    monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
+    table = np.zeros((3, 11))
+    for least, expected, more in (
+        (-0.3, (0, (0, 1), -0.5), []),
+        (-0.45, (2, (0, 1), -0.1), [(2, (0, 1))]),
+        (-0.55, (2, (0, 1), -0.1), [(2, (0, 1)), (7, (1, 0))]),
+        (-0.6, (2, (0, 1), -0.1), [(2, (0, 1)), (7, (1, 0))]),
+        (-0.7, (8, (1, 0), -0.01), [(2, (0, 1)), (7, (1, 0)), (8, (1, 0))]),
+    ):
+        asked.clear()
+        assert finder.shallowest(solids, 0, (0, 1), least, table, 1, None) == expected
+        assert asked == [(0, (0, 1)), *more]
+    depth[8] = depth[2]  # of two that are as deep the first one
+    assert finder.shallowest(solids, 0, (0, 1), -0.7, table, 1, None) == (2, (0, 1), -0.1)
+    asked.clear()  # from a face of the other block
+    assert finder.shallowest(solids, 7, (1, 0), -0.45, table, 1, None) == (2, (0, 1), -0.1)
+    assert asked == [(7, (1, 0)), (2, (0, 1))]
+
+
+def decided(monkeypatch, apart, *, reach=0.01, outlines=(6.0, 4.0), faces=(0, 6), gap=-0.2, cosine=-1.0, across=-1.0):
+    """How two blocks meet whose faces and edges are so far apart: as edges or along which face, and how deep another
+    face may lie that comes into question."""
+    sought = []
+
+    def shallowest(_, face, blocks, least, *rest):
+        sought.append(least)
+        return face, blocks, gap
+
+    normals = {faces[0]: (1.0, 0.0, 0.0), faces[1]: (1.0, 0.0, 0.0), 99: (cosine, math.sqrt(1 - cosine**2), 0.0)}
+    for name, what in {
+        "face_between": lambda _, block, other, far: (faces[block], apart[block]),
+        "extent": lambda _, face: outlines[faces.index(face)],
+        "shallowest": shallowest,
+        "face_towards": lambda _, block, way: 99 if way[0] < 0 else None,
+        "normal_of": lambda _, face: normals[face],
+        "across_edges": lambda _, a, b: ((0.0, 0.0, 1.0), across),
+        "meet_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
+        "clip": lambda _, face, blocks, table, count, room: ("faces", face, blocks),
+    }.items():
+        monkeypatch.setattr(finder, name, what)
+    return finder.find_pair(None, reach, (0, 1), None, 7, None), *sought
+
+
+def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
+    one, other = ("faces", 0, (0, 1)), ("faces", 6, (1, 0))
+    assert decided(monkeypatch, (0.005, 0.001)) == (one,)
+    assert decided(monkeypatch, (0.01, 0.001)) == (one,)
+    assert decided(monkeypatch, (0.001, 0.01)) == (other,)
+    assert decided(monkeypatch, (0.02, 0.001)) == decided(monkeypatch, (0.001, 0.02)) == (7,)
+    assert decided(monkeypatch, (0.001, -math.inf), faces=(0, -1)) == (7,)  # all of its faces lie inside
+    assert decided(monkeypatch, (-math.inf, 0.001), faces=(-1, 0)) == (7,)
+    assert decided(monkeypatch, (0.001, 0.005), faces=(6, 0)) == (("faces", 0, (1, 0)),)
+
+
+def test_of_faces_that_are_as_far_apart_the_larger_one_is_taken(monkeypatch):
+    """By a millionth of how much longer its outline is, 3 m."""
+    one, other, apart = ("faces", 0, (0, 1)), ("faces", 6, (1, 0)), 0.001
+    for outlines, by, taken in (
+        ((4.0, 4.0), 0.0, one),
+        ((7.0, 4.0), 0.0, one),
+        ((4.0, 7.0), 0.0, other),
+        ((7.0, 4.0), 2.5e-6, one),
+        ((7.0, 4.0), 3.5e-6, other),
+        ((4.0, 7.0), -2.5e-6, other),
+        ((4.0, 7.0), -3.5e-6, one),
+    ):
+        assert decided(monkeypatch, (apart, apart + by), outlines=outlines) == (taken,)
+
+
+def test_faces_that_come_into_question_are_deeper_by_a_share_of_the_smaller_outline(monkeypatch):
+    assert decided(monkeypatch, (-0.1, -0.3)) == (("faces", 0, (0, 1)), pytest.approx(-0.1 - 0.06 * 4.0))
+    assert decided(monkeypatch, (-0.3, -0.1)) == (("faces", 6, (1, 0)), pytest.approx(-0.1 - 0.06 * 4.0))
+    assert decided(monkeypatch, (0.0, 0.0)) == (("faces", 0, (0, 1)),)
+    assert decided(monkeypatch, (0.005, 0.0)) == (("faces", 0, (0, 1)),)
+
+
+@pytest.mark.parametrize(
+    ("options", "edges"),
+    [
+        ({"cosine": -0.71, "across": -0.1}, False),
+        ({"cosine": -0.69, "across": -0.1}, True),
+        ({"cosine": -0.69, "across": -0.159}, True),
+        ({"cosine": -0.69, "across": -0.161}, False),
+        ({"cosine": -1.0, "gap": -math.inf, "across": -9.0}, True),
+        ({"cosine": 0.5, "across": 0.009}, True),
+        ({"cosine": 0.5, "across": 0.01}, None),
+        ({"cosine": 0.5, "across": 0.011}, None),
+    ],
+)
+def test_blocks_that_overlap_meet_as_edges_where_these_are_much_less_deep(monkeypatch, options, edges):
+    """By a fifth; and not where their faces are nearly flush."""
+    met, _ = decided(monkeypatch, (-0.3, -0.1), **options)
+    expected = {None: 7, False: ("faces", 6, (1, 0)), True: ("edges", (0, 1), (0.0, 0.0, 1.0), options["across"])}
+    assert met == expected[edges]
+
+
+def poses_of(blocks, by=None, change=None):
+    drawn = np.array([block.centroid for block in blocks])
+    d, count = drawn.shape[1], len(blocks)
+    by = np.zeros((count, d)) if by is None else np.array(by, dtype=float)
+    return drawn, Poses(drawn, by, np.zeros((count, d, d)) if change is None else np.array(change))
+
+
+def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(), room=None):
+    """Where blocks meet, as pairs of a face and another block, and the places. Pairs of blocks are skipped."""
+    drawn, poses = poses_of(blocks, by, change)
+    whole = Finder(blocks, drawn)
+    if room:
+        whole._table = np.empty((room, 11))
+    which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
+    a, b = np.reshape(np.array(skipped, dtype=np.int64), (-1, 2)).T
+    places = whole.found(poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b)))
+    pairs = sorted({tuple(sorted(pair)) for pair in zip(places.face.tolist(), places.other.tolist(), strict=True)})
+    return pairs, places
+
+
+ROW = [BOX((1.0, 1.0, 1.0), (1.005 * i, 0.0, 0.0)) for i in (2, 0, 3, 1)]
+"""Cubes in a row with gaps of 5 mm: the second, the fourth, the first and the third one."""
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_pairs_that_are_nearer_than_both_reach_are_found(axis):
+    blocks = [BOX((1.0, 1.0, 1.0), np.roll([1.005 * i, 0.0, 0.0], axis)) for i in (2, 0, 3, 1)]
+    every = [(0, 2), (0, 3), (1, 3)]
+    assert found(blocks, reach=0.0026)[0] == every
+    assert found(blocks, reach=0.0024)[0] == []
+    assert found(blocks, reach=[0.004, 0.002, 0.0, 0.002])[0] == [(0, 3)]
+    assert found(blocks, watched=[0])[0] == [(0, 2), (0, 3)]
+    assert found(blocks, watched=[1, 2])[0] == [(0, 2), (1, 3)]
+    assert found(blocks, watched=[])[0] == []
+    assert found(blocks, skipped=[(1, 3)])[0] == [(0, 2), (0, 3)]
+    assert found(blocks, skipped=[(0, 3)])[0] == found(blocks, skipped=[(3, 0), (2, 3)])[0] == [(0, 2), (1, 3)]
+
+
+def test_blocks_are_found_in_any_order():
+    """The farthest one is the last one, too."""
+    for order, pairs in (((0, 2, 1, 3), [(0, 2), (1, 2), (1, 3)]), ((3, 2, 1, 0, 4), [(0, 1), (0, 4), (1, 2), (2, 3)])):
+        assert found([BOX((1.0, 1.0, 1.0), (1.005 * i, 0.0, 0.0)) for i in order])[0] == pairs
+
+
+def test_fixed_blocks_do_not_meet_each_other():
+    blocks = [BOX((1.0, 1.0, 1.0), (1.005 * i, 0.0, 0.0), fixed=i in (1, 2)) for i in (2, 0, 3, 1)]
+    assert found(blocks)[0] == [(0, 2), (1, 3)]
+
+
+@pytest.mark.parametrize("room", [None, 1, 5, 12])
+def test_places_have_room(room):
+    _, places = found(ROW, room=room)
+    assert len(places.gap) == 12
+    np.testing.assert_allclose(places.gap, 0.005, rtol=1e-9)
+    np.testing.assert_allclose(places.share, 0.25)
+    np.testing.assert_allclose(places.area, 1.0)
+    np.testing.assert_allclose(np.abs(places.normal), np.tile([1.0, 0.0, 0.0], (12, 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        np.unique(np.round(places.place, 9), axis=0)[:, 0], np.repeat([0.5025, 1.5075, 2.5125], 4)
+    )
+    some = places.only(np.array([3, 4]))
+    assert [len(part) for part in some] == [2] * 7
+
+
+def test_blocks_meet_where_they_have_moved_to():
+    turn = Rotation.from_rotvec([0.0, 0.0, math.pi / 4]).as_matrix() - np.eye(3)
+    blocks = [BOX((2.0, 2.0, 1.0), (0.0, 0.0, -0.5)), BOX((2.0, 2.0, 1.0), (5.0, 0.0, 3.5))]
+    pairs, places = found(blocks, [(0, 0, 0.5), (-5, 0, -2.502)], [np.zeros((3, 3)), turn])
+    assert pairs == [(0, 1)]
+    assert len(places.gap) == 8
+    np.testing.assert_allclose(places.gap, -0.002, rtol=1e-9)
+    np.testing.assert_allclose(places.place[:, 2], 0.499, rtol=1e-9)
+
+
+@pytest.mark.parametrize("size", [1.0, 0.1])
+def test_blocks_of_the_plane_meet_at_one_end_of_their_prisms(size):
+    """Two lines share what a pair has, over the length along which the sides lie over each other. Both blocks are
+    turned about the centroid of the first one."""
+    sides = ((-2, 2, -1, 0), (0.5, 1.5, 3, 4), (5, 6, 0, 1))
+    blocks = [box(*(size * x for x in one)) for one in sides]
+    turn, turns = np.array([[math.cos(0.1), math.sin(0.1)], [-math.sin(0.1), math.cos(0.1)]]), np.zeros((3, 2, 2))
+    turns[:2] = turn - np.eye(2)
+    drawn = np.array([block.centroid for block in blocks])
+
+    def after(x, z):
+        return turn @ (size * np.array([x, z]) - drawn[0]) + drawn[0]
+
+    pairs, places = found(blocks, [(0, 0), after(1.2, 0.5 - 0.004) - drawn[1], (0, 0)], turns)
+    assert pairs == [(0, 1)]
+    np.testing.assert_allclose(places.gap, [-0.004 * size] * 2, rtol=1e-6)
+    np.testing.assert_allclose(places.share, 0.5, rtol=1e-9)
+    np.testing.assert_allclose(places.area, size, rtol=1e-9)
+    np.testing.assert_allclose(places.normal, np.tile(turn @ [0.0, 1.0], (2, 1)), atol=1e-9)
+    ends = [after(x, -0.002) for x in (0.7, 1.7)]
+    np.testing.assert_allclose(places.place[places.place[:, 0].argsort()], ends, atol=1e-9)
+
+
+@pytest.mark.parametrize("prism", [False, True])
+def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
+    """A block on one of 1 m and one of 3 m, which are one, and another block beside them."""
+    cut = mr.Compound([box(0, 1, 0, 1), box(1, 4, 0, 1)])
+    blocks = [box(9, 10, 0, 1), box(0.5, 3.5, 1.001, 2), cut, box(-1.001, -0.001, 0.3, 0.6)]
+    if prism:
+        blocks = [mr.Compound.prism(b) if isinstance(b, mr.Compound) else mr.Polyhedron.prism(b) for b in blocks]
+    pairs, places = found(blocks)
+    assert pairs == [(1, 2), (2, 3)]
+    over = np.minimum(places.face, places.other) == 1
+    assert (np.diff(over.astype(int)) != 0).sum() == 1  # those of a pair stand together
+    np.testing.assert_allclose(places.area[over], 3.0, rtol=1e-9)
+    ends, count = (4, 2) if not prism else (8, 4)
+    assert over.sum() == ends
+    np.testing.assert_allclose(np.sort(places.share[over]), np.repeat([0.5 / 3, 2.5 / 3], ends // 2) / count, rtol=1e-9)
+    np.testing.assert_allclose(places.share[~over], 1 / (~over).sum(), rtol=1e-9)
+    np.testing.assert_allclose(places.area[~over], 0.3, rtol=1e-9)
+    drawn, _ = poses_of(blocks)
+    whole = Finder(blocks, drawn)
+    each = np.ones(3)
+    pair = Found(
+        *(np.array(of) for of in ([3, 1, 1], [1, 3, 2])), each, each, each, 0.25 * each, np.array([0.0, 0.0, 2.0])
+    )
+    edges = whole._among_blocks(pair)  # edges have the share that they have, and no area
+    np.testing.assert_array_equal((edges.share, edges.area), [[0.25] * 3, [0.0, 0.0, 2.0]])
+    assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3], [4]]
+    np.testing.assert_array_equal(whole.between(np.array([2, 1]), np.array([3, 0])), [2 * 5 + 4, 3 * 5 + 4, 1])
+    np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 2.997, 4.0, 0.3])

@@ -1,0 +1,241 @@
+"""Ties, dampers, actuators, forces and supports, one function at a time, against the geometry of two points."""
+
+import math
+
+import numpy as np
+import pytest
+from by_hand import MOVED, MOVING, about, books, matrix, system, velocity_at
+
+from mjrock.distinct import links
+from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.system import Supports
+
+BOTH = pytest.mark.parametrize("d", [2, 3])
+ENDS = pytest.mark.parametrize("end", ["ground", "support", "body"])
+AT = {2: np.array([0.2, -0.5]), 3: np.array([0.2, 0.3, -0.5])}
+ORIGIN = {2: np.array([-0.1, 0.4]), 3: np.array([-0.1, -0.25, 0.4])}
+BETWEEN = {2: np.array([1.5, 0.8]), 3: np.array([1.5, -0.6, 0.8])}
+H = 0.02
+
+
+def linked(d, end="body", kind="ties", **numbers):
+    """Two bodies in motion with one link on body 1, from the ground, a support or body 0."""
+    whole = system(d)
+    ends = {"body": 1, "anchor": 0 if end == "body" else -1, "support": 0 if end == "support" else -1}
+    places = {"at": AT[d], "origin": ORIGIN[d], "between": BETWEEN[d]}
+    whole = whole._replace(**{kind: rows(kinds(d).link, 1, **ends | places | {"broken": math.inf} | numbers)})
+    return whole, getattr(whole, kind)[0], end
+
+
+def geometry(whole, end):
+    """Length and direction of the link, arms to its ends, and its rate."""
+    d, (other, body) = len(whole.axes), whole.bodies
+    arm = matrix(d, 1) @ AT[d]
+    across, velocity, anchor_arm = BETWEEN[d] + body.place + arm - AT[d], velocity_at(body, arm), ORIGIN[d]
+    if end == "body":
+        anchor_arm = matrix(d, 0) @ ORIGIN[d]
+        across, velocity = across - other.place - anchor_arm + ORIGIN[d], velocity - velocity_at(other, anchor_arm)
+    elif end == "support":
+        across, velocity = across - whole.supports.moved[0], velocity - whole.supports.moving[0]
+    length = np.linalg.norm(across)
+    return length, across / length, arm, anchor_arm, velocity @ across / length
+
+
+def assert_pulled(whole, end, force):
+    """A link pushes its ends apart by a force, and nothing else acts."""
+    _, way, arm, anchor_arm, _ = geometry(whole, end)
+    np.testing.assert_allclose(whole.bodies[1].force, force * way, rtol=1e-11, atol=1e-14)
+    np.testing.assert_allclose(whole.bodies[1].moment, about(arm, force * way), rtol=1e-11, atol=1e-14)
+    back = -force * way if end == "body" else 0.0 * way
+    np.testing.assert_allclose(whole.bodies[0].force, back, rtol=1e-11, atol=1e-14)
+    np.testing.assert_allclose(whole.bodies[0].moment, about(anchor_arm, back), rtol=1e-11, atol=1e-14)
+
+
+def carried(whole, end):
+    """Velocity of the support along the link [m/s]."""
+    return geometry(whole, end)[1] @ whole.supports.moving[0] if end == "support" else 0.0
+
+
+@BOTH
+@ENDS
+def test_a_link_is_where_its_ends_are(d, end):
+    whole, row, _ = linked(d, end)
+    length, way, arm, anchor_arm, rate = geometry(whole, end)
+    now = links.pull(row, whole, whole.axes)
+    assert now.length == pytest.approx(length, rel=1e-12)
+    np.testing.assert_allclose(now.way, way, rtol=1e-11)
+    np.testing.assert_allclose(now.arm, arm, rtol=1e-12)
+    np.testing.assert_allclose(now.anchor_arm, anchor_arm, rtol=1e-12)
+    assert links.lengthening(row, whole, now, whole.axes) == pytest.approx(rate, rel=1e-11)
+    links.act(row, whole.bodies, now, 3.0)
+    assert_pulled(whole, end, 3.0)
+    assert min(np.abs(MOVED).min(), np.abs(MOVING).min()) > 0
+
+
+@BOTH
+@ENDS
+@pytest.mark.parametrize("longer", [0.01, -0.01])
+@pytest.mark.parametrize("push", [0.0, 1e9])
+def test_a_tie_pulls_where_it_is_longer_than_its_slack_and_a_spring_pushes_too(d, end, longer, push):
+    whole, tie, _ = linked(d, end, k=2e3, strength=1e9, ultimate=1.0, pulled=-3.0)
+    tie.reach, tie.push = geometry(whole, end)[0] - longer, push
+    account, stretch = books(whole), longer if push else max(longer, 0.0)
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert_pulled(whole, end, -2e3 * stretch)
+    assert tie.pulled == pytest.approx(-2e3 * stretch, rel=1e-10)
+    work = 0.5 * H * (-3.0 - 2e3 * stretch) * carried(whole, end)
+    assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
+    assert links.linked_energy(whole, whole.axes) == pytest.approx((0.0, 0.5 * 2e3 * stretch**2), rel=1e-9)
+    assert (tie.drawn, account.ties[0], tie.broken) == (0.0, 0.0, math.inf)
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert account.totals[0].ground == pytest.approx(work - H * 2e3 * stretch * carried(whole, end), rel=1e-10)
+
+
+@BOTH
+@pytest.mark.parametrize(("longer", "push", "way"), [(0.03, 0.0, 1), (0.03, 40.0, 1), (-0.03, 40.0, -1)])
+def test_a_tie_yields_at_its_strength_and_slips_at_its_push(d, longer, push, way):
+    """By what it is longer than its spring can hold; the work is booked, and its reach moves on."""
+    whole, tie, end = linked(d, k=2e3, strength=20.0, push=push, ultimate=0.5, drawn=0.1)
+    tie.reach = reach = geometry(whole, end)[0] - longer
+    account, held = books(whole), 20.0 if way > 0 else push
+    beyond = 0.03 - held / 2e3
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert_pulled(whole, end, -way * held)
+    assert tie.pulled == pytest.approx(-way * held, rel=1e-9)
+    assert tie.reach == pytest.approx(reach + way * beyond, rel=1e-12)
+    assert tie.drawn == pytest.approx(0.1 + beyond, rel=1e-10)
+    assert account.ties[0] == pytest.approx(held * beyond, rel=1e-9)
+    tie.reach = reach
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert account.ties[0] == pytest.approx(2 * held * beyond, rel=1e-9)
+    assert tie.drawn == pytest.approx(0.1 + 2 * beyond, rel=1e-10)
+    assert account.broken[0] == 0.0
+
+
+@BOTH
+@ENDS
+@pytest.mark.parametrize("left", [0.004, 0.02, 0.0])
+def test_a_tie_breaks_where_it_has_been_drawn_out_as_far_as_it_can_be(d, end, left):
+    """Within the step, when the length was just reached. What it pulled too short or too long there is made up for."""
+    whole, tie, _ = linked(d, end, k=2e3, strength=20.0, ultimate=0.5, drawn=0.5 - left, pulled=-20.0)
+    length, *_, rate = geometry(whole, end)
+    turned = math.copysign(1.0, rate)
+    whole.bodies["velocity"] *= turned  # so that it grows
+    whole.bodies["spin"] *= turned
+    whole.supports.moving[:] *= turned
+    beyond = left + 0.1 * H * abs(rate)
+    tie.reach, account = length - beyond - 20.0 / 2e3, books(whole)
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert account.ties[0] == pytest.approx(20.0 * left, rel=1e-9, abs=1e-15)
+    assert tie.drawn == pytest.approx(0.5, rel=1e-12)
+    assert tie.broken == pytest.approx(5.0 - 0.1 * H, rel=1e-9)
+    assert account.broken[0] == pytest.approx(0.5 * 20.0**2 / 2e3)
+    assert account.totals[0].ground == pytest.approx(-0.9 * H * 20.0 * carried(whole, end), rel=1e-9)
+    assert_pulled(whole, end, -20.0 * 0.4)
+    assert tie.pulled == pytest.approx(-20.0 * 0.4, rel=1e-9)
+    assert links.linked_energy(whole, whole.axes) == (0.0, 0.0)
+    whole.bodies["force"] = whole.bodies["moment"] = 0.0
+    links.pull_links(whole, account, tie.broken, H, whole.axes)
+    assert_pulled(whole, end, 0.0)
+    assert tie.pulled == 0.0
+
+
+def test_when_a_tie_broke():
+    assert links.since_broken(0.01, 2.0, H) == pytest.approx(0.005)
+    assert links.since_broken(0.1, 2.0, H) == H
+    assert links.since_broken(0.01, 0.5, H) == H
+    assert links.since_broken(0.01, 0.0, H) == links.since_broken(0.01, -1.0, H) == 0.0
+    tie = rows(kinds(2).link, 1, strength=20.0)[0]
+    for since, share in ((0.0, 0.5), (0.5 * H, 0.0), (H, -0.5)):
+        assert links.pulled_until_broken(tie, since, H) == pytest.approx(20.0 * share)
+    assert links.pulled_until_broken(tie, 0.0, 0.0) == 0.0
+
+
+@BOTH
+@ENDS
+def test_a_damper_is_against_its_rate(d, end):
+    whole, damper, _ = linked(d, end, "dampers", c=50.0, pulled=7.0)
+    account, rate = books(whole), geometry(whole, end)[-1]
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert_pulled(whole, end, -50.0 * rate)
+    assert damper.pulled == pytest.approx(-50.0 * rate, rel=1e-11)
+    taken, work = 0.5 * H * (50.0 * rate - 7.0) * rate, 0.5 * H * (7.0 - 50.0 * rate) * carried(whole, end)
+    assert account.dampers[0] == pytest.approx(taken, rel=1e-10)
+    assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert account.dampers[0] == pytest.approx(taken + H * 50.0 * rate**2, rel=1e-10)
+
+
+def driving(d):
+    """An actuator of body 1, and a damper on it, whose account stands before that of the actuator."""
+    way = np.eye(d)[0] * 0.6 + np.eye(d)[-1] * 0.8
+    whole, row, _ = linked(d, "ground", "actuators", k=300.0, c=2.0, push=0.0, reach=0.02, pulled=5.0, dragged=1.0)
+    row.between = way
+    drives = Supports(np.zeros(1), np.zeros((1, 1)), np.zeros(2, dtype=int), np.array([[0.05]]), np.array([[0.4]]))
+    return (
+        whole._replace(drives=drives, dampers=rows(kinds(d).link, 1, body=1, anchor=-1, support=-1, between=1.0)),
+        row,
+        way,
+    )
+
+
+@BOTH
+def test_an_actuator_pushes_a_point_along_its_way_to_its_history(d):
+    whole, row, way = driving(d)
+    account, body, arm = books(whole), whole.bodies[1], matrix(d, 1) @ AT[d]
+    rate = 0.4 - way @ velocity_at(body, arm)
+    force = 300.0 * (0.05 - (way @ (body.place + arm - AT[d]) - 0.02)) + 2.0 * rate
+    driven, taken = 0.5 * H * (5.0 + force) * 0.4, 0.5 * H * (1.0 + 2.0 * rate) * rate
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    np.testing.assert_allclose(body.force, force * way, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(body.moment, about(arm, force * way), rtol=1e-11, atol=1e-12)
+    assert (row.pulled, row.dragged) == pytest.approx((force, 2.0 * rate), rel=1e-11)
+    assert account.driven[0] == pytest.approx(driven, rel=1e-11)
+    np.testing.assert_allclose(account.dampers, [0.0, taken], rtol=1e-10)
+    held = force - 2.0 * rate
+    assert links.linked_energy(whole, whole.axes) == pytest.approx((0.0, 0.5 * held**2 / 300.0), rel=1e-10)
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    assert account.driven[0] == pytest.approx(driven + H * force * 0.4, rel=1e-11)
+    assert account.dampers[1] == pytest.approx(taken + H * 2.0 * rate**2, rel=1e-10)
+
+
+@BOTH
+def test_a_constant_force_acts_at_a_point_and_has_a_potential(d):
+    force = np.array([3.0, -2.0, 5.0])[:d]
+    whole, _, _ = linked(d, "ground", "forces", between=force)
+    arm = matrix(d, 1) @ AT[d]
+    links.pull_links(whole, books(whole), 5.0, H, whole.axes)
+    np.testing.assert_allclose(whole.bodies[1].force, force)
+    np.testing.assert_allclose(whole.bodies[1].moment, about(arm, force), rtol=1e-12)
+    falls = -force @ (whole.bodies[1].place + arm - AT[d])
+    assert links.linked_energy(whole, whole.axes) == pytest.approx((falls, 0.0), rel=1e-11)
+
+
+TIMES = [np.array([0.5, 1.0, 1.5, 3.0, 4.0]), np.array([2.0]), np.array([0.0, 1.0])]
+PLACES = [
+    np.array([[0.1, 1.0], [0.2, 2.0], [0.7, -1.0], [0.4, 0.0], [0.9, 3.0]]),
+    np.array([[0.3, 0.6]]),
+    np.array([[0.0, 0.0], [5.0, 6.0]]),
+]
+
+
+def supports():
+    first = np.cumsum([0, *map(len, TIMES)])
+    return Supports(np.concatenate(TIMES), np.concatenate(PLACES), first, np.ones((3, 2)), np.full((3, 2), 9.0))
+
+
+@pytest.mark.parametrize("t", [-1.0, 0.0, 0.5, 0.7, 1.0, 1.3, 1.5, 2.0, 2.9, 3.0, 3.5, 4.0, 9.0])
+def test_a_support_is_where_its_history_has_it(t):
+    """Linear between its samples and constant beyond them; its velocity is the mean of the step."""
+    whole = supports()
+    for h in (0.0, 0.25):
+        before = whole.moved.copy()
+        links.move_supports(whole, t, h)
+        for i in range(3):
+            for axis in range(2):
+                place = np.interp(t, TIMES[i], PLACES[i][:, axis])
+                assert links.support_place(whole, i, axis, t) == pytest.approx(place)
+                assert whole.moved[i, axis] == pytest.approx(place)
+                moving = (place - before[i, axis]) / h if h else 0.0
+                assert whole.moving[i, axis] == pytest.approx(moving)
+        whole.moved[:] = 1.0

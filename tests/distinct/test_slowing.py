@@ -1,0 +1,47 @@
+"""Damping of a slow motion, one function at a time: what it leaves of a motion, and the energy that it takes."""
+
+import math
+
+import numpy as np
+import pytest
+from by_hand import books, energy, system
+
+from mjrock.distinct import slowing
+
+BOTH = pytest.mark.parametrize("d", [2, 3])
+
+
+@BOTH
+def test_all_velocities_decay_alike_and_the_energy_that_they_lose_is_booked(d):
+    whole = system(d)
+    account, names = books(whole), ("velocity", "spin", *(("momentum",) if d == 3 else ()))
+    before, had = {name: whole.bodies[name].copy() for name in names}, energy(whole.bodies)
+    for turn in (1, 2):
+        slowing.slow_down(whole, account, 0.3, whole.axes)
+        for name in names:
+            np.testing.assert_allclose(whole.bodies[name], math.exp(-0.3 * turn) * before[name], rtol=1e-13)
+        assert account.dashpots[-1] == pytest.approx(had - energy(whole.bodies), rel=1e-12)
+    assert account.dashpots[0] == 0.0
+
+
+@BOTH
+def test_each_force_that_is_not_balanced_loses_a_share_against_the_motion(d):
+    """Along each axis its size times the share, with the sign of the velocity; nothing where there is no velocity."""
+    whole, share, kick = system(d), 0.25, 0.02
+    account, bodies = books(whole), whole.bodies
+    random = np.random.default_rng(d)
+    for name in ("force", "moment"):
+        bodies[name] = random.normal(size=bodies[name].shape)
+    bodies["velocity"][1, 0] = bodies["spin"][0, 0] = 0.0
+    power, expected = 0.0, {}
+    for force, velocity in (("force", "velocity"), ("moment", "spin")):
+        less = share * np.abs(bodies[force]) * np.sign(bodies[velocity])
+        expected[force], power = bodies[force] - less, power + (less * bodies[velocity]).sum()
+    slowing.oppose(whole, account, share, kick, whole.axes)
+    for name, force in expected.items():
+        np.testing.assert_allclose(bodies[name], force, rtol=1e-14)
+    assert account.dashpots[-1] == pytest.approx(kick * power, rel=1e-13)
+    assert power > 0
+    slowing.oppose(whole, account, share, kick, whole.axes)
+    assert account.dashpots[-1] > 1.5 * kick * power
+    assert account.dashpots[0] == 0.0
