@@ -38,7 +38,7 @@ from .looking import (
     wears,
 )
 from .pair_law import SHARED, PairLaw, least_among, pair_number
-from .rows import joined, rows, taken
+from .rows import chosen, joined, rows
 from .softening import Sides, shares_within
 from .solids import Poses
 from .system import Books, System
@@ -188,7 +188,7 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(taken(lines, which), slack[which], np.empty(len(which)))
+        gone = Lines(chosen(lines, which), slack[which], np.empty(len(which)))
         new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
         before = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
@@ -207,7 +207,7 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
-        lines = joined(joints, taken(others, stays), np.asarray(new.rows))
+        lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
