@@ -282,6 +282,9 @@ EQUIVALENT = {
     "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
         "a line that met its face a step ago was closed for the step, in both ways"
     ),
+    "links.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
+        "a history of one sample has one place"
+    ),
     "looking.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",

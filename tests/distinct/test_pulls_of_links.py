@@ -92,7 +92,9 @@ def test_a_tie_pulls_where_it_is_longer_than_its_slack_and_a_spring_pushes_too(d
 
 
 @BOTH
-@pytest.mark.parametrize(("longer", "push", "way"), [(0.03, 0.0, 1), (0.03, 40.0, 1), (-0.03, 40.0, -1)])
+@pytest.mark.parametrize(
+    ("longer", "push", "way"), [(0.03, 0.0, 1), (0.03, 40.0, 1), (-0.03, 40.0, -1), (-0.03, 0.5, -1)]
+)
 def test_a_tie_yields_at_its_strength_and_slips_at_its_push(d, longer, push, way):
     """By what it is longer than its spring can hold; the work is booked, and its reach moves on."""
     whole, tie, end = linked(d, k=2e3, strength=20.0, push=push, ultimate=0.5, drawn=0.1)
@@ -138,6 +140,23 @@ def test_a_tie_breaks_where_it_has_been_drawn_out_as_far_as_it_can_be(d, end, le
     links.pull_links(whole, account, tie.broken, H, whole.axes)
     assert_pulled(whole, end, 0.0)
     assert tie.pulled == 0.0
+
+
+@pytest.mark.parametrize(("ultimate", "broken"), [(0.5, True), (0.75, False)])
+def test_a_tie_that_is_drawn_out_just_to_its_limit_breaks(ultimate, broken):
+    """It is 1 m longer than its slack, of which its spring holds half a metre."""
+    tie = {"k": 2.0, "strength": 1.0, "reach": 1.0, "ultimate": ultimate, "broken": math.inf}
+    whole = system(2, still=True)
+    whole = whole._replace(ties=rows(kinds(2).link, 1, anchor=-1, support=-1, between=[2.0, 0.0], **tie))
+    links.pull_links(whole, books(whole), 5.0, H, whole.axes)
+    assert (whole.ties[0].broken == 5.0) == broken
+
+
+def test_a_link_that_only_pulls_is_slack_where_one_that_pushes_too_is_shorter():
+    for push, elongation in ((0.0, 0.0), (0.5, -0.1)):
+        tie = rows(kinds(2).link, 1, reach=1.0, push=push)[0]
+        assert links.elongation(tie, 0.9) == pytest.approx(elongation)
+        assert links.elongation(tie, 1.2) == pytest.approx(0.2)
 
 
 def test_when_a_tie_broke():
