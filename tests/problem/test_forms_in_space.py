@@ -7,6 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from everyday import slow
 
 import mjrock as mr
 from mjrock.problem.masonry.statics import falling
@@ -123,7 +124,7 @@ def bounds(masonry):
 
 SIZES = [
     ((2.4, 1.6, 1.2, UNIT), {}),
-    ((7.0, 3.0, 3.0, (1.2, 0.6)), {"thickness": 0.8}),
+    slow(((7.0, 3.0, 3.0, (1.2, 0.6)), {"thickness": 0.8})),
     ((3.1, 1.1, 1.4, (0.4, 0.2)), {"thickness": 0.35}),
     ((4.0, 1.5, 2.0, (0.5, 0.25)), {"thickness": 0.7, "returns": "left"}),
     ((4.3, 1.6, 0.0, (0.5, 0.25)), {"thickness": 0.3, "returns": "none"}),

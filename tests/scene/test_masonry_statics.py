@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy
-from everyday import slow
+from everyday import among, slow
 from masonry_blocks import GROUND, box, bracket, columns, tilted
 from scenes import unbalanced
 
@@ -106,7 +106,7 @@ def test_a_stack_without_friction_is_not_told_to_be_stiffer(k_n):
     require_standing(columns(2, k_n, friction=1e-3))
 
 
-@pytest.mark.parametrize("k_n", [1e6, 1e10])
+@pytest.mark.parametrize("k_n", among([1e6, 1e10], 1e6))
 def test_a_keystone_without_thrust_is_not_told_to_be_stiffer(k_n):
     """Between upright jambs friction would hold it if they were pushed together, and limit analysis says so."""
     jambs = [box(-2, -0.5, -1, 1, fixed=True, name="left"), box(0.5, 2, -1, 1, fixed=True, name="right")]
