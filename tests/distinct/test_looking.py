@@ -1,13 +1,12 @@
 """Looking at lines, one function at a time: how far joints have worn, and what springs hold."""
 
-import math
-
 import numpy as np
 import pytest
-from by_hand import SPIN, VELOCITY, matrix, system
+from by_hand import matrix, system
 
 from mjrock.distinct import looking
 from mjrock.distinct.looking import Wear
+from mjrock.distinct.turning import take_turn
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
@@ -30,7 +29,7 @@ def put_line(line, d, whole, face, gap, slip):
     line.between = turn @ (gap * NORMAL[d] + slip * ALONG[d]) - own + over
 
 
-def worn(d, lines, left, faces=(0,), **more):
+def worn(d, lines, left, faces=(0,)):
     """A system whose bodies have been turned since their rotations were taken, and the wear of its joints.
 
     Lines are (pair, gap, slip).
@@ -40,8 +39,7 @@ def worn(d, lines, left, faces=(0,), **more):
         put_line(whole.lines[i], d, whole, faces[i % len(faces)], gap, slip)
     whole.bodies["turn"] = 9.0
     pairs, count = np.array([pair for pair, _, _ in lines]), len(left)
-    start, twos = whole.bodies.copy(), np.ones(2)
-    return whole, Wear(pairs, np.full(count, 7.0), np.full(count, -7.0), np.array(left), start, twos, twos, **more)
+    return whole, Wear(pairs, np.full(count, 7.0), np.full(count, -7.0), np.array(left))
 
 
 @BOTH
@@ -84,50 +82,11 @@ def test_at_the_limit_a_pair_has_not_left():
 
 
 @BOTH
-def test_a_body_moves_on_by_its_way_its_rotation_and_its_velocity(d):
-    """From where it stood, and with a corner at its size. The norm of a rotation less 1 counts."""
-    whole, wear = worn(d, [(0, 0.0, 0.0)], [1.0])
-    which, time, sizes = ([0, 2] if d == 2 else [0, 1, 2]), 0.3, np.array([0.5, 0.8])
-    wear = wear._replace(sizes=sizes)
-    wear.start["place"] += 0.1
-    if d == 2:
-        wear.start["angle"] += [0.4, -0.3]
-    else:
-        wear.start["quaternion"] = np.roll(wear.start["quaternion"], 1, axis=0)
-    for body in whole.bodies:
-        looking.take_turn(body, whole.axes)
-    way = math.sqrt(d) * 0.1
-    velocity = np.linalg.norm(VELOCITY[:, which], axis=1)
-    spin = np.abs(SPIN[:, 1]) if d == 2 else np.linalg.norm(SPIN, axis=1)
-    far = []
-    for i, by in enumerate((0.4, -0.3)):
-        turn = matrix(d, i)
-        start = matrix(d, 1 - i)
-        if d == 2:
-            c, s = math.cos(by), math.sin(by)
-            start = turn @ np.array([[c, s], [-s, c]])
-        far.append(way + np.linalg.norm(turn - start) * sizes[i] + time * (velocity[i] + spin[i] * sizes[i]))
-    for more, moves in ((1 + 1e-9, False), (1 - 1e-9, True)):
-        for limits in ([more * far[0], 99.0], [99.0, more * far[1]]):
-            limited = wear._replace(limits=np.array(limits))
-            assert looking.moves_on(whole, limited, time, whole.axes) is moves
-
-
-def test_at_its_limit_a_body_is_not_looked_at():
-    whole, wear = worn(2, [(0, 0.0, 0.0)], [1.0])
-    whole.bodies["velocity"], whole.bodies["spin"] = [[3.0, 4.0], [0.0, 0.0]], 0.0
-    for body in whole.bodies:
-        looking.take_turn(body, whole.axes)
-    for limit, moves in ((2.5, False), (2.4, True)):
-        assert looking.moves_on(whole, wear._replace(limits=np.array([limit, 9.0])), 0.5, whole.axes) is moves
-
-
-@BOTH
 def test_springs_hold_what_they_store(d):
     lines = [(0, -0.003, 0.02), (0, 0.002, 0.0), (0, -0.001, 0.0)]
     whole, _ = worn(d, lines, [1.0])
     for body in whole.bodies:
-        looking.take_turn(body, whole.axes)
+        take_turn(body, whole.axes)
     whole.lines["k"] = [1e5, 2e5, 4e5]
     depth = np.full(2, 9.0)
     energy = looking.held_by_lines(whole, np.array([2, 1]), depth, whole.axes)
