@@ -183,7 +183,7 @@ def test_a_block_has_moved_where_a_find_of_it_is_not_valid_any_more(d, seen_befo
 
 def found_places(d, pairs, gap):
     """Places of pairs of blocks."""
-    face, other = np.array(pairs).reshape(-1, 2).T
+    face, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     each = np.ones(len(gap))
     return Found(face, other, np.zeros((len(gap), d)), np.zeros((len(gap), d)), np.array(gap), each, each)
 
