@@ -10,38 +10,41 @@ moves with its body, and its normal with the other. What the springs of a find h
 
 from __future__ import annotations
 
-from copy import copy
+from copy import copy, deepcopy
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
-from ..quantities import GRAVITY, Array, Flags, Integers
+from ..quantities import Array, Flags, Integers
 from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
-from .limit import Sides, shares_within
-from .looking import Wear, held, wears
+from .looking import (
+    FALL,
+    LOOK,
+    NEAR,
+    PASSED,
+    SURE,
+    Motion,
+    Reach,
+    Seen,
+    Wear,
+    held,
+    take_motion,
+    wait,
+    watch,
+    wears,
+)
 from .pair_law import SHARED, PairLaw, least_among, pair_number
-from .rows import joined, rows
+from .rows import chosen, joined, rows
+from .softening import Sides, shares_within
 from .solids import Poses
 from .system import Books, System
-from .turning import inverse_masses, rotations
 
-LOOK, SOONEST = 5e-3, 5e-4
-"""Longest and shortest time between two looks [s]."""
-FALL = 0.5 * GRAVITY * LOOK**2
-"""What a block falls by from one look to the next [m]."""
-PASSED = 0.02
-"""Way that a pair may make between two looks, over the size of the smaller block [-]."""
 STAYED = 2e-4
 """Way over its size that a block may make while a find of it stays valid [-]. What is within `NEAR` is found."""
-SURE = 2.0
-"""Way within which places are kept until the next look, over that which speeds alone make [-]."""
-NEAR = 1e-3
-"""Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
-without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
 STABLE = 0.5
 """Longest step over the longest one with which the places of a block alone are stable [-]. Intact joints, and places of
 blocks that have not moved, act on it besides."""
@@ -56,23 +59,19 @@ class Met:
     """What a look knows of those before it.
 
     Args:
-        watched: blocks that are looked at, shape (blocks,).
+        seen: of the blocks.
         handed: whether the joints of each pair that has some are handed over, shape (p,).
         pair: number of the pair of each line of an encounter, shape (lines,).
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
-        poses: where each block was when it was last taken to have moved.
-        moves: how often it has, shape (blocks,).
         found: moves of both blocks when each line was found, shape (lines,).
     """
 
-    watched: Flags
+    seen: Seen
     handed: Flags
     pair: Integers
     slack: Array
     share: Array
-    poses: Poses
-    moves: Integers
     found: Integers
 
 
@@ -100,9 +99,9 @@ class Encounters:
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
         self.jointed = _jointed(masonry, self.finder, of)
-        self.kind, self.start = system.lines.dtype, self.poses(system)
-        self.limits, free, slip, gap = self._limits(), self.blocks.free, np.zeros(len(left)), np.zeros(len(left))
-        self.wear = Wear(of[joint], slip, gap, left, system.bodies.copy(), self.limits[free], self.sizes[free])
+        self.kind, start = system.lines.dtype, self.motion(system).poses
+        self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
+        self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
@@ -117,14 +116,14 @@ class Encounters:
         return fresh
 
     def _nothing_met(self) -> Met:
-        none, unmoved = np.zeros(0, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
-        nobody, intact = np.zeros(self.count, dtype=bool), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(nobody, intact, none, np.zeros(0), np.zeros(0), self.start, unmoved, none)
+        none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
+        seen = Seen(np.zeros(self.count, dtype=bool), deepcopy(self.reach.start), np.zeros(self.count, dtype=np.int64))
+        return Met(seen, intact, none, np.zeros(0), np.zeros(0), none)
 
-    def _limits(self) -> Array:
-        """How far each block may move before it is looked at [m], shape (blocks,)."""
+    def _limits(self, start: Poses) -> Array:
+        """How far each block may move from where it stands before it is looked at [m], shape (blocks,)."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
-        found = self.finder.found(self.start, 0.5 * self.sizes, every, jointed)
+        found = self.finder.found(start, 0.5 * self.sizes, every, jointed)
         apart, limits = (
             found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other]),
             self.sizes.copy(),
@@ -136,63 +135,39 @@ class Encounters:
     def _numbers(self, found: Found) -> Integers:
         return pair_number(found.face, found.other, self.count)
 
-    def poses(self, system: System) -> Poses:
-        """Where all blocks are."""
-        blocks, still, d = self.blocks, self.blocks.poses, len(system.axes)
-        moved, change, moves = np.zeros((self.count, d)), np.zeros((self.count, d, d)), blocks.support >= 0
-        bodies = np.asarray(system.bodies)  # whose columns are found faster than those of a record array
-        moved[blocks.free], change[blocks.free] = bodies["place"], rotations(bodies)
-        moved[moves] = system.supports.moved[blocks.support[moves]]
-        return Poses(still.drawn, moved, change)
-
-    def _velocities(self, system: System) -> tuple[Array, Array]:
-        """Velocity of each block, and the largest of a corner about its centroid [m/s], (blocks, d) and (blocks,)."""
-        free, support = self.blocks.free, self.blocks.support
-        velocity, about, moves = np.zeros((self.count, len(system.axes))), np.zeros(self.count), support >= 0
-        bodies = np.asarray(system.bodies)
-        velocity[free] = bodies["velocity"]
-        velocity[moves] = system.supports.moving[support[moves]]
-        about[free] = np.linalg.norm(bodies["spin"], axis=1) * self.sizes[free]
-        return velocity, about
+    def motion(self, system: System) -> Motion:
+        """Where all blocks are, and how fast."""
+        still = self.blocks.poses
+        poses = Poses(still.drawn, np.zeros_like(still.moved), np.zeros_like(still.change))
+        motion = Motion(poses, np.zeros_like(still.moved), np.zeros(self.count))
+        take_motion(system, self.blocks, motion)
+        return motion
 
     def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, float]:
         """The system with the lines of the encounters that may happen until the next look, its books with room for
         them, and the time until then [s]. With steps of h [s] they are stable."""
-        met, wear = self.met, self.wear
-        if not (wears(system, wear, LOOK) or met.watched.any() or system.supports.moved.any()):
+        met, seen, wear = self.met, self.met.seen, self.wear
+        worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
+        if wears(system, wear):
+            worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
+            if len(system.bonds):
+                worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
+            left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
+        motion, ahead = self.motion(system), np.empty(self.count)
+        if not watch(motion, self.sizes, self.reach, seen, left, ahead):
             return system, books, LOOK
-        worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
-        worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
-        poses, (velocity, about) = self.poses(system), self._velocities(system)
-        ahead = LOOK * (np.linalg.norm(velocity, axis=1) + about)
-        watched = met.watched | (poses.far(self.start, self.sizes) + ahead > self.limits)
-        watched[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
-        moved = (poses.far(met.poses, self.sizes) > STAYED * self.sizes) | (watched & ~met.watched)
-        if not watched.any() or not moved.any():
-            return system, books, LOOK
-        met.watched, met.handed = watched, met.handed | worn
-        met.moves, met.poses = met.moves + moved, _newer(poses, met.poses, moved)
+        met.handed = met.handed | worn
         stays = self._moves_of(met.pair) == met.found
         intact = self.jointed[1][~met.handed[self.jointed[0]]]
-        known = np.unique(np.append(intact, self.finder.between(*np.divmod(met.pair[stays], self.count))))
-        found = self.finder.found(poses, SURE * (ahead + FALL + NEAR * self.sizes), watched, known)
-        until, soon = self._until(found, velocity, about)
+        known = np.sort(np.append(intact, self.finder.between(met.pair[stays])))
+        found = self.finder.found(motion.poses, SURE * (ahead + FALL + NEAR * self.sizes), seen.watched, known)
+        soon = np.zeros(len(found.gap), dtype=bool)
+        until = wait(found, motion, self.sizes, soon)
         of_gone = np.append(worn[wear.pairs], ~stays)
         if not (soon.any() or of_gone.any()):
             return system, books, until
-        system = self._renewed(system, books, poses, found.only(soon), of_gone, h)
+        system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
         return system, books.with_room(len(system.lines)), until
-
-    def _until(self, found: Found, velocity: Array, about: Array) -> tuple[float, Flags]:
-        """The time until the next look [s], and which places may touch by then."""
-        if not len(found.gap):
-            return LOOK, np.zeros(0, dtype=bool)
-        first, second = found.face, found.other
-        size = np.minimum(self.sizes[first], self.sizes[second])
-        speed = np.linalg.norm(velocity[first] - velocity[second], axis=1) + about[first] + about[second]
-        soonest = float((np.maximum(PASSED * size, 0.5 * found.gap) / np.maximum(speed, 1e-9)).min())
-        until = min(max(soonest, SOONEST), LOOK)
-        return until, found.gap < SURE * (speed * until + 2 * FALL + NEAR * size)
 
     def _renewed(self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float) -> System:
         """The system with these places. Pairs that have not moved keep their lines.
@@ -213,11 +188,12 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(lines[which], slack[which], np.empty(len(which)))
+        gone = Lines(chosen(lines, which), slack[which], np.empty(len(which)))
         new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
         before = held(system, which, gone.depth)
-        share, pressed = np.append(np.ones(count), met.share)[which], gone.depth > 0
-        share = least_among(number, pair[which][pressed], share[pressed])
+        share = np.append(np.ones(count), met.share)[which]
+        soft = (share < 1) & (gone.depth > 0)
+        share = least_among(number, pair[which][soft], share[soft])
         law = self.law.of_places(number, found.share, found.area, self.count)
         share = np.minimum(share, self._stable(found, law, poses, system, h))
         for name, column in law.items():
@@ -231,7 +207,7 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
-        lines = joined(joints, others[stays], np.asarray(new.rows))
+        lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
         ways = system.ways
         if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
             ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
@@ -241,15 +217,14 @@ class Encounters:
 
     def _moves_of(self, pair: Integers) -> Integers:
         """Moves of both blocks of pairs."""
-        return np.asarray(self.met.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
+        return np.asarray(self.met.seen.moves[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
     def _stable(self, found: Found, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
         """Share of their law that leaves places stable in a step of h [s], shape (n,)."""
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
-        inverse = inverse_masses(np.asarray(system.bodies), poses.change[self.blocks.free])
-        return shares_within(sides, law, inverse, h / STABLE)
+        return shares_within(sides, law, system.bodies, h / STABLE)
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:
@@ -271,9 +246,3 @@ def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, 
         pairs += [pair] * len(both)
         numbers += both
     return np.array(pairs), np.array(numbers)
-
-
-def _newer(poses: Poses, old: Poses, moved: Flags) -> Poses:
-    """The poses of the blocks that have moved, and the old ones of the others."""
-    parts = zip(poses, old, strict=True)
-    return Poses(*(np.where(moved.reshape(-1, *[1] * (new.ndim - 1)), new, before) for new, before in parts))

@@ -30,7 +30,7 @@ from ..quantities import Array, Integers
 from .finder import Found
 from .friction import shortened
 from .rows import POINT, Row, Rows
-from .solids import Poses
+from .solids import Poses, changed
 
 BESIDE = 0.2
 """Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
@@ -89,21 +89,6 @@ class Pairs(NamedTuple):
         first = np.concatenate([[0], np.flatnonzero(np.diff(places)) + 1, [len(places)]])
         pairs = places[first[:-1]] if len(places) else places
         return cls(first, *(np.searchsorted(gone, pairs, side) for side in ("left", "right")))
-
-
-@inlined
-def changed(change: Array, a: Vector) -> Vector:
-    """A vector after a rotation, given by the rotation less 1."""
-    if len(a) == 2:
-        return (
-            a[0] + change[0, 0] * a[0] + change[0, 1] * a[1],
-            a[1] + change[1, 0] * a[0] + change[1, 1] * a[1],
-        )
-    return (
-        a[0] + change[0, 0] * a[0] + change[0, 1] * a[1] + change[0, 2] * a[2],
-        a[1] + change[1, 0] * a[0] + change[1, 1] * a[1] + change[1, 2] * a[2],
-        a[2] + change[2, 0] * a[0] + change[2, 1] * a[1] + change[2, 2] * a[2],
-    )
 
 
 @inlined

@@ -1,30 +1,24 @@
 """The longest stable step of a system, from the eigenvalues that go into `scene.explicit_step`.
 
 The bound takes the highest eigenvalues of stiffness and of damping with every contact closed, which need not belong to
-one mode. Contacts that are found later are softened until the step that a run has is stable for each body among them.
+one mode. Contacts that are found later are softened for the step that a run has, see `softening`.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
-from ..compiled import compiled, inlined
-from ..geometry.vectors import Vector, moment, tangent, tangents, vector
 from ..linear import rates_of
 from ..problem.masonry.joints_in_space import axes_across
-from ..quantities import Array, Integers
+from ..quantities import Array
 from ..scene.explicit_step import stable_step
 from .rows import Rows
 from .system import System
 from .turning import roots_of_masses
-
-SQUARED = 4
-"""How often a matrix is squared before its trace is taken. The trace of the 16th power of a matrix of six rows bounds
-the highest eigenvalue by 1.12 times what it is."""
 
 
 def longest_step(system: System) -> float:
@@ -77,94 +71,6 @@ def line_rates(lines: Rows, way: Array, bodies: int) -> csr_array:
     """Rates at which the points of lines move over their faces in directions, for unit velocities at rest."""
     arms = np.asarray(lines["at"]), np.asarray(lines["origin"])
     return rates_of(np.column_stack([lines["body"], lines["face"]]), arms, way, bodies)
-
-
-class Sides(NamedTuple):
-    """The two blocks of each place.
-
-    Args:
-        bodies: their numbers, negative for a fixed block, shape (2, n).
-        arms: from their centroids to the place [m], shape (2, n, d).
-        normals: of the places, shape (n, d).
-    """
-
-    bodies: Integers
-    arms: Array
-    normals: Array
-
-
-@inlined
-def add_spring(sides: Sides, p: int, way: Vector, k: float, shares: Array, stiffness: Array) -> None:
-    """Add a spring of stiffness k at place p along a way to the stiffness of both bodies, over their shares of it."""
-    for side in range(2):
-        body = sides.bodies[side, p]
-        if body >= 0:
-            rate, k_here = way + moment(vector(sides.arms[side], p, way), way), k / shares[side, p]
-            for i in range(len(rate)):
-                for j in range(len(rate)):
-                    stiffness[body, i, j] += k_here * rate[i] * rate[j]
-
-
-@compiled
-def add_springs(
-    sides: Sides, along: Array, across: Array, shares: Array, stiffness: Array, axes: tuple[int, ...]
-) -> None:
-    """Add springs at places to the stiffness of their bodies, in the axes of the world, shape (bodies, nv, nv).
-
-    Args:
-        sides: the two blocks of each place.
-        along, across: stiffness along the normal and along the face of each place, shape (n,).
-        shares: of each spring that its two bodies take, shape (2, n).
-        stiffness: of each body, shape (bodies, nv, nv).
-        axes: of the system.
-    """
-    for p in range(len(along)):
-        normal = vector(sides.normals, p, axes)
-        add_spring(sides, p, normal, along[p], shares, stiffness)
-        if across[p] > 0:
-            if len(axes) == 2:
-                add_spring(sides, p, tangent(normal), across[p], shares, stiffness)
-            else:
-                for way in tangents(normal):
-                    add_spring(sides, p, way, across[p], shares, stiffness)
-
-
-def shares_within(sides: Sides, law: dict[str, Array], inverse: Array, step: float) -> Array:
-    """Share of its stiffness and damping with which each place leaves a step stable, at most 1, shape (n,).
-
-    Each body is bounded alone. For this a spring between two bodies is taken as two, one on each body with the other
-    one held, which together are never softer: (a - b)^2 <= a^2 / s + b^2 / (1 - s) for any share s. The shares go as
-    what all springs of each body are over its masses, so that a heavy body on many light ones is not softened for them.
-    The trace of a power of a matrix bounds its highest eigenvalue.
-
-    Args:
-        sides: the two blocks of each place.
-        law: `k`, `c`, `k_s` and `c_s` of the places, shape (n,) each.
-        inverse: of the masses of each body in the axes of the world, shape (bodies, nv, nv).
-        step: that is to be stable [s].
-    """
-    along = step**2 * law["k"] + 2 * step * law["c"]
-    across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
-
-    def rates(shares: Array) -> Array:
-        stiffness, axes = np.zeros_like(inverse), tuple(range(sides.normals.shape[1]))
-        add_springs(sides, along, across, shares, stiffness, axes)
-        return np.asarray(inverse @ stiffness)
-
-    loads = np.append(_traces(rates(np.ones(sides.bodies.shape))), 0.0)[sides.bodies]  # zero for fixed blocks
-    if loads.sum(axis=0).max(initial=0.0) <= 4:  # no trace of a split is more than the largest sum over both blocks
-        return np.ones(len(along))
-    split = rates(np.where(loads > 0, loads / np.maximum(loads.sum(axis=0), 1e-300), 1.0))
-    doubtful, share = np.flatnonzero(_traces(split) > 4), np.ones(len(inverse) + 1)
-    power = split[doubtful]
-    for _ in range(SQUARED):
-        power = power @ power
-    share[doubtful] = 4 / np.maximum(_traces(power) ** (0.5**SQUARED), 4.0)
-    return np.asarray(share[sides.bodies].min(axis=0))
-
-
-def _traces(matrices: Array) -> Array:
-    return np.asarray(np.trace(matrices, axis1=1, axis2=2))
 
 
 def link_rates(links: Rows, bodies: int) -> csr_array:

@@ -43,7 +43,7 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
         UserWarning: of 1 % more than at the start, with the names of the two blocks, and when.
     """
     encounters = setup.encounters
-    if encounters is None or not encounters.met.watched.any():
+    if encounters is None or not encounters.met.seen.watched.any():
         return 0.0
     chosen = np.unique(np.linspace(0, len(t) - 1, min(LOOKS, len(t))).round().astype(int))
     poses = {i: _posed(encounters, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
@@ -79,7 +79,7 @@ def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: 
     flat = is_flat(bodies)
     bodies["angle" if flat else "quaternion"] = pose[:, d] if flat else pose[:, d:]
     moved = np.concatenate([np.empty((0, d)), *(support.at(np.array([t])) for support in case.supports)])
-    return encounters.poses(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved)))
+    return encounters.motion(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved))).poses
 
 
 def common_volume(solids: Solids, a: int, b: int) -> float:

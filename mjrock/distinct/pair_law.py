@@ -38,6 +38,8 @@ def are_among(numbers: Integers, increasing: Integers) -> Flags:
 
 def least_among(pair: Integers, others: Integers, shares: Array) -> Array:
     """The least share of each pair among others, 1 where it is not one of them, shape of the pairs."""
+    if not len(others):
+        return np.ones(len(pair))
     known, of = np.unique(others, return_inverse=True)
     least = np.ones(len(known) + 1)
     np.minimum.at(least, of, shares)

@@ -7,7 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiled import compiled, inlined
+from ..geometry.frames import SPACE
 from ..geometry.hull import prism, unlike_ways
+from ..geometry.vectors import Vector, increase, put, vector
 from ..problem.masonry.compound import AnyBlock, Compound
 from ..problem.masonry.polygon import Polygon
 from ..problem.masonry.polyhedron import Polyhedron
@@ -73,12 +76,10 @@ class Solids(NamedTuple):
 
     def moved(self, place: Array, change: Array) -> Solids:
         """The blocks at centroids [m], shape (blocks, 3), turned from where they are by rotations less 1."""
-        firsts = (self.corner, self.face, self.way)
-        block = np.concatenate([np.repeat(np.arange(len(place)), np.diff(first)) for first in firsts])
-        vectors = np.concatenate([self.corners, self.normals, self.ways])
-        vectors += np.einsum("nij,nj->ni", change[block], vectors)
-        corners, normals, ways = np.split(vectors, np.cumsum([len(self.corners), len(self.normals)]))
-        return self._replace(corners=corners + place[block[: len(corners)]], normals=normals, ways=ways)
+        corners, normals, ways = (np.empty_like(each) for each in (self.corners, self.normals, self.ways))
+        moved = self._replace(corners=corners, normals=normals, ways=ways)
+        move(self, place, change, moved)
+        return moved
 
 
 class Poses(NamedTuple):
@@ -94,10 +95,34 @@ class Poses(NamedTuple):
     moved: Array
     change: Array
 
-    def far(self, other: Poses, sizes: Array) -> Array:
-        """How far a corner of each block may be from where it is in other poses [m], shape (blocks,)."""
-        way = np.linalg.norm(self.moved - other.moved, axis=1)
-        return np.asarray(way + np.linalg.norm(self.change - other.change, axis=(1, 2)) * sizes)
+
+@inlined
+def changed(change: Array, a: Vector) -> Vector:
+    """A vector after a rotation, given by the rotation less 1."""
+    if len(a) == 2:
+        return (
+            a[0] + change[0, 0] * a[0] + change[0, 1] * a[1],
+            a[1] + change[1, 0] * a[0] + change[1, 1] * a[1],
+        )
+    return (
+        a[0] + change[0, 0] * a[0] + change[0, 1] * a[1] + change[0, 2] * a[2],
+        a[1] + change[1, 0] * a[0] + change[1, 1] * a[1] + change[1, 2] * a[2],
+        a[2] + change[2, 0] * a[0] + change[2, 1] * a[1] + change[2, 2] * a[2],
+    )
+
+
+@compiled
+def move(solids: Solids, place: Array, change: Array, moved: Solids) -> None:
+    """Write where solids are, see `Solids.moved`."""
+    for b in range(len(place)):
+        turn = change[b]
+        for i in range(solids.corner[b], solids.corner[b + 1]):
+            put(moved.corners[i], changed(turn, vector(solids.corners, i, SPACE.axes)))
+            increase(moved.corners[i], vector(place, b, SPACE.axes))
+        for i in range(solids.face[b], solids.face[b + 1]):
+            put(moved.normals[i], changed(turn, vector(solids.normals, i, SPACE.axes)))
+        for i in range(solids.way[b], solids.way[b + 1]):
+            put(moved.ways[i], changed(turn, vector(solids.ways, i, SPACE.axes)))
 
 
 def _begins(tables: Iterable[Array | Integers]) -> Integers:

@@ -288,15 +288,3 @@ def roots_of_masses(bodies: Rows) -> Array:
     turning = bodies["inverse_inertia"].any(axis=(1, 2))  # guides keep the others from it
     roots[turning, d:, d:] = np.linalg.cholesky(bodies["inverse_inertia"][turning])
     return roots
-
-
-def inverse_masses(bodies: Rows, change: Array) -> Array:
-    """The inverse of the masses of each body in the axes of the world, turned by rotations less 1, (n, nv, nv)."""
-    d, inverse = change.shape[2], np.asarray(bodies["inverse_inertia"])
-    if d == 3:
-        turn = change + np.eye(3)
-        inverse = turn @ inverse @ np.swapaxes(turn, 1, 2)
-    nv = d + inverse.shape[2]
-    masses = np.zeros((len(inverse), nv, nv))
-    masses[:, range(d), range(d)], masses[:, d:, d:] = bodies["inverse_mass"], inverse
-    return masses

@@ -7,9 +7,9 @@ from masonry_blocks import GROUND, box
 import mjrock as mr
 from mjrock.distinct.finder import Found
 from mjrock.distinct.handover import Lines, press
-from mjrock.distinct.limit import Sides, shares_within
 from mjrock.distinct.pair_law import least_among
 from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.softening import Sides, shares_within
 
 
 def places(rng, bodies, count, d):
@@ -28,6 +28,13 @@ def places(rng, bodies, count, d):
     inverse[:, :d, :d] = (10 ** rng.uniform(-1, 1, bodies))[:, None, None] * np.eye(d)
     inverse[:, d:, d:] = (roots @ np.swapaxes(roots, 1, 2))[:, d:, d:]
     return sides, law, inverse
+
+
+def bodies_of(inverse):
+    """Bodies with the inverse of their masses in the axes of the world."""
+    d = 2 if inverse.shape[1] == 3 else 3
+    spins = {"inverse_inertia" if d == 2 else "inverse_in_world": inverse[:, d:, d:]}
+    return rows(kinds(d).body, len(inverse), inverse_mass=np.diagonal(inverse, axis1=1, axis2=2)[:, :d], **spins)
 
 
 def highest(sides, law, inverse, share, step):
@@ -57,7 +64,7 @@ def test_softened_places_leave_the_step_stable(d):
     found = []
     for _ in range(40):
         sides, law, inverse = places(rng, 4, 9, d)
-        share = shares_within(sides, law, inverse, 0.1)
+        share = shares_within(sides, law, bodies_of(inverse), 0.1)
         found.append(highest(sides, law, inverse, share, 0.1))
         if highest(sides, law, inverse, np.ones(9), 0.1) > 4:
             assert share.min() < 1
@@ -72,8 +79,8 @@ def test_a_heavy_beam_on_many_light_units_is_not_softened_for_them():
     inverse = np.array([np.diag([1 / m, 1 / m, 0.0]) for m in (1, 1, 1, 1, 4)])
     law = {"k": np.ones(8), "c": np.zeros(8), "k_s": np.full(8, np.inf), "c_s": np.zeros(8)}
     sides = Sides(bodies, arms, np.tile([0.0, 1.0], (8, 1)))
-    np.testing.assert_allclose(shares_within(sides, law, inverse, 0.9), 1.0)
-    np.testing.assert_allclose(shares_within(sides, law, inverse, 1.1), 1 / 1.1**2, rtol=0.02)
+    np.testing.assert_allclose(shares_within(sides, law, bodies_of(inverse), 0.9), 1.0)
+    np.testing.assert_allclose(shares_within(sides, law, bodies_of(inverse), 1.1), 1 / 1.1**2, rtol=0.02)
 
 
 @pytest.mark.parametrize("guided", ["translation", "upright", None])
