@@ -138,7 +138,7 @@ EQUIVALENT = {
         f"joint_law.py: row = Law(k[i], {numbers})": "at rest no dashpot, shear spring or friction of the row is read"
         for numbers in ("1, 0.0, 0.0", "0.0, 1, 0.0", "0.0, 0.0, 1")
     },
-    "joint_law.py: k_s: Any = 1": "a law that is given its friction alone has no shear spring",
+    "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
     "bond_law.py: if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears / bond.bears:": (
         "what is not crushed closes by zero in the search, too"

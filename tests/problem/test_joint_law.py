@@ -18,6 +18,10 @@ def test_a_joint_pushes_and_never_pulls(gap, rate, force):
     assert normal_force(LAW, gap, rate) == pytest.approx(force)
 
 
+def test_a_law_without_numbers_holds_and_stores_nothing():
+    assert Law() == (0.0, 0.0, 0.0, 0.0)
+
+
 def test_arrays_and_numbers_have_one_law():
     gaps = np.array([-0.1, 0.1, -0.2])
     force, energy = resting(np.full(3, LAW.k), gaps, np.zeros(3, dtype=bool))
