@@ -1,3 +1,4 @@
+import contextlib
 from collections.abc import Callable
 
 import pytest
@@ -9,11 +10,13 @@ from scripts.shared.paper import FIGURE_3, K_N
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Each process of xdist compiles its share of the loops before any test starts, so that none is compiled twice.
 
-    What is stored already is only loaded. A session without xdist compiles what its tests call."""
+    What is stored already is only loaded. A session without xdist compiles what its tests call. What is wrong with a
+    run, the tests say."""
     worker = getattr(session.config, "workerinput", None)
     if worker is not None:
-        for run in loops()[int(worker["workerid"].removeprefix("gw")) :: worker["workercount"]]:
-            run()
+        with contextlib.suppress(Exception):
+            for run in loops()[int(worker["workerid"].removeprefix("gw")) :: worker["workercount"]]:
+                run()
 
 
 LONG = {"test_hostile", "test_wheel", "test_pages", "test_scripts", "test_earthquakes", "test_plausible_masonry"}

@@ -159,7 +159,7 @@ class Encounters:
         met.handed = met.handed | worn
         stays = self._moves_of(met.pair) == met.found
         intact = self.jointed[1][~met.handed[self.jointed[0]]]
-        known = np.sort(np.append(intact, self.finder.between(met.pair[stays])))
+        known = np.sort(np.append(intact, self.finder.between(*np.divmod(met.pair[stays], self.count))))
         found = self.finder.found(motion.poses, SURE * (ahead + FALL + NEAR * self.sizes), seen.watched, known)
         soon = np.zeros(len(found.gap), dtype=bool)
         until = wait(found, motion, self.sizes, soon)

@@ -131,12 +131,11 @@ class Finder:
         found = self._of_the_plane(found) if self.flat else found
         return found if self.number.max() == 1 else self._among_blocks(found)
 
-    def between(self, pairs: Integers) -> Integers:
+    def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
-        if self.number.max() == 1:
-            return pairs
-        _, one, other = each_with_each(self.first, self.number, np.column_stack(np.divmod(pairs, len(self.number))))
-        return pair_number(one, other, len(self.owner))
+        if self.number.max() > 1:
+            _, a, b = each_with_each(self.first, self.number, np.column_stack([a, b]))
+        return pair_number(a, b, len(self.owner))
 
     def parts_of(self, block: int) -> range:
         """Numbers of the solids of a block."""

@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 import mjrock as mr
 from mjrock.distinct import finder
 from mjrock.distinct.finder import Finder, Found, Near
-from mjrock.distinct.pair_law import pair_number
 from mjrock.distinct.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
@@ -278,12 +277,7 @@ def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(),
         whole._table = np.empty((room, 11))
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
     a, b = np.reshape(np.array(skipped, dtype=np.int64), (-1, 2)).T
-    places = whole.found(
-        poses,
-        np.broadcast_to(reach, len(blocks)).astype(float),
-        which,
-        np.sort(whole.between(pair_number(a, b, len(blocks)))),
-    )
+    places = whole.found(poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b)))
     pairs = sorted({tuple(sorted(pair)) for pair in zip(places.face.tolist(), places.other.tolist(), strict=True)})
     return pairs, places
 
@@ -391,5 +385,5 @@ def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
     edges = whole._among_blocks(pair)  # edges have the share that they have, and no area
     np.testing.assert_array_equal((edges.share, edges.area), [[0.25] * 3, [0.0, 0.0, 2.0]])
     assert [list(whole.parts_of(i)) for i in range(4)] == [[0], [1], [2, 3], [4]]
-    np.testing.assert_array_equal(whole.between(np.array([2 * 4 + 3, 0 * 4 + 1])), [2 * 5 + 4, 3 * 5 + 4, 1])
+    np.testing.assert_array_equal(whole.between(np.array([2, 1]), np.array([3, 0])), [2 * 5 + 4, 3 * 5 + 4, 1])
     np.testing.assert_allclose(whole.volumes / whole.volumes[0], [1.0, 2.997, 4.0, 0.3])
