@@ -285,6 +285,13 @@ EQUIVALENT = {
     "links.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
         "a history of one sample has one place"
     ),
+    "looking.py: for turn in range(4):": "the passes after the second one find the same",
+    "looking.py: until = min(until, max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09))": (
+        "any small speed serves to divide by"
+    ),
+    "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * FALL + NEAR * size)": (
+        "no gap is the bound to the last bit"
+    ),
     "looking.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",

@@ -207,7 +207,7 @@ def test_looks_are_not_too_seldom_and_not_too_often():
     for found in (found_places(2, [], []), found_places(2, [[0, 1]], [0.0])):
         assert looking.wait(found, motion, sizes, np.zeros(len(found.gap), dtype=bool)) == looking.LOOK
     motion.about[0] = 1e3
-    assert looking.wait(found_places(2, [[0, 1]], [0.0]), motion, sizes, np.zeros(1, dtype=bool)) == looking.SOONEST
+    assert looking.wait(found_places(2, [[0, 1]], [0.0]), motion, sizes, np.zeros(1, dtype=bool)) == 5e-4
 
 
 def test_places_are_kept_that_may_touch_before_the_next_look():
@@ -217,6 +217,11 @@ def test_places_are_kept_that_may_touch_before_the_next_look():
     gap = [-0.1, 0.0, within * (1 - 1e-9), within * (1 + 1e-9)]
     assert looking.wait(found_places(2, [[0, 1]] * 4, gap), motion, sizes, soon) == looking.LOOK
     assert soon.tolist() == [True, True, True, False]
+    motion.about[0] = 10.0  # the next look is after 1 ms, for all places
+    within = 2 * (10.0 * 1e-3 + 2 * 0.5 * 9.81 * 5e-3**2 + 1e-3 * 0.5)
+    gap = [within * (1 + 1e-9), within * (1 - 1e-9), 0.0, 0.05]
+    assert looking.wait(found_places(2, [[0, 1]] * 4, gap), motion, sizes, soon) == pytest.approx(1e-3)
+    assert soon.tolist() == [False, True, True, False]
 
 
 @BOTH
