@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.distinct.solids import solid_of
+from mjrock.distinct.solids import inside_of, solid_of
 from mjrock.geometry.hull import area_vector
 
 SIDES = {
@@ -27,3 +27,14 @@ def test_a_prism_is_the_hull_of_its_corners(of):
     assert len(solid.edges) == len(hull.edges)
     np.testing.assert_allclose(np.abs(solid.edges @ hull.edges.T).max(axis=1), 1.0, rtol=1e-12)
     assert solid.volume == pytest.approx(hull.volume, rel=1e-12)
+
+
+@pytest.mark.parametrize("prism", [False, True])
+def test_faces_of_a_cut_lie_inside(prism):
+    """One of either part, at x = 1."""
+    parts = [mr.Polygon([(x, 0), (x + 1, 0), (x + 1, 1), (x, 1)]) for x in (0, 1)]
+    cut = mr.Compound.prism(mr.Compound(parts)) if prism else mr.Compound(parts)
+    for part, inside, way in zip(cut.parts, inside_of(cut), (1.0, -1.0), strict=True):
+        solid = part if prism else solid_of(part, 0.5)
+        np.testing.assert_allclose(solid.normals[inside], [[way, 0.0, 0.0]], atol=1e-12)
+        assert len(inside) == len(solid.faces)
