@@ -107,6 +107,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/overlap.py": ("overlap_of_blocks",),
     "distinct/pair_law.py": ("pair_law",),
     "distinct/slowing.py": ("slowing",),
+    "distinct/softening.py": ("softening",),
     "distinct/solids.py": ("solids", "finder", "handing_over", "overlap_of_blocks"),
     "distinct/touches.py": ("touches_of_lines",),
     "distinct/turning.py": ("turning",),
@@ -291,6 +292,11 @@ EQUIVALENT = {
     "links.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
         "a history of one sample has one place"
     ),
+    "softening.py: for turn in range(4):": "the passes after the second one find the same",
+    "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
+        "the last share is read, and more of them are one"
+    ),
+    "softening.py: stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((4, nv, nv))": "the first two are used",
     "looking.py: for turn in range(4):": "the passes after the second one find the same",
     "looking.py: until = min(until, max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09))": (
         "any small speed serves to divide by"

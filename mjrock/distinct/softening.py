@@ -16,7 +16,6 @@ from ..compiled import compiled, inlined
 from ..geometry.vectors import (
     Vector,
     components,
-    dot,
     moment,
     put,
     spin_components,
@@ -52,17 +51,17 @@ class Room(NamedTuple):
     """Room for `soften`.
 
     Args:
-        over: trace of the springs of each place over the masses of its two bodies, shape (2, n).
-        shares: of them that the two bodies take, shape (2, n).
-        loads: sum of these traces over the places of each body, shape (bodies,).
-        matrices: stiffness of a body, and two powers of its rates, shape (3, nv, nv).
+        shares: of the springs of each place that its two bodies take, shape (2, n).
+        stiffness: of each body by its places, shape (bodies, nv, nv).
+        loads: trace of this stiffness over the masses of the body, shape (bodies,).
+        powers: of the stiffness of a body over its masses, two matrices, shape (2, nv, nv).
         share: of its law that the places of each body have left, and 1 for fixed blocks, shape (bodies + 1,).
     """
 
-    over: Array
     shares: Array
+    stiffness: Array
     loads: Array
-    matrices: Array
+    powers: Array
     share: Array
 
 
@@ -77,83 +76,57 @@ def way_at(normal: Vector, i: int) -> Vector:
 
 
 @inlined
-def square_of(body: Row, rate: Vector, lever: Vector) -> float:
-    """Square of a rate of the centroid and a lever, over the masses of a body."""
-    of_spin = dot(spin_from_many(body, lever), lever)
-    square: float = dot(times(components(body.inverse_mass, rate), rate), rate) + of_spin
-    return square
+def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
+    """Write the stiffness of each body by its places, over its shares of them."""
+    for b in range(len(room.stiffness)):
+        for i in range(room.stiffness.shape[1]):
+            for j in range(room.stiffness.shape[1]):
+                room.stiffness[b, i, j] = 0.0
+    for p in range(len(along)):
+        normal = vector(sides.normals, p, axes)
+        for way in range(len(axes)):
+            direction, k = way_at(normal, way), along[p] if way == 0 else across[p]
+            for side in range(2):
+                body = sides.bodies[side, p]
+                if body >= 0:
+                    rate = direction + moment(vector(sides.arms[side], p, axes), direction)
+                    for i in range(len(rate)):
+                        for j in range(len(rate)):
+                            room.stiffness[body, i, j] += k / room.shares[side, p] * rate[i] * rate[j]
 
 
 @inlined
-def load(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, axes: tuple[int, ...]) -> None:
-    """Write what the springs of each place are over the masses of its bodies, and let these take shares of them."""
-    for p in range(len(along)):
-        normal = vector(sides.normals, p, axes)
-        for side in range(2):
-            for i in range(len(axes)):
-                way, body = way_at(normal, i), sides.bodies[side, p]
-                if body >= 0:
-                    k, lever = along[p] if i == 0 else across[p], moment(vector(sides.arms[side], p, axes), way)
-                    room.over[side, p] += k * square_of(bodies[body], way, lever)
-    add_loads(sides, room)
-    for p in range(len(along)):
+def split(sides: Sides, room: Room) -> None:
+    """Let the two bodies of each place take shares of its springs that go as their loads."""
+    for p in range(sides.bodies.shape[1]):
         if sides.bodies[0, p] >= 0 and sides.bodies[1, p] >= 0:
             one, other = room.loads[sides.bodies[0, p]], room.loads[sides.bodies[1, p]]
             if one > 0 and other > 0:
                 room.shares[0, p], room.shares[1, p] = one / (one + other), other / (one + other)
-    add_loads(sides, room)
 
 
 @inlined
-def add_loads(sides: Sides, room: Room) -> None:
-    """Sum what the places of each body are, over their shares."""
-    for b in range(len(room.loads)):
-        room.loads[b] = 0.0
-    for p in range(room.over.shape[1]):
-        for side in range(2):
-            if sides.bodies[side, p] >= 0:
-                room.loads[sides.bodies[side, p]] += room.over[side, p] / room.shares[side, p]
-
-
-@inlined
-def stiffen(
-    sides: Sides, along: Array, across: Array, b: int, shares: Array, stiffness: Array, axes: tuple[int, ...]
-) -> None:
-    """Write the stiffness of the places of body b, over its shares of them."""
-    for i in range(len(stiffness)):
-        for j in range(len(stiffness)):
-            stiffness[i, j] = 0.0
-    for p in range(len(along)):
-        for side in range(2):
-            if sides.bodies[side, p] == b:
-                normal, arm = vector(sides.normals, p, axes), vector(sides.arms[side], p, axes)
-                for way in range(len(axes)):
-                    direction, k = way_at(normal, way), (along[p] if way == 0 else across[p]) / shares[side, p]
-                    rate = direction + moment(arm, direction)
-                    for i in range(len(rate)):
-                        for j in range(len(rate)):
-                            stiffness[i, j] += k * rate[i] * rate[j]
-
-
-@inlined
-def take_rates(body: Row, stiffness: Array, rates: Array, axes: tuple[int, ...]) -> None:
-    """Write a stiffness over the masses of its body."""
+def over_masses(body: Row, stiffness: Array, rates: Array, axes: tuple[int, ...]) -> float:
+    """Write a stiffness over the masses of its body. Returns its trace."""
+    trace = 0.0
     for j in range(len(stiffness)):
         column, of_spin = stiffness[:, j], stiffness[len(axes) :, j]
         put(rates[:, j], times(components(body.inverse_mass, axes), components(column, axes)))
         put(rates[len(axes) :, j], spin_from_many(body, spin_components(of_spin, axes)))
+        trace += rates[j, j]
+    return trace
 
 
 @inlined
-def multiply(a: Array, product: Array) -> float:
+def squared(a: Array, square: Array) -> float:
     """Write the square of a matrix. Returns its trace."""
     trace = 0.0
     for i in range(len(a)):
         for j in range(len(a)):
-            product[i, j] = 0.0
+            square[i, j] = 0.0
             for k in range(len(a)):
-                product[i, j] += a[i, k] * a[k, j]
-        trace += product[i, i]
+                square[i, j] += a[i, k] * a[k, j]
+        trace += square[i, i]
     return trace
 
 
@@ -164,19 +137,20 @@ def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, 
     Args:
         sides: the two blocks of each place.
         along, across: stiffness along the normal and along the face of each place, shape (n,).
-        bodies: whose inverse inertia is taken, in space.
-        room: with traces of 0 and shares of 1.
+        bodies: whose inverse inertia is taken in the axes of the world, in space.
+        room: with shares of 1.
         axes: of the system.
     """
-    load(sides, along, across, bodies, room, axes)
-    for b in range(len(bodies)):
-        if room.loads[b] > 4:
-            stiffen(sides, along, across, b, room.shares, room.matrices[0], axes)
-            take_rates(bodies[b], room.matrices[0], room.matrices[1], axes)
-            trace = 0.0
-            for i in range(SQUARED):
-                trace = multiply(room.matrices[1 + i % 2], room.matrices[2 - i % 2])
-            room.share[b] = 4 / max(trace ** (0.5**SQUARED), 4.0)
+    for turn in range(2):
+        stiffen(sides, along, across, room, axes)
+        for b in range(len(bodies)):
+            trace = room.loads[b] = over_masses(bodies[b], room.stiffness[b], room.powers[0], axes)
+            if turn == 1 and trace > 4:
+                for i in range(SQUARED):
+                    trace = squared(room.powers[i % 2], room.powers[1 - i % 2])
+                room.share[b] = 4 / max(trace ** (0.5**SQUARED), 4.0)
+        if turn == 0:
+            split(sides, room)
 
 
 def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float) -> Array:
@@ -190,8 +164,8 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
     """
     along = step**2 * law["k"] + 2 * step * law["c"]
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
-    d, shape = sides.normals.shape[1], sides.bodies.shape
-    share, matrices = np.ones(len(bodies) + 1), np.empty((3, 3 * d - 3, 3 * d - 3))
-    room = Room(np.zeros(shape), np.ones(shape), np.empty(len(bodies)), matrices, share)
+    d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
+    stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((2, nv, nv))
+    room = Room(np.ones(sides.bodies.shape), stiffness, np.empty(len(bodies)), powers, share)
     soften(sides, along, across, bodies, room, tuple(range(d)))
     return np.asarray(share[sides.bodies].min(axis=0))
