@@ -296,7 +296,9 @@ EQUIVALENT = {
     "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
-    "softening.py: stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((4, nv, nv))": "the first two are used",
+    "softening.py: stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((4, nv, nv))": (
+        "the first two are used"
+    ),
     "looking.py: for turn in range(4):": "the passes after the second one find the same",
     "looking.py: until = min(until, max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09))": (
         "any small speed serves to divide by"

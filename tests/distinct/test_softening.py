@@ -83,8 +83,8 @@ def test_a_heavy_beam_on_many_light_units_is_not_softened_for_them():
     ("k", "c", "k_s", "c_s"), [(700.0, 0.0, 0.0, 0.0), (100.0, 40.0, 10.0, 2.0), (1.0, 0.0, 500.0, 9.0)]
 )
 def test_places_on_one_body_keep_what_its_longest_step_leaves(d, k, c, k_s, c_s):
-    """At the centroid of a body of 2 kg the eigenvalues are h (h k + 2 c) / m along the normal and along the face. Those
-    of the 16th power are summed. The place on another body stays as it is."""
+    """At the centroid of a body of 2 kg the eigenvalues are h (h k + 2 c) / m along the normal and along the face.
+    Those of the 16th power are summed. The place on another body stays as it is."""
     step, mass = 0.1, 2.0
     inverse = np.array([np.diag([1 / mass] * d + [1.0] * (2 * d - 3))] * 2)
     law = {
