@@ -33,8 +33,9 @@ TURNED = 0.5
 """Rotation beyond which a body no longer stands [rad]."""
 FLAT = 1e-12
 """Negative stiffness that is put down to rounding, over the largest [-]."""
-LOOSE, LEAST_LOOSE = 1e-9, 1e-12
-"""Stiffness that is lent to every motion in the search, over the largest: at the start, and the least of it [-]."""
+LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 1e-12, 1.0
+"""Stiffness that is lent to every motion in the search, over the largest [-]: at the start, the least of it, and that
+beyond which a search ends, since the bodies hardly move any more. Searches that find a pose lend less than 1e-5."""
 SLIPPING, RAISED = 1e-2, 4.0
 """Least share of its shear stiffness that a contact that slips lends along its slip, and by how much it is raised each
 time that more force is missing than before [-]."""
@@ -209,7 +210,7 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
         grips = grips_at(potential, pose, sliders)
         missing = (potential.load(pose) + rates.T @ push + grips.held) / size
         left, slipped = float(np.abs(missing).sum()), grips.slider if search.accumulates else slipped
-        ends = left > ENDED * last or tried == search.poses - 1
+        ends = left >= ENDED * last or tried == search.poses - 1
         if ends and np.abs(missing).max() < tolerance(potential):
             return pose, grips
         if left < last:
@@ -224,7 +225,7 @@ def searched(potential: Potential, contacts: ContactPoints, search: Search, star
         pose = lowering(potential, pose, motion, sliders)
         openings = potential.openings(pose)
         closed = potential.closed(openings)
-        if not turned(pose, freedom).max() < TURNED:
+        if loose > MOST_LOOSE or not turned(pose, freedom).max() < TURNED:
             break
     raise UnsettledError(pose.reshape(-1, freedom.nq))
 
