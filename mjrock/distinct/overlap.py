@@ -15,7 +15,7 @@ from .pair_law import pair_number
 from .setup import Setup
 from .solids import Poses, Solids
 from .system import System
-from .turning import is_flat
+from .turning import set_rotations
 
 LOOKS = 200
 """Most samples that are looked at."""
@@ -76,8 +76,7 @@ def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: 
     """Where all blocks are at a sample."""
     bodies, d = system.bodies.copy(), len(system.axes)
     bodies["place"] = pose[:, :d]
-    flat = is_flat(bodies)
-    bodies["angle" if flat else "quaternion"] = pose[:, d] if flat else pose[:, d:]
+    set_rotations(bodies, pose)
     moved = np.concatenate([np.empty((0, d)), *(support.at(np.array([t])) for support in case.supports)])
     return encounters.motion(system._replace(bodies=bodies, supports=system.supports._replace(moved=moved))).poses
 

@@ -251,12 +251,20 @@ def turns_within(body: Row, ends: float, axes: tuple[int, ...]) -> bool:
 
 def start_turning(bodies: Rows, pose: Array, velocity: Array) -> None:
     """Give bodies the rotations of a pose, shape (n, nq), and the spins of velocities, shape (n, nv)."""
+    set_rotations(bodies, pose)
     if is_flat(bodies):
-        bodies["angle"], bodies["spin"] = pose[:, 2], velocity[:, 2:]
+        bodies["spin"] = velocity[:, 2:]
         return
-    bodies["quaternion"] = pose[:, 3:]
     momentum = (np.linalg.pinv(bodies["inverse_inertia"]) @ velocity[:, 3:, None])[:, :, 0]  # zero of guided bodies
     bodies["momentum"] = momentum + np.einsum("nij,nj->ni", rotations(bodies), momentum)
+
+
+def set_rotations(bodies: Rows, pose: Array) -> None:
+    """Give bodies the rotations of a pose, shape (n, nq)."""
+    if is_flat(bodies):
+        bodies["angle"] = pose[:, 2]
+    else:
+        bodies["quaternion"] = pose[:, 3:]
 
 
 def is_flat(bodies: Rows) -> bool:
