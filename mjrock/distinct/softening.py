@@ -16,6 +16,7 @@ from ..compiled import compiled, inlined
 from ..geometry.vectors import (
     Vector,
     components,
+    dot,
     moment,
     put,
     spin_components,
@@ -28,6 +29,8 @@ from ..quantities import Array, Integers
 from .rows import Row, Rows
 from .turning import spin_from_many
 
+MOST = 4.0
+"""Highest eigenvalue of the stiffness over the masses that leaves the step stable, times the square of the step [-]."""
 SQUARED = 4
 """How often a matrix is squared before its trace is taken. The trace of the 16th power of a matrix of six rows bounds
 the highest eigenvalue by 1.12 times what it is."""
@@ -51,16 +54,18 @@ class Room(NamedTuple):
     """Room for `soften`.
 
     Args:
+        traces: of each place on its two bodies, that of its stiffness over the masses of the body, shape (2, n).
         shares: of the springs of each place that its two bodies take, shape (2, n).
+        loads: of each body, the sum of these traces, shape (bodies,).
         stiffness: of each body by its places, shape (bodies, nv, nv).
-        loads: trace of this stiffness over the masses of the body, shape (bodies,).
         powers: of the stiffness of a body over its masses, two matrices, shape (2, nv, nv).
         share: of its law that the places of each body have left, and 1 for fixed blocks, shape (bodies + 1,).
     """
 
+    traces: Array
     shares: Array
-    stiffness: Array
     loads: Array
+    stiffness: Array
     powers: Array
     share: Array
 
@@ -76,23 +81,28 @@ def way_at(normal: Vector, i: int) -> Vector:
 
 
 @inlined
-def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
-    """Write the stiffness of each body by its places, over its shares of them."""
-    for b in range(len(room.stiffness)):
-        for i in range(room.stiffness.shape[1]):
-            for j in range(room.stiffness.shape[1]):
-                room.stiffness[b, i, j] = 0.0
-    for p in range(len(along)):
-        normal = vector(sides.normals, p, axes)
-        for way in range(len(axes)):
-            direction, k = way_at(normal, way), along[p] if way == 0 else across[p]
-            for side in range(2):
-                body = sides.bodies[side, p]
-                if body >= 0:
-                    rate = direction + moment(vector(sides.arms[side], p, axes), direction)
-                    for i in range(len(rate)):
-                        for j in range(len(rate)):
-                            room.stiffness[body, i, j] += k / room.shares[side, p] * rate[i] * rate[j]
+def trace_of(
+    body: Row, sides: Sides, side: int, p: int, along: float, across: float, axes: tuple[int, ...]
+) -> float:
+    """The trace of the stiffness of place p over the masses of one of its bodies."""
+    trace, arm, normal = 0.0, vector(sides.arms[side], p, axes), vector(sides.normals, p, axes)
+    for way in range(len(axes)):
+        direction = way_at(normal, way)
+        turning = moment(arm, direction)
+        moved = dot(times(components(body.inverse_mass, axes), direction), direction)
+        trace += (along if way == 0 else across) * (moved + dot(spin_from_many(body, turning), turning))
+    return trace
+
+
+@inlined
+def add_up(sides: Sides, room: Room) -> None:
+    """Add up the traces of all places on each body, over its shares of them."""
+    for b in range(len(room.loads)):
+        room.loads[b] = 0.0
+    for side in range(2):
+        for p in range(sides.bodies.shape[1]):
+            if sides.bodies[side, p] >= 0:
+                room.loads[sides.bodies[side, p]] += room.traces[side, p] / room.shares[side, p]
 
 
 @inlined
@@ -106,15 +116,33 @@ def split(sides: Sides, room: Room) -> None:
 
 
 @inlined
-def over_masses(body: Row, stiffness: Array, rates: Array, axes: tuple[int, ...]) -> float:
-    """Write a stiffness over the masses of its body. Returns its trace."""
-    trace = 0.0
+def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
+    """Write the stiffness of each body with much load by its places, over its shares of them."""
+    for b in range(len(room.stiffness)):
+        for i in range(room.stiffness.shape[1]):
+            for j in range(room.stiffness.shape[1]):
+                room.stiffness[b, i, j] = 0.0
+    for side in range(2):
+        for p in range(len(along)):
+            body = sides.bodies[side, p]
+            if body < 0 or room.loads[body] <= MOST:
+                continue
+            for way in range(len(axes)):
+                direction = way_at(vector(sides.normals, p, axes), way)
+                rate = direction + moment(vector(sides.arms[side], p, axes), direction)
+                k = along[p] if way == 0 else across[p]
+                for i in range(len(rate)):
+                    for j in range(len(rate)):
+                        room.stiffness[body, i, j] += k / room.shares[side, p] * rate[i] * rate[j]
+
+
+@inlined
+def over_masses(body: Row, stiffness: Array, rates: Array, axes: tuple[int, ...]) -> None:
+    """Write a stiffness over the masses of its body."""
     for j in range(len(stiffness)):
         column, of_spin = stiffness[:, j], stiffness[len(axes) :, j]
         put(rates[:, j], times(components(body.inverse_mass, axes), components(column, axes)))
         put(rates[len(axes) :, j], spin_from_many(body, spin_components(of_spin, axes)))
-        trace += rates[j, j]
-    return trace
 
 
 @inlined
@@ -141,16 +169,22 @@ def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, 
         room: with shares of 1.
         axes: of the system.
     """
-    for turn in range(2):
-        stiffen(sides, along, across, room, axes)
-        for b in range(len(bodies)):
-            trace = room.loads[b] = over_masses(bodies[b], room.stiffness[b], room.powers[0], axes)
-            if turn == 1 and trace > 4:
-                for i in range(SQUARED):
-                    trace = squared(room.powers[i % 2], room.powers[1 - i % 2])
-                room.share[b] = 4 / max(trace ** (0.5**SQUARED), 4.0)
-        if turn == 0:
-            split(sides, room)
+    for side in range(2):
+        for p in range(len(along)):
+            if sides.bodies[side, p] >= 0:
+                body = bodies[sides.bodies[side, p]]
+                room.traces[side, p] = trace_of(body, sides, side, p, along[p], across[p], axes)
+    add_up(sides, room)
+    split(sides, room)
+    add_up(sides, room)
+    stiffen(sides, along, across, room, axes)
+    for b in range(len(bodies)):
+        if room.loads[b] > MOST:
+            over_masses(bodies[b], room.stiffness[b], room.powers[0], axes)
+            trace = 0.0
+            for i in range(SQUARED):
+                trace = squared(room.powers[i % 2], room.powers[1 - i % 2])
+            room.share[b] = MOST / max(trace ** (0.5**SQUARED), MOST)
 
 
 def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float) -> Array:
@@ -166,6 +200,7 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
     d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
     stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((2, nv, nv))
-    room = Room(np.ones(sides.bodies.shape), stiffness, np.empty(len(bodies)), powers, share)
+    traces, shares = np.zeros(sides.bodies.shape), np.ones(sides.bodies.shape)
+    room = Room(traces, shares, np.empty(len(bodies)), stiffness, powers, share)
     soften(sides, along, across, bodies, room, tuple(range(d)))
     return np.asarray(share[sides.bodies].min(axis=0))
