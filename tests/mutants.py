@@ -293,7 +293,6 @@ EQUIVALENT = {
     "links.py: share = (t - supports.t[low]) / (supports.t[high] - supports.t[low]) if high > low else 1": (
         "a history of one sample has one place"
     ),
-    "softening.py: for turn in range(4):": "the passes after the second one find the same",
     "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
@@ -301,7 +300,7 @@ EQUIVALENT = {
         "the first two are used"
     ),
     "looking.py: for turn in range(4):": "the passes after the second one find the same",
-    "looking.py: until = min(until, max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09))": (
+    "looking.py: serve = max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09)": (
         "any small speed serves to divide by"
     ),
     "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * FALL + NEAR * size)": (

@@ -10,7 +10,7 @@ moves with its body, and its normal with the other. What the springs of a find h
 
 from __future__ import annotations
 
-from copy import copy, deepcopy
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +65,7 @@ class Met:
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
         found: moves of both blocks when each line was found, shape (lines,).
+        since: time from the last look to the next [s].
     """
 
     seen: Seen
@@ -73,6 +74,7 @@ class Met:
     slack: Array
     share: Array
     found: Integers
+    since: float
 
 
 class Encounters:
@@ -117,8 +119,7 @@ class Encounters:
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        seen = Seen(np.zeros(self.count, dtype=bool), deepcopy(self.reach.start), np.zeros(self.count, dtype=np.int64))
-        return Met(seen, intact, none, np.zeros(0), np.zeros(0), none)
+        return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
 
     def _limits(self, start: Poses) -> Array:
         """How far each block may move from where it stands before it is looked at [m], shape (blocks,)."""
@@ -143,31 +144,39 @@ class Encounters:
         take_motion(system, self.blocks, motion)
         return motion
 
-    def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, float]:
+    def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, int]:
         """The system with the lines of the encounters that may happen until the next look, its books with room for
-        them, and the time until then [s]. With steps of h [s] they are stable."""
-        met, seen, wear = self.met, self.met.seen, self.wear
+        them, and the steps until then. With steps of h [s] they are stable."""
+        met, seen = self.met, self.met.seen
+        worn, left = self._worn(system)
+        motion = self.motion(system)
+        if watch(motion, self.sizes, self.reach, seen, left, met.since):
+            met.handed = met.handed | worn
+            stays = self._moves_of(met.pair) == met.found
+            intact = self.jointed[1][~met.handed[self.jointed[0]]]
+            reach = SURE * (seen.ahead + FALL + NEAR * self.sizes)
+            found = self.finder.found(motion.poses, reach, seen.stale, intact)
+            soon = np.empty(len(found.gap), dtype=bool)
+            wait(found, motion, self.sizes, seen, soon)
+            of_gone = np.append(worn[self.wear.pairs], ~stays)
+            if soon.any() or of_gone.any():
+                system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
+                books = books.with_room(len(system.lines))
+        steps = max(1, int(seen.due[seen.watched].min(initial=LOOK) / h))
+        met.since = steps * h
+        return system, books, steps
+
+    def _worn(self, system: System) -> tuple[Flags, Flags]:
+        """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,
+        shape (blocks,)."""
+        met, wear = self.met, self.wear
         worn, left = np.zeros(len(met.handed), dtype=bool), np.zeros(self.count, dtype=bool)
         if wears(system, wear):
             worn = (np.maximum(wear.slip, wear.gap) > wear.left) & ~met.handed
             if len(system.bonds):
                 worn[wear.pairs[: len(system.bonds)][holding(system.bonds)]] = False
             left[np.concatenate(np.divmod(self.law.jointed[worn], self.count))] = True
-        motion, ahead = self.motion(system), np.empty(self.count)
-        if not watch(motion, self.sizes, self.reach, seen, left, ahead):
-            return system, books, LOOK
-        met.handed = met.handed | worn
-        stays = self._moves_of(met.pair) == met.found
-        intact = self.jointed[1][~met.handed[self.jointed[0]]]
-        known = np.sort(np.append(intact, self.finder.between(*np.divmod(met.pair[stays], self.count))))
-        found = self.finder.found(motion.poses, SURE * (ahead + FALL + NEAR * self.sizes), seen.watched, known)
-        soon = np.zeros(len(found.gap), dtype=bool)
-        until = wait(found, motion, self.sizes, soon)
-        of_gone = np.append(worn[wear.pairs], ~stays)
-        if not (soon.any() or of_gone.any()):
-            return system, books, until
-        system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
-        return system, books.with_room(len(system.lines)), until
+        return worn, left
 
     def _renewed(self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float) -> System:
         """The system with these places. Pairs that have not moved keep their lines.
@@ -245,4 +254,5 @@ def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, 
         both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]
         pairs += [pair] * len(both)
         numbers += both
-    return np.array(pairs), np.array(numbers)
+    order = np.argsort(numbers, kind="stable")
+    return np.array(pairs)[order], np.array(numbers)[order]

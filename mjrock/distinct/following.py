@@ -129,8 +129,8 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
                 if encounters is not None:
                     memory = memory._replace(met=deepcopy(encounters.met), look=look - clock.step)
             if encounters is not None and clock.step == look:
-                system, books, until = encounters.look_on(system, books, clock.h)
-                look = clock.step + max(1, int(until / clock.h))
+                system, books, steps = encounters.look_on(system, books, clock.h)
+                look = clock.step + steps
             begun = time.perf_counter()
             ahead = (look if encounters is not None else stop, clock.step + at_once)
             clock = clock._replace(stop=min(stop if clock.step == stepping.last else stepping.last, *ahead))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,9 @@ FALL = 0.5 * GRAVITY * LOOK**2
 PASSED = 0.02
 """Way that a pair may make between two looks, over the size of the smaller block [-]."""
 SURE = 2.0
-"""Way within which places are kept until the next look, over that which speeds alone make [-]."""
+"""Way within which places are kept until the next look at a block, over that which speeds alone make [-]."""
+EARLY = 0.5 * LOOK
+"""Time up to which places serve on at a look without being kept for it [s]. So blocks are looked at together."""
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
 without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
@@ -52,13 +55,27 @@ class Seen(NamedTuple):
 
     Args:
         watched: whether each block is looked at, shape (blocks,).
-        poses: where it was when it was last taken to have moved.
-        moves: how often it has, shape (blocks,).
+        motion: where each was, and how fast, when its places were last found.
+        moves: how often they have been found, shape (blocks,).
+        due: time for which they serve from the last look on [s], shape (blocks,).
+        ahead: how far each may go within the longest time between looks [m], shape (blocks,).
+        stale: whether its places have served no longer at the last look, shape (blocks,).
     """
 
     watched: Flags
-    poses: Poses
+    motion: Motion
     moves: Integers
+    due: Array
+    ahead: Array
+    stale: Flags
+
+    @classmethod
+    def nothing(cls, start: Poses) -> Seen:
+        """Of blocks that stand where they start."""
+        count, still = len(start.moved), deepcopy(start)
+        flags, speeds = np.zeros((2, count), dtype=bool), np.zeros((2, count))
+        motion = Motion(still, np.zeros_like(still.moved), speeds[0])
+        return cls(flags[0], motion, np.zeros(count, dtype=np.int64), np.full(count, LOOK), speeds[1], flags[1])
 
 
 class Reach(NamedTuple):
@@ -127,55 +144,101 @@ def far(poses: Poses, other: Poses, block: int, size: float) -> float:
     return math.sqrt(way) + math.sqrt(turned) * size
 
 
+@inlined
+def speed_of(motion: Motion, block: int) -> float:
+    """The largest speed of a corner of a block [m/s]."""
+    square = 0.0
+    for i in range(motion.velocity.shape[1]):
+        square += motion.velocity[block, i] ** 2
+    return math.sqrt(square) + motion.about[block]
+
+
+@inlined
+def keep(seen: Motion, motion: Motion, block: int) -> None:
+    """Keep where a block is, and how fast."""
+    for i in range(motion.velocity.shape[1]):
+        seen.poses.moved[block, i], seen.velocity[block, i] = motion.poses.moved[block, i], motion.velocity[block, i]
+        for j in range(motion.velocity.shape[1]):
+            seen.poses.change[block, i, j] = motion.poses.change[block, i, j]
+    seen.about[block] = motion.about[block]
+
+
 @compiled
-def watch(motion: Motion, sizes: Array, reach: Reach, seen: Seen, left: Flags, ahead: Array) -> bool:
-    """Bring up to date which blocks are looked at, and which have moved.
+def watch(motion: Motion, sizes: Array, reach: Reach, seen: Seen, left: Flags, since: float) -> bool:
+    """Bring up to date which blocks are looked at, and name those whose places serve no longer.
+
+    These are blocks that are looked at for the first time or have left a joint, those that have moved and whose places
+    have served their time, and those that have become too fast for the places that were kept.
 
     Args:
         motion, sizes: of the blocks.
         reach: how far they may go.
         seen: what looks before have seen.
         left: blocks that have left a joint, shape (blocks,).
-        ahead: room for how far each may go until the next look [m], shape (blocks,).
+        since: time since the last look [s].
 
     Returns:
-        Whether a block is looked at, and one has moved.
+        Whether those of a block do not.
     """
-    some = moved = False
+    some = False
     for block in range(len(sizes)):
-        speed = 0.0
-        for i in range(motion.velocity.shape[1]):
-            speed += motion.velocity[block, i] ** 2
-        ahead[block] = LOOK * (math.sqrt(speed) + motion.about[block])
-        watched, way = seen.watched[block], far(motion.poses, reach.start, block, sizes[block]) + ahead[block]
+        speed, size, watched, due = speed_of(motion, block), sizes[block], seen.watched[block], LOOK
+        if watched:
+            due = max(seen.due[block] - since, 0.0)
+        seen.ahead[block] = LOOK * speed
+        way = far(motion.poses, reach.start, block, size) + seen.ahead[block]
         seen.watched[block] = watched or left[block] or way > reach.limits[block]
-        if seen.watched[block] != watched or far(motion.poses, seen.poses, block, sizes[block]) > reach.stay[block]:
-            moved = True
+        stale = left[block] or seen.watched[block] != watched
+        if watched and not stale:
+            moved = far(motion.poses, seen.motion.poses, block, size) > reach.stay[block]
+            kept = SURE * (speed_of(seen.motion, block) * due + FALL + NEAR * size)
+            stale = (moved and due < EARLY) or speed * due > kept
+        seen.due[block] = due if due >= EARLY else LOOK
+        if stale:
             seen.moves[block] += 1
-            for i in range(motion.velocity.shape[1]):
-                seen.poses.moved[block, i] = motion.poses.moved[block, i]
-                for j in range(motion.velocity.shape[1]):
-                    seen.poses.change[block, i, j] = motion.poses.change[block, i, j]
-        some = some or seen.watched[block]
-    return some and moved
+            keep(seen.motion, motion, block)
+        seen.stale[block] = stale
+        some = some or stale
+    return some
+
+
+@inlined
+def closing(motion: Motion, one: int, other: int) -> float:
+    """The largest speed at which two blocks may come together [m/s]."""
+    square = 0.0
+    for j in range(motion.velocity.shape[1]):
+        square += (motion.velocity[one, j] - motion.velocity[other, j]) ** 2
+    return math.sqrt(square) + motion.about[one] + motion.about[other]
 
 
 @compiled
-def wait(found: Found, motion: Motion, sizes: Array, soon: Flags) -> float:
-    """The time until the next look [s]. Which of the places may touch by then is written, shape (n,)."""
-    until = LOOK
+def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags) -> None:
+    """Write for how long places serve that have been found.
+
+    Those of a pair serve until either block is looked at again: the faster one, if its places were found.
+
+    Args:
+        found: the places.
+        motion, sizes: of the blocks.
+        seen: which blocks were looked at.
+        soon: room for whether each place may touch by then, shape (n,).
+    """
+    due, stale = seen.due, seen.stale
+    for block in range(len(due)):
+        if stale[block]:
+            due[block] = LOOK
     for turn in range(2):
         for i in range(len(found.gap)):
-            one, other, apart = found.face[i], found.other[i], 0.0
-            for j in range(motion.velocity.shape[1]):
-                apart += (motion.velocity[one, j] - motion.velocity[other, j]) ** 2
-            speed, size = math.sqrt(apart) + motion.about[one] + motion.about[other], min(sizes[one], sizes[other])
+            one, other = found.face[i], found.other[i]
+            speed, size = closing(motion, one, other), min(sizes[one], sizes[other])
             if turn == 0:
-                until = min(until, max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 1e-9))
+                serve = max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 1e-9)
+                first = stale[one] and (not stale[other] or speed_of(motion, one) >= speed_of(motion, other))
+                block = one if first else other
+                due[block] = min(due[block], max(serve, SOONEST))
             else:
+                until = min(due[one], due[other])
                 soon[i] = found.gap[i] < SURE * (speed * until + 2 * FALL + NEAR * size)
-        until = max(until, SOONEST)
-    return until
 
 
 @compiled

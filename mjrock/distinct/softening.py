@@ -81,9 +81,7 @@ def way_at(normal: Vector, i: int) -> Vector:
 
 
 @inlined
-def trace_of(
-    body: Row, sides: Sides, side: int, p: int, along: float, across: float, axes: tuple[int, ...]
-) -> float:
+def trace_of(body: Row, sides: Sides, side: int, p: int, along: float, across: float, axes: tuple[int, ...]) -> float:
     """The trace of the stiffness of place p over the masses of one of its bodies."""
     trace, arm, normal = 0.0, vector(sides.arms[side], p, axes), vector(sides.normals, p, axes)
     for way in range(len(axes)):

@@ -128,57 +128,77 @@ def test_a_corner_goes_as_far_as_its_block_moves_and_turns(d):
     assert looking.far(here, there, 0, 0.3) == 0
 
 
-def watched(d, motion, limits, stay, left=(), seen=()):
-    """What a look sees of two blocks of sizes 0.5 and 0.8 m, which were watched and seen at rest."""
-    start, flags = still(d, 2).poses, np.isin(np.arange(2), seen)
-    known = Seen(flags.copy(), still(d, 2).poses, np.array([3, 5]))
-    ahead, reach = np.full(2, 9.0), Reach(start, np.array(limits), np.array(stay))
-    gone = np.isin(np.arange(2), left)
-    some = looking.watch(motion, np.array([0.5, 0.8]), reach, known, gone, ahead)
-    return bool(some), known, ahead
+def watched(d, motion, limits=(9.0, 9.0), stay=(0.25, 0.5999), left=(), seen=(), since=1e-3, due=5e-3, speed=0.0):
+    """What a look sees of two blocks of sizes 0.5 and 0.8 m, some of which were watched, and all found at rest or at a
+    speed. Returns which ones were named, and what was seen."""
+    start, known = still(d, 2).poses, still(d, 2)
+    known.about[:] = speed
+    flags, each = np.isin(np.arange(2), seen), np.full((2, 2), due)
+    sight = Seen(flags, known, np.array([3, 5]), each[0], each[1], np.array([False, True]))
+    reach, gone = Reach(start, np.array(limits), np.array(stay)), np.isin(np.arange(2), left)
+    some = looking.watch(motion, np.array([0.5, 0.8]), reach, sight, gone, since)
+    assert bool(some) is bool(sight.stale.any())
+    np.testing.assert_array_equal(sight.moves, np.array([3, 5]) + sight.stale)
+    return sight.stale.tolist(), sight
 
 
 @BOTH
 def test_how_far_blocks_may_go_until_the_next_look_is_what_their_speeds_make(d):
     motion = still(d, 2)
     motion.velocity[1], motion.about[:] = 2.0, [0.5, 0.25]
-    _, _, ahead = watched(d, motion, [9.0, 9.0], [9.0, 9.0])
-    np.testing.assert_allclose(ahead, looking.LOOK * np.array([0.5, 2 * math.sqrt(d) + 0.25]), rtol=1e-14)
+    _, seen = watched(d, motion)
+    np.testing.assert_allclose(seen.ahead, looking.LOOK * np.array([0.5, 2 * math.sqrt(d) + 0.25]), rtol=1e-14)
 
 
 @BOTH
 def test_a_block_is_looked_at_once_it_may_pass_its_limit(d):
     """By the way that it has gone and that it may go. At the limit it is not."""
     motion = still(d, 2)
-    motion.poses.moved[1, 0], motion.about[1] = 0.25, 0.5 / looking.LOOK
+    motion.poses.moved[1, 0], motion.about[1], motion.velocity[1, -1] = 0.25, 0.375 / looking.LOOK, 0.125 / looking.LOOK
+    motion.poses.change[0, 0, 1] = 0.125
     for limit, is_watched in ((0.75, False), (0.7499, True)):
-        some, seen, _ = watched(d, motion, [1.0, limit], [9.0, 9.0])
-        assert (some, seen.watched.tolist(), seen.moves.tolist()) == (
-            is_watched,
-            [False, is_watched],
-            [3, 5 + is_watched],
-        )
-        np.testing.assert_array_equal(seen.poses.moved[1], motion.poses.moved[1] * is_watched)
+        stale, seen = watched(d, motion, [1.0, limit], [9.0, 9.0])
+        assert stale == seen.watched.tolist() == [False, is_watched]
+        np.testing.assert_array_equal(seen.motion.poses.moved[1], motion.poses.moved[1] * is_watched)
+        np.testing.assert_array_equal(seen.motion.velocity[1], motion.velocity[1] * is_watched)
+        assert seen.motion.about.tolist() == [0.0, motion.about[1] * is_watched]
+        assert not seen.motion.poses.change.any()
 
 
 @BOTH
-def test_a_block_that_has_left_a_joint_is_looked_at_at_once(d):
-    some, seen, _ = watched(d, still(d, 2), [9.0, 9.0], [9.0, 9.0], left=[0])
-    assert (some, seen.watched.tolist(), seen.moves.tolist()) == (True, [True, False], [4, 5])
+@pytest.mark.parametrize("seen", [[], [0]])
+def test_a_block_that_has_left_a_joint_is_found_at_once(d, seen):
+    stale, sight = watched(d, still(d, 2), left=[0], seen=seen)
+    assert stale == sight.watched.tolist() == [True, False]
 
 
 @BOTH
-@pytest.mark.parametrize("seen_before", [[], [0], [0, 1]])
-def test_a_block_has_moved_where_a_find_of_it_is_not_valid_any_more(d, seen_before):
-    """Its pose is kept then, and only then. Nothing is to be done where no block is looked at."""
+@pytest.mark.parametrize("seen", [[], [0], [0, 1]])
+def test_places_of_a_block_that_has_moved_serve_their_time(d, seen):
+    """Its pose is kept when they are found again, and only then. Nothing is to be done where no block is looked at."""
     motion = still(d, 2)
     motion.poses.moved[:, 0], motion.poses.change[1, 0, 1] = [0.25, 0.5], 0.125
-    some, seen, _ = watched(d, motion, [9.0, 9.0], [0.25, 0.5999], seen=seen_before)
-    assert (some, seen.moves.tolist()) == (bool(seen_before), [3, 6])
-    np.testing.assert_array_equal(seen.poses.moved[:, 0], [0.0, 0.5])
-    np.testing.assert_array_equal(seen.poses.change[:, 0, 1], [0.0, 0.125])
-    some, seen, _ = watched(d, motion, [9.0, 9.0], [0.25, 0.6], seen=seen_before)
-    assert (some, seen.moves.tolist()) == (False, [3, 5])
+    for since, due, serves in ((1e-3, 5e-3, True), (2.4e-3, 5e-3, True), (2.6e-3, 5e-3, False), (0.0, 1e-3, False)):
+        stale, sight = watched(d, motion, seen=seen, since=since, due=due)
+        assert stale == [False, not serves and 1 in seen]
+        left = [due - since if serves else looking.LOOK, looking.LOOK]
+        np.testing.assert_allclose(sight.due, [left[0 if i in seen else 1] for i in range(2)], rtol=1e-12)
+        np.testing.assert_array_equal(sight.motion.poses.moved[:, 0], [0.0, 0.5 * stale[1]])
+        np.testing.assert_array_equal(sight.motion.poses.change[:, 0, 1], [0.0, 0.125 * stale[1]])
+    stale, _ = watched(d, motion, stay=(0.25, 0.6), seen=[0, 1], since=5e-3)  # it has not moved further
+    assert stale == [False, False]
+
+
+@BOTH
+def test_a_block_that_has_become_too_fast_for_its_places_is_found(d):
+    """For those that were kept within twice the way at its speed then, half of what it falls by, and its size."""
+    motion, size = still(d, 2), 0.8
+    for due, speed in ((4e-3, 0.0), (3e-3, 0.5), (-1e-4, 9.0)):
+        within = 2 * (speed * due + 0.5 * 9.81 * 5e-3**2 + 1e-3 * size)
+        for more in (1e-6, -1e-6):
+            motion.about[1] = within / due * (1 + more) if due > 0 else 99.0
+            stale, _ = watched(d, motion, seen=[0, 1], since=0.0, due=due, speed=speed, stay=(9.0, 9.0))
+            assert stale == [False, more > 0 and due > 0]
 
 
 def found_places(d, pairs, gap):
@@ -188,40 +208,63 @@ def found_places(d, pairs, gap):
     return Found(face, other, np.zeros((len(gap), d)), np.zeros((len(gap), d)), np.array(gap), each, each)
 
 
+def waited(found, motion, sizes, stale=(0, 1, 2), due=9.0):
+    """For how long the places of blocks serve, and which may touch by then."""
+    count = len(sizes)
+    due, soon = np.full(count, due), np.zeros(len(found.gap), dtype=bool)
+    seen = Seen.nothing(motion.poses)._replace(due=due, stale=np.isin(np.arange(count), stale))
+    looking.wait(found, motion, sizes, seen, soon)
+    return due, soon.tolist()
+
+
 @BOTH
-def test_the_next_look_is_before_a_pair_has_gone_too_far(d):
-    """A share of the size of the smaller block, or half of the gap where that is more, at the speed of both."""
+def test_places_serve_until_a_pair_has_gone_too_far(d):
+    """A share of the size of the smaller block, or half of the gap where that is more, at the speed of both. The faster
+    block is found again then."""
     motion, sizes = still(d, 3), np.array([0.5, 0.8, 0.3])
     motion.velocity[0], motion.velocity[1], motion.about[:] = 1.0, -1.0, [0.5, 0.25, 0.125]
     speed = 2 * math.sqrt(d) + 0.75
     for gap, until in ((0.0, 0.01 / speed), (0.015, 0.01 / speed), (-1.0, 0.01 / speed), (0.024, 0.012 / speed)):
-        soon = np.zeros(1, dtype=bool)
-        assert looking.wait(found_places(d, [[0, 1]], [gap]), motion, sizes, soon) == pytest.approx(until, rel=1e-14)
-    both = found_places(d, [[2, 1], [0, 1], [0, 2]], [0.0, 0.0, 0.0])
-    expected = min(0.01 / speed, 0.006 / (math.sqrt(d) + 0.625))
-    assert looking.wait(both, motion, sizes, np.zeros(3, dtype=bool)) == pytest.approx(expected, rel=1e-14)
+        due, _ = waited(found_places(d, [[0, 1]], [gap]), motion, sizes)
+        np.testing.assert_allclose(due, [until, 5e-3, 5e-3], rtol=1e-14)
+    both = found_places(d, [[2, 1], [0, 1], [2, 0]], [0.0, 0.0, 0.0])
+    due, _ = waited(both, motion, sizes)
+    with_third = 0.006 / (math.sqrt(d) + 0.375), 0.006 / (math.sqrt(d) + 0.625)
+    np.testing.assert_allclose(due, [min(0.01 / speed, with_third[1]), with_third[0], 5e-3], rtol=1e-14)
+    due, _ = waited(both, motion, sizes, stale=[1, 2])  # the faster one of those that are found
+    np.testing.assert_allclose(due, [9.0, min(0.01 / speed, with_third[0]), with_third[1]], rtol=1e-14)
+    motion.about[0], motion.about[1] = 0.25, 0.25  # as fast: the block of the face
+    for pair in ([0, 1], [1, 0]):
+        due, _ = waited(found_places(d, [pair], [0.0]), motion, sizes)
+        assert due[pair[0]] < due[pair[1]] == 5e-3
 
 
-def test_looks_are_not_too_seldom_and_not_too_often():
+def test_places_do_not_serve_too_long_or_too_short():
     motion, sizes = still(2, 2), np.array([0.5, 0.8])
     for found in (found_places(2, [], []), found_places(2, [[0, 1]], [0.0])):
-        assert looking.wait(found, motion, sizes, np.zeros(len(found.gap), dtype=bool)) == looking.LOOK
+        assert waited(found, motion, sizes)[0].tolist() == [looking.LOOK] * 2
     motion.about[0] = 1e3
-    assert looking.wait(found_places(2, [[0, 1]], [0.0]), motion, sizes, np.zeros(1, dtype=bool)) == 5e-4
+    due, _ = waited(found_places(2, [[0, 1]], [0.0]), motion, sizes)
+    assert due.tolist() == [5e-4, 5e-3]
 
 
-def test_places_are_kept_that_may_touch_before_the_next_look():
-    motion, sizes, soon = still(2, 2), np.array([0.5, 0.8]), np.zeros(4, dtype=bool)
-    motion.about[0] = 1.0  # the next look is after 5 ms
+def test_places_are_kept_that_may_touch_before_either_block_is_found_again():
+    motion, sizes = still(2, 2), np.array([0.5, 0.8])
+    motion.about[0] = 1.0  # found again after 5 ms
     within = 2 * (1.0 * 5e-3 + 2 * 0.5 * 9.81 * 5e-3**2 + 1e-3 * 0.5)
     gap = [-0.1, 0.0, within * (1 - 1e-9), within * (1 + 1e-9)]
-    assert looking.wait(found_places(2, [[0, 1]] * 4, gap), motion, sizes, soon) == looking.LOOK
-    assert soon.tolist() == [True, True, True, False]
-    motion.about[0] = 10.0  # the next look is after 1 ms, for all places
+    due, soon = waited(found_places(2, [[0, 1]] * 4, gap), motion, sizes)
+    assert (due.tolist(), soon) == ([5e-3, 5e-3], [True, True, True, False])
+    within = 2 * (1.0 * 2e-3 + 2 * 0.5 * 9.81 * 5e-3**2 + 1e-3 * 0.5)  # the other one is found again after 2 ms
+    found = found_places(2, [[0, 1], [1, 0]] * 2, np.repeat([within * (1 - 1e-9), within * (1 + 1e-9)], 2))
+    due, soon = waited(found, motion, sizes, stale=[0], due=2e-3)
+    assert (due.tolist(), soon) == ([5e-3, 2e-3], [True, True, False, False])
+    motion.about[0] = 10.0  # found again after 1 ms, for all places
     within = 2 * (10.0 * 1e-3 + 2 * 0.5 * 9.81 * 5e-3**2 + 1e-3 * 0.5)
     gap = [within * (1 + 1e-9), within * (1 - 1e-9), 0.0, 0.05]
-    assert looking.wait(found_places(2, [[0, 1]] * 4, gap), motion, sizes, soon) == pytest.approx(1e-3)
-    assert soon.tolist() == [False, True, True, False]
+    due, soon = waited(found_places(2, [[0, 1]] * 4, gap), motion, sizes)
+    np.testing.assert_allclose(due, [1e-3, 5e-3])
+    assert soon == [False, True, True, False]
 
 
 @BOTH
