@@ -21,9 +21,9 @@ from .system import Books, Samples, System
 
 LOOKED, LOOKS = 100, 1_000_000
 """Steps from one look at the energy to the next, and most looks."""
-SHORT, LEAD = 0.25, 0.5
-"""Step over the longest stable one up to which dashpots take the rate at the pose, half a step ahead of the velocity
-that there is [-]. At longer steps what is foreseen is worse than that velocity."""
+LEAD = 0.5
+"""By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
+In long steps what is foreseen is worse than that velocity, see `Setup.foresees`."""
 FIRST = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
 HEARD = 0.3
@@ -116,7 +116,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     clock = Clock(
         0, stepping.h, stepping.every, 0, 0, stepping.last, setup.ends, 0.0, (0.0,) * len(system.axes), stepping.look
     )
-    clock = clock._replace(lead=LEAD if stepping.h <= SHORT * setup.limit else 0.0)
+    clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
     look = 0
     if memory is not None:

@@ -24,10 +24,13 @@ from ..scene.scene import Scene
 from .assembly import copied, driven_by, moved_by, started, system_of, take_grips
 from .bonds import bonded
 from .encounters import Encounters
+from .impacts import Impacts
 from .limit import longest_step
 from .memory import Memory, memory_of, recalled
 from .system import System
 
+SHORT = 0.25
+"""Step over the longest stable one up to which dashpots look ahead, however strong they are [-]."""
 SHARE_OF_A_WALL = 0.05
 """Step that is taken for a wall, over the longest stable one [-]. The first three |e| of a wall against a stop are then
 within 0.04 %, and with 0.1 within 0.11 %."""
@@ -43,6 +46,7 @@ class Setup:
         spacing: largest spacing of the samples [s].
         ends: rotation at which the run ends [rad].
         encounters: where blocks that fall meet others, or None where that is not followed.
+        impacts: flat impacts at the joints of masonry. At steps of a wall dashpots always look ahead.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
         drag, local: mass-proportional [1/s] and local damping [-] of the motion.
@@ -57,11 +61,16 @@ class Setup:
     spacing: float = math.inf
     ends: float = math.inf
     encounters: Encounters | None = None
+    impacts: Impacts | None = None
     of: object = None
     blocks: tuple[str, ...] = ()
     memory: Memory | None = None
     drag: float = 0.0
     local: float = 0.0
+
+    def foresees(self, h: float) -> bool:
+        """Whether dashpots look ahead in steps of h [s]."""
+        return h <= SHORT * self.limit or (self.impacts is not None and self.impacts.foreseen(h))
 
     @property
     def is_slowed(self) -> bool:
@@ -117,11 +126,12 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     system = driven_by(system, scene, masonry, tuple(case.actuators.values()))
-    limit, system = longest_step(system), bonded(system, masonry, scene.contacts.joint)
+    limit, impacts = longest_step(system), Impacts.of(system)
+    share, system = impacts.step(SHARE * limit) / limit, bonded(system, masonry, scene.contacts.joint)
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
     started(system, course.pose, course.velocity)
-    return Setup(scene, course, system, limit, SHARE, encounters=encounters, of=of, blocks=blocks)
+    return Setup(scene, course, system, limit, share, encounters=encounters, impacts=impacts, of=of, blocks=blocks)
 
 
 def continued(course: Course, state: State | None) -> Course:

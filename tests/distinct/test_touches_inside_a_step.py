@@ -52,33 +52,40 @@ def rebound(masonry, speed):
     return math.sqrt(velocity**2 + 2 * G * place) / speed
 
 
+def default_step(masonry):
+    """The step that is taken where samples do not shorten it [s]."""
+    return bounced(masonry, 1.0, output_step=0.3).stats["timestep"]
+
+
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize(
-    ("xi", "share", "mean", "scatter"),
-    [
-        (0.0, 0.4, 1e-4, 1e-4),
-        (0.05, 0.4, 3e-3, 1e-3),
-        slow((0.1, 0.4, 3e-3, 2e-3)),
-        slow((0.2, 0.25, 1e-2, 3e-3)),
-        (0.3, 0.25, 1e-2, 4e-3),
-    ],
+    ("xi", "error"),
+    [(0.0, 1e-4), (0.05, 3e-3), slow((0.1, 5e-3)), (0.15, 1e-2), slow((0.2, 1e-2)), (0.3, 1e-2), slow((0.35, 1e-2))],
 )
-def test_a_flat_impact_is_that_of_exact_integration(in_space, xi, share, mean, scatter):
-    """At the default step, 0.4 of the longest stable one, and with strong dashpots at 0.25.
-
-    Wherever in its step it falls, the energy of the motion upwards is its restitution, and the ledger closes."""
-    masonry, errors = block(in_space, xi), []
-    step = share * bounced(masonry, 1e-3).stats["stable_timestep"]
+def test_a_flat_impact_at_the_default_step_is_that_of_exact_integration(in_space, xi, error):
+    """Wherever in its step it falls, the energy of the motion upwards is its restitution, and the ledger closes."""
+    masonry = block(in_space, xi)
+    step = default_step(masonry)
     for speed in PHASES:
         run = bounced(masonry, speed, timestep=step, ledger=True, output_step=1e-3)
         height = run.pose[:, 0, 2 if in_space else 1]
         landed = int(np.argmax((height < 0) & (run.t > 0.1)))
         down, up = (part.max() for part in (height[:landed], height[landed:]))
-        found = math.sqrt(up / down)
-        errors.append(found / rebound(masonry, math.sqrt(2 * G * down)) - 1)
+        exact = rebound(masonry, math.sqrt(2 * G * down))
+        assert math.sqrt(up / down) == pytest.approx(exact, rel=error)
         assert np.abs(run.energy_residual).max() < 1e-5 * run.ledger.kinetic[0]
-    assert abs(np.mean(errors)) < mean
-    assert np.std(errors) < scatter
+
+
+def test_very_strong_dashpots_leave_little_of_a_flat_impact_and_of_its_error():
+    """|e| below a third is within 0.5 % of the speed of approach."""
+    for xi in (0.4, 0.6, 0.8):
+        masonry = block(False, xi)
+        run = bounced(masonry, 1.0, timestep=default_step(masonry), output_step=1e-3)
+        landed = int(np.argmax((run.pose[:, 0, 1] < 0) & (run.t > 0.1)))
+        down, up = (part.max() for part in (run.pose[:landed, 0, 1], run.pose[landed:, 0, 1]))
+        exact = rebound(masonry, math.sqrt(2 * G * down))
+        assert exact < 1 / 3
+        assert math.sqrt(up / down) == pytest.approx(exact, abs=5e-3)
 
 
 @pytest.mark.parametrize("in_space", [False, True])
@@ -111,7 +118,10 @@ def landing(in_space, xi, angle, height, timestep=None):
     return mr.solve_explicit(case, timestep=timestep, ledger=True, start=(pose, velocity))
 
 
-@pytest.mark.parametrize(("in_space", "xi"), [(False, 0.0), (False, 0.05), slow((True, 0.0)), (True, 0.05)])
+@pytest.mark.parametrize(
+    ("in_space", "xi"),
+    [(False, 0.0), (False, 0.05), slow((True, 0.0)), (True, 0.05), (False, 0.2), slow((True, 0.2)), slow((False, 0.3))],
+)
 def test_a_corner_impact_at_the_default_step_is_that_of_short_steps(in_space, xi):
     """The corner leaves the ground again with the speed that it has at steps a hundred times shorter."""
     spin, up = (4, 2) if in_space else (2, 1)
