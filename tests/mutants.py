@@ -306,6 +306,19 @@ EQUIVALENT = {
     "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * FALL + NEAR * size)": (
         "no gap is the bound to the last bit"
     ),
+    **{
+        f"looking.py: {line}": "no time is the bound to the last bit"
+        for line in (
+            "stale = (moved and due <= EARLY) or speed * due > kept",
+            "seen.due[block] = due if due > EARLY else LOOK",
+        )
+    },
+    **{
+        f"looking.py: flags, speeds = np.zeros(({flags}, count), dtype=bool), np.zeros(({speeds}, count))": (
+            "the first two rows of each are used"
+        )
+        for flags, speeds in ((4, 2), (2, 4))
+    },
     "looking.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
     "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
     "pace.py: return 0 if h * pace.frequency <= pace.method.smooth else 1": "no step meets the limit to the last bit",

@@ -50,8 +50,9 @@ def solve_explicit(
     Args:
         case: the wall, its release, its sides; or masonry and what moves it.
         contacts: the interfaces of the wall; masonry has its own joints.
-        timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry and 0.05 of it
-            for a wall, whose impacts are read one by one, shortened to a whole share of the spacing of the samples.
+        timestep: length of a step [s], 1e-12 to 1; None takes 0.4 of the longest stable one for masonry, less where
+            dashpots are strong, and 0.05 of it for a wall, whose impacts are read one by one, shortened to a whole
+            share of the spacing of the samples.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; None stands for 1 ms. The last
             sample is the end of the run. A given timestep is kept: the spacing is a whole number of steps, the last one
             may be shorter, and the run ends with the step that is nearest to the duration.

@@ -37,14 +37,16 @@ class Impacts(NamedTuple):
     ratio: Array
 
     @classmethod
-    def of(cls, system: System) -> Impacts:
+    def at_joints(cls, system: System) -> Impacts:
         """Those of the joints of a system, which are the groups of its lines."""
         lines, inverse = system.lines, np.asarray(system.bodies["inverse_mass"])
         along = np.asarray(lines["normal"]) ** 2
         light = (inverse[lines["body"]] * along).sum(axis=1)
         light += np.where(lines["face"] >= 0, (inverse[np.maximum(lines["face"], 0)] * along).sum(axis=1), 0.0)
-        _, first, joint = np.unique(lines["group"], return_index=True, return_inverse=True)
-        stiffness, damping = (light[first] * np.bincount(joint, lines[name]) for name in ("k", "c"))
+        moves = light > 0  # no block is guided along the normal
+        _, first, joint = np.unique(lines["group"][moves], return_index=True, return_inverse=True)
+        light = light[moves][first]
+        stiffness, damping = (light * np.bincount(joint, lines[name][moves]) for name in ("k", "c"))
         frequency = np.sqrt(stiffness)
         return cls(frequency, damping / (2 * frequency))
 
@@ -59,6 +61,6 @@ class Impacts(NamedTuple):
         short = np.maximum(BRAKING / (2 * ratio), SWINGING) / frequency
         return float(short.min(initial=longest))
 
-    def foreseen(self, h: float) -> bool:
+    def look_ahead(self, h: float) -> bool:
         """Whether dashpots are to look ahead in steps of h [s]: if they lag, and the steps are short enough for it."""
-        return bool((self.lag(h) > LAGGED).any()) and self.step(h) == h
+        return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 1e-9) * h

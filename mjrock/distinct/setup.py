@@ -70,7 +70,7 @@ class Setup:
 
     def foresees(self, h: float) -> bool:
         """Whether dashpots look ahead in steps of h [s]."""
-        return h <= SHORT * self.limit or (self.impacts is not None and self.impacts.foreseen(h))
+        return h <= SHORT * self.limit or (self.impacts is not None and self.impacts.look_ahead(h))
 
     @property
     def is_slowed(self) -> bool:
@@ -126,7 +126,7 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
     system = driven_by(system, scene, masonry, tuple(case.actuators.values()))
-    limit, impacts = longest_step(system), Impacts.of(system)
+    limit, impacts = longest_step(system), Impacts.at_joints(system)
     share, system = impacts.step(SHARE * limit) / limit, bonded(system, masonry, scene.contacts.joint)
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)

@@ -71,7 +71,7 @@ def test_each_actuator_has_an_account_of_its_own(in_space):
     of its point, beside what is in its spring, and nothing is left for the ground."""
     first = actuator(-B, 0.1, ([0.0, 0.2, 0.6], [0.0, 0.01, -0.01]), in_space=in_space)
     second = actuator(B, 0.1, ([0.0], [0.0]), in_space=in_space, stiffness=1e5, damping=0.0)
-    answer, _ = pushed(panel(0.3, in_space=in_space, k_n=1e10), first, second, duration=0.6)
+    answer, _ = pushed(panel(0.3, in_space=in_space, k_n=1e10), first, second, duration=0.6, output_step=1e-3)
     turned = answer.tilt[:, 0] * np.sign(answer.pose[:, 0, 5]) if in_space else answer.theta[:, 0]
     moved = answer.pose[:, 0, 0] - (H - 0.1) * np.sin(turned)
     path = np.abs(np.diff(moved)).sum()

@@ -45,6 +45,16 @@ def test_dashpots_of_a_moving_face_count_as_those_on_the_ground():
     np.testing.assert_allclose(start.impacts.frequency, expected, rtol=1e-12)
 
 
+def test_a_block_that_a_guide_holds_has_no_impact():
+    """Along the normal of its bed."""
+    masonry = mr.Masonry([GROUND, box(-1, 1, 0, 1), box(1, 2, 0, 1)], k_n=K_N, friction=0.7)
+    history = {"displacement": ([0.0, 0.1], [0.0, 0.0]), "stiffness": 1e8}
+    jack = mr.Actuator(block=masonry.names[1], at=(0.0, 0.5), direction=(1.0, 0.0), guided="translation", **history)
+    impacts = setup_of(mr.MasonryCase(masonry, 1.0, effects=(jack,)), None, None).impacts
+    assert len(impacts.ratio) == 2
+    assert np.isfinite(impacts.ratio).all()
+
+
 IMPACTS = Impacts(np.array([100.0, 200.0, 50.0]), np.array([0.2, 0.5, 0.02]))
 
 
@@ -67,13 +77,13 @@ def test_the_step_is_short_where_dashpots_lag():
     assert IMPACTS.step(7e-4) == 7e-4
     none = Impacts(np.zeros(0), np.zeros(0))
     assert none.step(0.3) == 0.3
-    assert not none.foreseen(0.3)
+    assert not none.look_ahead(0.3)
 
 
 def test_dashpots_look_ahead_where_they_lag_and_steps_are_short():
     lags = 0.01 / (0.5 * math.pi * 50.0)
     for h, ahead in ((0.99 * lags, False), (1.01 * lags, True), (7.4e-4, True), (7.6e-4, False)):
-        assert IMPACTS.foreseen(h) is ahead
+        assert IMPACTS.look_ahead(h) is ahead
 
 
 def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
@@ -87,6 +97,7 @@ def test_masonry_with_strong_dashpots_takes_the_step_that_they_ask_for():
         else:
             assert 0.39 < stats["share"] <= 0.4
         assert start.foresees(stats["timestep"]) is strong
+        assert start.foresees(start.share * start.limit) is strong  # as long as it may be, to rounding
     given = 0.4 * start.limit  # too long for what dashpots could foresee
     assert not start.foresees(given)
     assert start.foresees(0.2 * start.limit)
