@@ -89,8 +89,8 @@ def free_parts(course: int, study: Study) -> tuple[list[tuple[float, float]], li
     return [(left, right) for left, right in zip(edges[::2], edges[1::2], strict=True) if right > left], lintels
 
 
-def wall(study: Study) -> mr.Masonry:
-    """The wall on its ground: units and half units that keep the bond through the whole wall."""
+def wall(study: Study, k_n: float = K_N) -> mr.Masonry:
+    """The wall on its ground, on joints of a stiffness [N/m3]: units and half units that keep the bond throughout."""
 
     def block(left: float, right: float, course: int) -> mr.Polygon:
         low, high = course * UNIT[1], (course + 1) * UNIT[1]
@@ -108,7 +108,7 @@ def wall(study: Study) -> mr.Masonry:
             inside = heads[(heads > left + 1e-9) & (heads < right - 1e-9)]
             blocks += [block(a, b, course) for a, b in pairwise([left, *inside.tolist(), right])]
         blocks += [block(left, right, course) for left, right in lintels]
-    return mr.Masonry(tuple(blocks), k_n=K_N, k_s=K_N, friction=FRICTION, xi=XI)
+    return mr.Masonry(tuple(blocks), k_n=k_n, k_s=k_n, friction=FRICTION, xi=XI)
 
 
 def run(masonry: mr.Masonry, study: Study, peak: float) -> mr.Response:
