@@ -150,7 +150,8 @@ def speed_of(motion: Motion, block: int) -> float:
     square = 0.0
     for i in range(motion.velocity.shape[1]):
         square += motion.velocity[block, i] ** 2
-    return math.sqrt(square) + motion.about[block]
+    speed: float = math.sqrt(square) + motion.about[block]
+    return speed
 
 
 @inlined
@@ -208,7 +209,8 @@ def closing(motion: Motion, one: int, other: int) -> float:
     square = 0.0
     for j in range(motion.velocity.shape[1]):
         square += (motion.velocity[one, j] - motion.velocity[other, j]) ** 2
-    return math.sqrt(square) + motion.about[one] + motion.about[other]
+    speed: float = math.sqrt(square) + motion.about[one] + motion.about[other]
+    return speed
 
 
 @compiled

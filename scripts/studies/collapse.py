@@ -5,8 +5,8 @@ Their joints are so stiff that a unit which falls from the top and lands flat li
 Prints for each run how many blocks fall, the largest share of a block that lies inside another at any sample, energy
 that has no account over what the ground put in, and the time of the processor. Beside it stand the number of fallen
 with half the step, and the least and the most of some seeds: the same motion times 1 + 1e-9 of a random number.
-Prints at last how the heap of the wall lies still: its speed, and how far a block creeps in ten seconds. What has gone
-past the end of the ground falls on and is left out of both.
+Prints at last how the heap of the wall lies still after the stronger motion: its speed, and how far a block creeps in
+ten seconds. What has gone past the end of the ground falls on and is left out of both.
 Writes collapse.csv, a row when its runs are done, and collapse.txt.
 """
 
@@ -43,28 +43,33 @@ def kept_apart(height: float) -> float:
     return 2 * mr.GRAVITY * height * DENSITY / (UNIT * 0.01**2)
 
 
-def facade(length: float, height: float, gable: int, *openings: tuple[float, mr.Opening]) -> mr.Masonry:
+def facade(stiffer: float, length: float, height: float, gable: int, *openings: tuple[float, mr.Opening]) -> mr.Masonry:
     """A facade in space with the unit and the friction of the other studies."""
-    unit, k_n = facade_in_space.UNIT, kept_apart(height + gable * UNIT)
+    unit, k_n = facade_in_space.UNIT, stiffer * kept_apart(height + gable * UNIT)
     joints = facade_in_space.JOINTS | {"k_n": k_n, "k_s": k_n}
     return mr.Masonry.facade(length, height, facade_in_space.DEPTH, unit, openings=openings, gable=gable, **joints)
 
 
 DOOR = mr.Opening(width=0.8, height=1.2)
 WINDOW = mr.Opening(width=0.4, height=0.6, sill=0.6)
-MASONRY: dict[str, Callable[[], mr.Masonry]] = {
-    "wall of 36 units": lambda: mr.Masonry.running_bond(2.0, 2.0, heap.UNIT, k_n=kept_apart(2.0), friction=0.6),
-    "facade, door": lambda: facade(2.4, 1.6, 0, (0.0, DOOR)),
-    "facade, two windows": lambda: facade(3.2, 1.6, 0, *facade_in_space.WINDOWS),
-    "facade, gable": lambda: facade(3.2, 2.0, 4, (0.0, WINDOW)),
-    "two storeys": lambda: two_storeys.wall(two_storeys.FULL, kept_apart(two_storeys.FULL.height)),
+MASONRY: dict[str, Callable[[float], mr.Masonry]] = {
+    "wall of 36 units": lambda stiffer: mr.Masonry.running_bond(
+        2.0, 2.0, heap.UNIT, k_n=stiffer * kept_apart(2.0), friction=0.6
+    ),
+    "facade, door": lambda stiffer: facade(stiffer, 2.4, 1.6, 0, (0.0, DOOR)),
+    "facade, two windows": lambda stiffer: facade(stiffer, 3.2, 1.6, 0, *facade_in_space.WINDOWS),
+    "facade, gable": lambda stiffer: facade(stiffer, 3.2, 2.0, 4, (0.0, WINDOW)),
+    "two storeys": lambda stiffer: two_storeys.wall(two_storeys.FULL, stiffer * kept_apart(two_storeys.FULL.height)),
 }
+"""Masonry on joints so many times stiffer than `kept_apart`."""
 
 
 class Run(NamedTuple):
-    """A run: what stands, how strong its motion is, for how long [s], its seed, and its step over the default."""
+    """A run: what stands, on joints how many times stiffer, how strong its motion is, for how long [s], its seed, and
+    its step over the default."""
 
     name: str
+    stiffer: float
     strength: float
     duration: float
     seed: int = 0
@@ -99,7 +104,7 @@ def case_of(run: Run) -> mr.MasonryCase:
     """The case of a run."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mr.Implausible)  # the run may end before the record
-        return mr.MasonryCase(MASONRY[run.name](), run.duration, **motions(run))
+        return mr.MasonryCase(MASONRY[run.name](run.stiffer), run.duration, **motions(run))
 
 
 def fastest(answer: mr.Response, motions: Array) -> float:
@@ -128,8 +133,9 @@ def followed(run: Run) -> Found:
 
 
 def creep(duration: float, rest: float) -> tuple[float, float]:
-    """The largest speed in the heap after its fall [m/s], and the largest way of a block in the time after it [m]."""
-    fallen = mr.solve_explicit(case_of(Run("wall of 36 units", 1.0, duration)), output_step=0.02)
+    """The largest speed in the heap of a wall after its fall [m/s], and the largest way of a block in a time after it
+    [m]."""
+    fallen = mr.solve_explicit(case_of(Run("wall of 36 units", 1.0, 1.5, duration)), output_step=0.02)
     quiet = mr.solve_explicit(mr.MasonryCase(fallen.case.masonry, rest), output_step=0.05, start=fallen.end)
     return fastest(fallen, fallen.velocity[-1]), fastest(quiet, quiet.pose[-1] - quiet.pose[0])
 
@@ -140,7 +146,7 @@ def row(found: dict[Run, Found]) -> list[object]:
     scatter = [one.fallen for seed, one in found.items() if seed.step == 1.0]
     overlap, unaccounted = (max(getattr(one, name) for one in found.values()) for name in ("overlap", "unaccounted"))
     return [
-        run.name, len(MASONRY[run.name]().free), f"{run.strength:g}", f"{run.duration:g}", first.fallen, half.fallen,
+        run.name, len(MASONRY[run.name](1.0).free), f"{run.strength:g}", f"{run.duration:g}", first.fallen, half.fallen,
         f"{min(scatter)} to {max(scatter)}", f"{overlap:.2%}", f"{unaccounted:.1e}", f"{1e3 * first.speed:.1e}",
         f"{first.took:.3g}",
     ]  # fmt: skip
@@ -152,12 +158,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser.add_argument("--seeds", type=int, default=10, help="of the wall in running bond, besides the first run")
     parser.add_argument("--seeds-of-facades", type=int, default=4, help="of each facade")
     parser.add_argument("--seeds-of-storeys", type=int, default=1, help="of the wall of two storeys")
+    parser.add_argument("--only", choices=list(MASONRY), help="one of the scenes")
+    parser.add_argument("--stiffer", type=float, default=1.0, help="joints so many times stiffer")
     args = parser.parse_args(argv)
-    out = cli.folder(args.out)
-    durations = {"wall of 36 units": 8.0, "two storeys": 6.0}
-    scenes = [(name, strength, durations.get(name, 8.0)) for name in MASONRY for strength in (1.0, 1.5)]
+    out, names = cli.folder(args.out), [args.only] if args.only else list(MASONRY)
+    durations = {"two storeys": 6.0}
+    scenes = [(name, args.stiffer, strength, durations.get(name, 8.0)) for name in names for strength in (1.0, 1.5)]
     if args.quick:
-        scenes, args.seeds = [("wall of 36 units", 1.0, 0.4)], 1
+        scenes, args.seeds = [("wall of 36 units", args.stiffer, 1.0, 0.4)], 1
     runs = []
     for scene in scenes:
         seeds = {"wall of 36 units": args.seeds, "two storeys": args.seeds_of_storeys}.get(
@@ -169,7 +177,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     rows = list[list[object]]()
     with ProcessPoolExecutor(None if len(runs) > 3 else 1) as pool:
         coming = tqdm(pool.map(followed, runs), total=len(runs), delay=3, disable=None)
-        for _, ran in groupby(zip(runs, coming, strict=True), key=lambda one: one[0][:3]):
+        for _, ran in groupby(zip(runs, coming, strict=True), key=lambda one: one[0][:4]):
             rows.append(row(dict(ran)))
             cli.write_text(out / "collapse.csv", cli.csv_text(header, rows))  # an interrupted study keeps its rows
     speed, way = creep(*((0.4, 0.1) if args.quick else (8.0, REST)))
