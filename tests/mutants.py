@@ -101,6 +101,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/friction.py": ("friction_of_lines",),
     "distinct/gathering.py": ("forces_of_lines",),
     "distinct/handover.py": ("handing_over",),
+    "distinct/impacts.py": ("impacts",),
     "distinct/links.py": ("pulls_of_links",),
     "distinct/looking.py": ("looking",),
     "distinct/loop.py": ("loop_of_steps",),
@@ -296,6 +297,10 @@ EQUIVALENT = {
     "softening.py: d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 2)": (
         "the last share is read, and more of them are one"
     ),
+    "impacts.py: return bool((self.lag(h) > LAGGED).any()) and self.step(h) > (1 - 2e-09) * h": (
+        "any share of rounding serves"
+    ),
+    "softening.py: trace = 1": "the trace of the last square is taken",
     "softening.py: stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((4, nv, nv))": (
         "the first two are used"
     ),

@@ -45,6 +45,15 @@ def test_dashpots_of_a_moving_face_count_as_those_on_the_ground():
     np.testing.assert_allclose(start.impacts.frequency, expected, rtol=1e-12)
 
 
+def test_joints_may_have_any_slope():
+    """Those of an arch of equal voussoirs have one stiffness; the outer ones meet fixed abutments."""
+    arch = mr.Masonry.arch(5.0, 0.75, voussoirs=7, k_n=K_N, xi=0.05)
+    impacts, mass = setup_of(mr.MasonryCase(arch, 1.0), None, None).impacts, arch.blocks[arch.free[0]].mass
+    fixed = [arch.blocks[joint.below].fixed or arch.blocks[joint.above].fixed for joint in arch.joints]
+    assert sum(fixed) == 2
+    np.testing.assert_allclose(impacts.frequency, np.sqrt(K_N * 0.75 / mass * np.where(fixed, 1, 2)), rtol=1e-9)
+
+
 def test_a_block_that_a_guide_holds_has_no_impact():
     """Along the normal of its bed."""
     masonry = mr.Masonry([GROUND, box(-1, 1, 0, 1), box(1, 2, 0, 1)], k_n=K_N, friction=0.7)
