@@ -301,7 +301,7 @@ EQUIVALENT = {
         "any share of rounding serves"
     ),
     "softening.py: trace = 1": "the trace of the last square is taken",
-    "softening.py: stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((4, nv, nv))": (
+    "softening.py: stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((4, nv, nv))": (
         "the first two are used"
     ),
     "looking.py: for turn in range(4):": "the passes after the second one find the same",

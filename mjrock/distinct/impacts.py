@@ -43,7 +43,7 @@ class Impacts(NamedTuple):
         along = np.asarray(lines["normal"]) ** 2
         light = (inverse[lines["body"]] * along).sum(axis=1)
         light += np.where(lines["face"] >= 0, (inverse[np.maximum(lines["face"], 0)] * along).sum(axis=1), 0.0)
-        moves = light > 0  # no block is guided along the normal
+        moves = light > 0  # where guides hold both blocks along the normal there is no impact
         _, first, joint = np.unique(lines["group"][moves], return_index=True, return_inverse=True)
         light = light[moves][first]
         stiffness, damping = (light * np.bincount(joint, lines[name][moves]) for name in ("k", "c"))

@@ -46,7 +46,7 @@ class Setup:
         spacing: largest spacing of the samples [s].
         ends: rotation at which the run ends [rad].
         encounters: where blocks that fall meet others, or None where that is not followed.
-        impacts: flat impacts at the joints of masonry. At steps of a wall dashpots always look ahead.
+        impacts: flat impacts at the joints of masonry. A wall has none: its steps are below `SHORT`.
         of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
         blocks: the fixed blocks that move, in the order of the supports.
         drag, local: mass-proportional [1/s] and local damping [-] of the motion.

@@ -115,11 +115,7 @@ def split(sides: Sides, room: Room) -> None:
 
 @inlined
 def stiffen(sides: Sides, along: Array, across: Array, room: Room, axes: tuple[int, ...]) -> None:
-    """Write the stiffness of each body with much load by its places, over its shares of them."""
-    for b in range(len(room.stiffness)):
-        for i in range(room.stiffness.shape[1]):
-            for j in range(room.stiffness.shape[1]):
-                room.stiffness[b, i, j] = 0.0
+    """Add up the stiffness of each body with much load by its places, over its shares of them."""
     for side in range(2):
         for p in range(len(along)):
             body = sides.bodies[side, p]
@@ -164,7 +160,7 @@ def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, 
         sides: the two blocks of each place.
         along, across: stiffness along the normal and along the face of each place, shape (n,).
         bodies: whose inverse inertia is taken in the axes of the world, in space.
-        room: with shares of 1.
+        room: with shares of 1 and no stiffness.
         axes: of the system.
     """
     for side in range(2):
@@ -197,7 +193,7 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
     along = step**2 * law["k"] + 2 * step * law["c"]
     across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
     d, nv, share = sides.normals.shape[1], 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
-    stiffness, powers = np.empty((len(bodies), nv, nv)), np.empty((2, nv, nv))
+    stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((2, nv, nv))
     traces, shares = np.zeros(sides.bodies.shape), np.ones(sides.bodies.shape)
     room = Room(traces, shares, np.empty(len(bodies)), stiffness, powers, share)
     soften(sides, along, across, bodies, room, tuple(range(d)))

@@ -59,21 +59,31 @@ def default_step(masonry):
 
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize(
-    ("xi", "error"),
-    [(0.0, 1e-4), (0.05, 3e-3), slow((0.1, 5e-3)), (0.15, 1e-2), slow((0.2, 1e-2)), (0.3, 1e-2), slow((0.35, 1e-2))],
+    ("xi", "mean", "scatter"),
+    [
+        (0.0, 1e-4, 1e-4),
+        (0.05, 3e-3, 1e-3),
+        slow((0.1, 3e-3, 2e-3)),
+        (0.15, 1e-2, 3e-3),
+        slow((0.2, 1e-2, 3e-3)),
+        (0.3, 1e-2, 4e-3),
+        slow((0.35, 1e-2, 4e-3)),
+    ],
 )
-def test_a_flat_impact_at_the_default_step_is_that_of_exact_integration(in_space, xi, error):
+def test_a_flat_impact_at_the_default_step_is_that_of_exact_integration(in_space, xi, mean, scatter):
     """Wherever in its step it falls, the energy of the motion upwards is its restitution, and the ledger closes."""
-    masonry = block(in_space, xi)
+    masonry, errors = block(in_space, xi), []
     step = default_step(masonry)
     for speed in PHASES:
         run = bounced(masonry, speed, timestep=step, ledger=True, output_step=1e-3)
         height = run.pose[:, 0, 2 if in_space else 1]
         landed = int(np.argmax((height < 0) & (run.t > 0.1)))
         down, up = (part.max() for part in (height[:landed], height[landed:]))
-        exact = rebound(masonry, math.sqrt(2 * G * down))
-        assert math.sqrt(up / down) == pytest.approx(exact, rel=error)
+        errors.append(math.sqrt(up / down) / rebound(masonry, math.sqrt(2 * G * down)) - 1)
         assert np.abs(run.energy_residual).max() < 1e-5 * run.ledger.kinetic[0]
+    assert np.abs(errors).max() < 1e-2
+    assert abs(np.mean(errors)) < mean
+    assert np.std(errors) < scatter
 
 
 def test_very_strong_dashpots_leave_little_of_a_flat_impact_and_of_its_error():
