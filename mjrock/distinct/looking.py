@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.vectors import components, dot, minus, plus, put, spin_components, vector
 from ..problem.masonry.joint_law import stored
 from ..quantities import GRAVITY, Array, Flags, Integers
@@ -107,7 +107,7 @@ class Wear(NamedTuple):
     left: Array
 
 
-@compiled
+@compiled_at_once
 def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
     """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
     write_motion(system, blocks, motion, system.axes)
@@ -164,7 +164,7 @@ def keep(seen: Motion, motion: Motion, block: int) -> None:
     seen.about[block] = motion.about[block]
 
 
-@compiled
+@compiled_at_once
 def watch(motion: Motion, sizes: Array, reach: Reach, seen: Seen, left: Flags, since: float) -> bool:
     """Bring up to date which blocks are looked at, and name those whose places serve no longer.
 
@@ -213,7 +213,7 @@ def closing(motion: Motion, one: int, other: int) -> float:
     return speed
 
 
-@compiled
+@compiled_at_once
 def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags) -> None:
     """Write for how long places serve that have been found.
 
@@ -243,7 +243,7 @@ def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags) ->
                 soon[i] = found.gap[i] < SURE * (speed * until + 2 * FALL + NEAR * size)
 
 
-@compiled
+@compiled_at_once
 def wears(system: System, wear: Wear) -> bool:
     """Bring slip and gap of joints up to date. Returns whether a pair has left its joints."""
     return wears_joints(system, wear, system.axes)
@@ -278,7 +278,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
     return left
 
 
-@compiled
+@compiled_at_once
 def held(system: System, which: Integers, depth: Array) -> float:
     """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]. What shear
     springs lose, friction takes."""
