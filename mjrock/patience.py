@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import importlib.util
 import os
 import pickle
 import subprocess
@@ -56,11 +57,16 @@ _run: ContextVar[Run | None] = ContextVar("run", default=None)
 @contextlib.contextmanager
 def first_answer(solver: Callable[..., object], **given: object) -> Iterator[None]:
     """Let loops that are not stored run as plain Python in this block, which is a call of a solver."""
-    token = _run.set(None if os.environ.get("MJROCK_INTERPRET") in ("0", BEHIND) else Run(solver, given))
+    token = _run.set(Run(solver, given) if _wanted() else None)
     try:
         yield
     finally:
         _run.reset(token)
+
+
+def _wanted() -> bool:
+    compiles = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" and importlib.util.find_spec("numba") is not None
+    return compiles and os.environ.get("MJROCK_INTERPRET") not in ("0", BEHIND)
 
 
 def expect(seconds: float) -> None:
