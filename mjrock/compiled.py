@@ -3,9 +3,9 @@
 `compiled` marks a loop for compilation at its first call. The result is stored in the folder that the environment
 variable NUMBA_CACHE_DIR names, or in `__pycache__` beside the module, or in the user's cache folder where the package
 lies on a read-only disk. Where none of them can be written, each process compiles anew. Of processes that need a loop
-at once one compiles it, and the others wait. Short runs need not wait at all, see `patience`. `inlined` marks a function that
-compiled loops call, which takes the place of its call; called from Python it runs as Python. With NUMBA_DISABLE_JIT=1,
-and on a Python that has no numba, all of them run as plain Python with the same results.
+at once one compiles it, and the others wait. Short runs need not wait at all, see `patience`. `inlined` marks a
+function that compiled loops call, which takes the place of its call; called from Python it runs as Python. With
+NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
 """
 
 from __future__ import annotations
@@ -110,11 +110,11 @@ def _imported_numba() -> Any:
             others wait. What is stored makes room for it.
 
             Raises:
-                NotStored: if there is none, and the run need not wait for it.
+                NotStoredError: if there is none, and the run need not wait for it.
             """
             if (stored := self._stored(*key)) is None:
                 if patience.allowed(self._at_once):
-                    raise NotStored
+                    raise NotStoredError
                 self._lock()
                 if (stored := self._stored(*key)) is not None:
                     self._unlock()
@@ -138,7 +138,7 @@ def _imported_numba() -> Any:
                     self._locked = FileLock(f"{self._cache_file._index_path}.lock")
                     self._locked.acquire(blocking=not patience.is_behind())
                 except Timeout:
-                    raise NotStored from None
+                    raise NotStoredError from None
 
         def _unlock(self) -> None:
             if self._locked is not None:
@@ -197,7 +197,7 @@ def inlined(function: Function) -> Function:
     return function
 
 
-class NotStored(Exception):
+class NotStoredError(Exception):
     """A loop is not stored."""
 
 
@@ -222,7 +222,7 @@ class Loop:
         if not patient or self._loaded or self._looked != patience.news():
             self._looked = patience.news()
             if not patient or self._loaded or may_be_stored(self.py_func):
-                with contextlib.suppress(NotStored):
+                with contextlib.suppress(NotStoredError):
                     found = self.dispatcher(*arguments)
                     self._loaded = True
                     return found

@@ -113,8 +113,10 @@ def _cores() -> int:
 def _compiling(run: Run) -> subprocess.Popen[bytes]:
     """A process that makes a run, compiled. Ctrl-C does not reach it."""
     content = pickle.dumps(run)
-    apart = {"creationflags": 0x4200} if sys.platform == "win32" else {"start_new_session": True}  # group, low priority
-    process = subprocess.Popen(
+    apart: dict[str, Any] = (
+        {"creationflags": 0x4200} if sys.platform == "win32" else {"start_new_session": True}
+    )  # group, low priority
+    process: subprocess.Popen[bytes] = subprocess.Popen(
         [sys.executable, "-c", f"import sys; sys.path = {sys.path!r}; from {__name__} import behind; behind()"],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""Where no loop is stored, a short run has its answer as plain Python while another process compiles; see `patience`."""
+"""Where no loop is stored, a short run has its answer as plain Python while another process compiles: `patience`."""
 
 import json
 import os
@@ -27,7 +27,8 @@ wall = mr.Block.from_size(0.6, 4.2)
 contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
 case = mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False)
 answer = mr.simulate(case, contacts)
-print(answer.theta[-1].hex(), "numba" in sys.modules, patience._here.compiling and patience._here.compiling.pid, flush=True)
+behind = patience._here.compiling
+print(answer.theta[-1].hex(), "numba" in sys.modules, behind and behind.pid, flush=True)
 """
 
 
