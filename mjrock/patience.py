@@ -113,9 +113,8 @@ def _cores() -> int:
 def _compiling(run: Run) -> subprocess.Popen[bytes]:
     """A process that makes a run, compiled. Ctrl-C does not reach it."""
     content = pickle.dumps(run)
-    apart: dict[str, Any] = (
-        {"creationflags": 0x4200} if sys.platform == "win32" else {"start_new_session": True}
-    )  # group, low priority
+    # on Windows a process group and a low priority, elsewhere a session of its own
+    apart: dict[str, Any] = {"creationflags": 0x4200} if sys.platform == "win32" else {"start_new_session": True}
     process: subprocess.Popen[bytes] = subprocess.Popen(
         [sys.executable, "-c", f"import sys; sys.path = {sys.path!r}; from {__name__} import behind; behind()"],
         stdin=subprocess.PIPE,
