@@ -274,7 +274,7 @@ def shallowest(
             if one != face and not solids.inside[one] and outside(solids, one, other) > least:
                 row = deepest(table, count, clip(solids, one, (block, other), table, count, room))
                 gap = table[row, 8] if row >= 0 else -math.inf
-                open_or_beside = there and gap >= 0 or common and gap > height(solids, one, middle)
+                open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
                 if gap > taken and not open_or_beside:
                     best, of_best, taken, most = one, (block, other), gap, gap
     return best, of_best, most
@@ -300,10 +300,10 @@ def height(solids: Solids, face: int, at: Vector) -> float:
 @inlined
 def lies_in(solids: Solids, block: int, at: Vector) -> bool:
     """Whether a place lies inside a block."""
+    inside = True
     for face in range(solids.face[block], solids.face[block + 1]):
-        if height(solids, face, at) > 0:
-            return False
-    return True
+        inside = inside and height(solids, face, at) <= 0
+    return inside
 
 
 @inlined

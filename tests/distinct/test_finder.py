@@ -211,7 +211,9 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
     assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (0, (0, 1), -math.inf)
 
 
-def decided(monkeypatch, apart, *, reach=0.01, outlines=(6.0, 4.0), faces=(0, 6), gap=-0.2, cosine=-1.0, across=-1.0, rows=11):
+def decided(
+    monkeypatch, apart, *, reach=0.01, outlines=(6.0, 4.0), faces=(0, 6), gap=-0.2, cosine=-1.0, across=-1.0, rows=11
+):
     """How two blocks meet whose faces and edges are so far apart: as edges or along which face, and how deep another
     face may lie that comes into question."""
     sought = []
