@@ -15,7 +15,7 @@ from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array
 from .limit import longest_step
-from .pair_law import SHARED, PairLaw, area_of, part_of_loose
+from .pair_law import SHARED, PairLaw, part_of_loose, side_area
 from .rows import chosen, joined, rows
 from .system import System
 
@@ -43,7 +43,7 @@ def _springs(block: AnyBlock, shared: Array) -> list[tuple[Array, Array, Array]]
     """The corners of each side of a loose block [m], its normal, and the springs and dashpots that each corner has."""
     springs = []
     for side in block.sides:
-        over = np.array([area_of(side, in_space=block.in_space) / shared[-1]])
+        over = np.array([side_area(side, in_space=block.in_space) / shared[-1]])
         part = SIDES * float(part_of_loose(over)[0]) / len(side.corners)
         springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
     return springs

@@ -121,7 +121,7 @@ def part_of_loose(over: Array) -> Array:
     return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
 
 
-def area_of(side: Side, *, in_space: bool) -> float:
+def side_area(side: Side, *, in_space: bool) -> float:
     """Area of a side of a block [m2], in the plane its length [m]."""
     return float(np.linalg.norm(area_vector(side.corners) if in_space else np.subtract(*side.corners)))
 
@@ -148,7 +148,7 @@ def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) ->
     known = masonry.joint_stiffness, masonry.joint_shear, masonry.retardation, friction
     softest = int(np.lexsort(known[::-1])[0])
     blocks = [block for block, alone in zip(masonry.blocks, loose.tolist(), strict=True) if alone]
-    areas = [max(area_of(side, in_space=block.in_space) for side in block.sides) for block in blocks]
+    areas = [max(side_area(side, in_space=block.in_space) for side in block.sides) for block in blocks]
     largest = np.reshape(areas, (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
     if not masonry.in_space:
