@@ -72,6 +72,7 @@ class Met:
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
         found: moves of both blocks when each line was found, shape (lines,).
+        softest: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
         since: time from the last look to the next [s].
     """
 
@@ -81,6 +82,7 @@ class Met:
     slack: Array
     share: Array
     found: Integers
+    softest: Array
     since: float
 
 
@@ -129,7 +131,8 @@ class Encounters:
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
+        seen, zeros = Seen.nothing(self.reach.start), np.zeros(0)
+        return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:
         """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
@@ -228,6 +231,9 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
+        pressing = found.gap < 0
+        for block in (found.face[pressing], found.other[pressing]):
+            np.minimum.at(met.softest, block, share[pressing])
         lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
         system = system._replace(lines=lines).with_ways()
         books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
