@@ -35,8 +35,11 @@ def one(in_space, friction=0.7):
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize(("friction", "way", "slides"), [(0.7, (0.8, 0), 0), (0, (0.3, 0), 0.3), (0.7, (0, 1.5), 0)])
 def test_a_base_that_carries_its_block_leaves_it_or_lifts_it(friction, way, slides, in_space):
-    """Of 0.8 m at most 4.8 m/s2 are borne by friction, and of 1.5 m upwards at most 9 m/s2 by the weight. A history is a
-    row of straight lines, whose corners strike the block by some mm/s: it may slip and hop by less than 1 mm."""
+    """Friction bears the 4.8 m/s2 of a way of 0.8 m, and the weight the 9 m/s2 of 1.5 m upwards.
+
+    A history is a row of straight lines, whose corners strike the block by some mm/s: it slips and hops by less than
+    1 mm.
+    """
     run = moved(one(in_space, friction), 1.4, base=way)
     np.testing.assert_allclose(run.sliding, slides, atol=1e-3)
     np.testing.assert_array_less(run.opening, 1e-3)
