@@ -77,7 +77,8 @@ class Masonry:
     points in place of the lines. Blocks are convex; a unit that is not, such as an L or a hook, is a `Compound`.
 
     In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
-    of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
+    of a joint are farther apart than the whole masonry is large, when a block has turned by 90 degrees, or when one
+    lies lower than a face that it has left, four times the largest extent of a block away from their joint. Friction
     that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
