@@ -10,6 +10,7 @@ moves with its body, and its normal with the other. What the springs of a find h
 
 from __future__ import annotations
 
+import math
 from copy import copy
 from dataclasses import dataclass
 
@@ -50,6 +51,11 @@ STABLE = 0.5
 blocks that have not moved, act on it besides."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
+ROLLED = 0.5
+"""Turn of a joint about its end, over the angle to the nearest side beside it, beyond which it is handed over too [-].
+So a polygon of many sides rolls on to the next one."""
+FLUSH = 0.9999
+"""Cosine of the angle of two sides of a block from which on they are one plane [-]."""
 TOWARDS = 0.4
 """Way of a block over its distance from the nearest one without a common joint, from which on it is looked at [-]."""
 
@@ -99,7 +105,7 @@ class Encounters:
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
-        np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
+        np.minimum.at(left, of, _serving(masonry))
         self.jointed = _jointed(masonry, self.finder, of)
         self.kind, start = system.lines.dtype, self.motion(system).poses
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
@@ -234,6 +240,22 @@ class Encounters:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / STABLE)
+
+
+def _serving(masonry: Masonry) -> Array:
+    """Opening of the whole or slip of a part up to which each joint serves [m], shape (joints,).
+
+    Where a joint turns about its end, the other end slips by 1 less the cosine of the turn, times the width.
+    """
+    normals = [np.array([side.normal for side in block.sides]) for block in masonry.blocks]
+    serving = np.empty(len(masonry.joints))
+    for i, joint in enumerate(masonry.joints):
+        cosine = -1.0
+        for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            beside = normals[block] @ normals[block][side]
+            cosine = max(cosine, float(beside[beside < FLUSH].max(initial=-1.0)))
+        serving[i] = min(LEFT, 1 - math.cos(ROLLED * math.acos(cosine))) * joint.width
+    return serving
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:
