@@ -111,6 +111,7 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried.lines["widest"] = carried.bonds["age"] = 0.0
     guided_as(carried.bodies, system.bodies)
     carry_drives(memory, system)
-    return system._replace(
+    carried = system._replace(
         bodies=carried.bodies, lines=carried.lines, bonds=carried.bonds, ties=carried.ties, dampers=carried.dampers
     )
+    return carried.with_ways()
