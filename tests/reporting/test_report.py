@@ -61,7 +61,7 @@ def test_what_all_responses_were_solved_with_stands_above_the_table(tmp_path):
     assert "<p>Solved with MuJoCo, accuracy 0.001, timestep " in text
     assert all(f"{count} steps" in text for count in steps)
     alone = mr.report(CASE, [ANSWER], tmp_path / "b.html", e=E).read_text(encoding="utf-8")
-    assert "<p>Solved with analytical, rtol 1e-08" in alone
+    assert "<p>Solved with analytical, rtol " in alone
     assert "solved with" not in alone
 
 
