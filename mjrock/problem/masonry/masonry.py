@@ -851,8 +851,12 @@ class Masonry:
 
         Raises:
             ImportError: if ezdxf is missing.
-            ValueError: if the file is not valid, for a polyline that is open, has arcs or is not convex, or a block
-                that touches no other; the message names it. Or as `Masonry` does.
+            ValueError: if the file is not valid, for inserted blocks that hold each other or are too many, for a
+                polyline that is open, has arcs or is not convex, or a block that touches no other; the message names
+                it. Or as `Masonry` does.
+
+        Warns:
+            UserWarning: if the drawing is damaged and was repaired while it was read.
         """
         fixed, path = _names(fixed), require_path("path", path)
         ground = require_flag("ground", ground)
