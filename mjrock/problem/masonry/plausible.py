@@ -10,9 +10,10 @@ import numpy as np
 
 from ..wall.plausible import IN_G, Whole, of_effects, of_motion
 from ..wall.tie import Tie
-from .collapse import collapse_multiplier
+from .collapse import limit_of, pushed
 from .effects import held_at
 from .masonry import Masonry
+from .statics import falling
 
 FEW = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
@@ -35,10 +36,10 @@ def stood(case: Any) -> float:
 
 @lru_cache(maxsize=16)
 def _multiplier(masonry: Masonry) -> float:
-    try:
-        return min(collapse_multiplier(masonry, way).multiplier for way in (1, -1))
-    except ValueError:  # it cannot stand, which the solvers say
+    if falling(masonry):  # it cannot stand, which the solvers say
         return math.inf
+    ways = np.eye(3 if masonry.in_space else 2)[0] * [[1.0], [-1.0]]
+    return min(limit_of(masonry, way, pushed(masonry, way)).multiplier for way in ways)
 
 
 def _room(masonry: Masonry, tie: Tie) -> tuple[float, float]:
