@@ -38,8 +38,9 @@ from .looking import (
     watch,
     wears,
 )
+from .loose import longest_step_of_loose
 from .pair_law import SHARED, PairLaw, least_among, pair_number
-from .rows import chosen, joined, rows
+from .rows import chosen, joined, rows, unsound
 from .softening import Sides, shares_within
 from .solids import Poses
 from .system import Books, System
@@ -90,6 +91,8 @@ class Encounters:
         masonry: the masonry.
         system: its bodies where they stand, and the lines of its joints.
         joint: number of the joint of each line. The account of the encounters comes after those of the joints.
+
+    `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
     """
 
     def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
@@ -102,6 +105,7 @@ class Encounters:
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
         self.finder = Finder(blocks, drawn)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
+        self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
@@ -128,13 +132,12 @@ class Encounters:
         return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
 
     def _limits(self, start: Poses) -> Array:
-        """How far each block may move from where it stands before it is looked at [m], shape (blocks,)."""
+        """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
+        a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
-        found = self.finder.found(start, 0.5 * self.sizes, every, jointed)
-        apart, limits = (
-            found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other]),
-            self.sizes.copy(),
-        )
+        found = self.finder.found(start, self.sizes, every, jointed)
+        apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        limits = TOWARDS * self.sizes
         for block in (found.face, found.other):
             np.minimum.at(limits, block, np.where(apart, TOWARDS * found.gap, PASSED * self.sizes[block]))
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
@@ -215,6 +218,9 @@ class Encounters:
             new.rows[name] = share * column if name in SHARED else column
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
+        for place in unsound(np.asarray(new.rows))[:1]:
+            one, other = (self.names[int(block[place])] for block in (found.face, found.other))
+            raise ArithmeticError(f"the contact of {one} and {other}")
         if worn.any():
             for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
                 joints[name][worn] = 0.0
@@ -223,10 +229,7 @@ class Encounters:
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
         lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
-        ways = system.ways
-        if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
-            ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
-        system = system._replace(lines=lines, ways=ways)
+        system = system._replace(lines=lines).with_ways()
         books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 

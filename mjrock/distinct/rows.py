@@ -191,6 +191,28 @@ def chosen(table: Rows, which: Integers | Flags) -> Rows:
     return as_bytes(table)[which].reshape(-1).view(table.dtype).view(np.recarray)
 
 
+ENDLESS = ("k_s", "margin", "reach", "strength", "ultimate", "broken", "bears")
+"""Numbers that may be infinite: of a line that sticks rigidly, a face without an end, what never gives way."""
+
+
+def unsound(table: Rows) -> Integers:
+    """Numbers of the rows with a number that is not finite, or is none where it may be infinite."""
+    finite, endless = _words(table.dtype)
+    words = as_bytes(table).view(float)
+    sound = np.isfinite(words[:, finite]).all(axis=1) & ~np.isnan(words[:, endless]).any(axis=1)
+    return np.flatnonzero(~sound)
+
+
+@lru_cache
+def _words(kind: np.dtype[np.void]) -> tuple[Flags, Flags]:
+    """Which words of a row are numbers that must be finite, and which may be infinite. The others are integers."""
+    finite, endless = np.zeros((2, kind.itemsize // 8), dtype=bool)
+    for name, (of, at, *_) in (kind.fields or {}).items():
+        if of.base == np.float64:
+            (endless if name in ENDLESS else finite)[at // 8 : (at + of.itemsize) // 8] = True
+    return finite, endless
+
+
 def as_bytes(table: Rows) -> NDArray[np.uint8]:
     """The bytes of each row."""
     return np.ascontiguousarray(table).view(np.uint8).reshape(len(table), table.dtype.itemsize)

@@ -58,6 +58,13 @@ class System(NamedTuple):
     supports: Supports
     drives: Supports
 
+    def with_ways(self) -> System:
+        """The system with room for the ways of all its lines, if one of them sticks rigidly."""
+        needed = (len(self.axes) - 1) * len(self.lines)
+        if len(self.ways) >= needed or not np.isinf(self.lines["k_s"]).any():
+            return self
+        return self._replace(ways=rows(self.ways.dtype, needed))
+
 
 class Books(NamedTuple):
     """Work since the start [J].

@@ -73,8 +73,8 @@ def test_a_constant_load_stands_beside_loads_that_grow(in_space):
 def test_effects_that_are_no_constant_forces_and_what_falls_under_them_are_refused():
     masonry = wall(False)
     weight = masonry.blocks[1].mass * mr.GRAVITY
+    tie = mr.Tie(height=1.0, stiffness=1e6, strength=1e4, length=3.0, ultimate=0.01, block=1)
     with pytest.raises(TypeError, match=r"effects\[1\] is a Tie, whose force depends on the motion; .* Load, Thrust"):
-        tie = mr.Tie(height=1.0, stiffness=1e6, strength=1e4, length=3.0, ultimate=0.01, block=1)
         mr.collapse_multiplier(masonry, effects=[mr.Load(1.0, HIGH, block=1), tie])
     with pytest.raises(ValueError, match="wall would fall under the weight and the effects"):
         mr.collapse_multiplier(masonry, effects=mr.Thrust(height=HIGH, force=0.2 * weight, block=1))

@@ -42,7 +42,7 @@ from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, cu
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
-from .drawing import odd_sizes, split_faces
+from .drawing import odd_damping, odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
 from .joint_law import Law
 from .joints import Joint, joints_in_plane, names_of
@@ -116,8 +116,9 @@ class Masonry:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
 
     Warns:
-        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
-            so large or small that they are probably not in m, and for faces that rounded vertices have split.
+        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for an xi
+            above 1 without one, for blocks so large or small that they are probably not in m, and for faces that
+            rounded vertices have split.
 
     Examples:
         >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
@@ -140,9 +141,13 @@ class Masonry:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
         joints = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
+        if self.law is not None:
+            del joints["xi"]
         said = [
             f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in joints.items() if v is not None
         ]
+        if self.law is not None:
+            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = "" if self.bond is None else ", mortar"
         return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
 
@@ -194,7 +199,8 @@ class Masonry:
             _ = self.retardation
         elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
             warnings.warn(odd, Implausible, stacklevel=3)
-        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
+        overdamped = "" if self.law is not None or self.frequency is not None else odd_damping(self.joint_damping)
+        for odd in (overdamped, odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
             if odd:
                 warnings.warn(odd, Implausible, stacklevel=3)
 
