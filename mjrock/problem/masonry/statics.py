@@ -25,6 +25,8 @@ MOST_FRICTION = 2.0
 """Largest coefficient of friction that is thought of as a remedy [-]."""
 ROUNDED = 1e-3
 """To how much a coefficient of friction that is lacking is rounded up [-]."""
+NUDGE = 1e-3
+"""Push to the side, over the weight, under which blocks fall that stand at their limit alone [-]."""
 DEAR = 1e-3
 """Price of a force beyond the friction that a joint has, over that of one that is missing [-]."""
 EDGES = 8
@@ -75,6 +77,22 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
     beyond = np.reshape(answer.x[edges * m : 2 * edges * m], (edges, m)).sum(axis=0)
     short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
+
+
+def nudged(masonry: Masonry, applied: Array | float = 0.0) -> tuple[tuple[str, ...], bool] | None:
+    """What falls of rigid blocks that stand at their limit alone: under a nudge sideways, as a share of the weight.
+
+    Returns:
+        The names of the blocks, and whether more friction would keep them; None of blocks that stand the nudge any way.
+    """
+    weight = weight_of(masonry).reshape(len(masonry.free), -1)
+    for axis in range(2 if masonry.in_space else 1):
+        for way in (NUDGE, -NUDGE):
+            push = np.zeros_like(weight)
+            push[:, axis] = way * weight.sum(axis=1)
+            if names := falling(masonry, applied + push):
+                return names, friction_lacking(masonry, applied + push) is not None
+    return None
 
 
 def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
