@@ -146,7 +146,7 @@ def _bond(s: int) -> Fields:
         *_number("residual", "falls"),  # friction without bond, and what a whole bond adds to it [-]
         *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
         *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
-        *_number("left"),  # what is left of the bond: 1 - D [-]
+        *_number("left", "share"),  # what is left of the bond, 1 - D, and the line's part of the area of the joint [-]
         *_number("peak", "hardens"),  # what it bears at its peak [N], and the plastic closing there, zero for none [m]
         *_number("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
         *_number("secant"),  # stiffness that holds both ways [N/m]

@@ -130,7 +130,7 @@ class Samples(NamedTuple):
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
         pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
-        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints).
+        damage: share of its bond that each joint has lost, the mean over its area [-], shape (samples, joints).
         guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
             (samples, actuators, nv). All five have no columns where no forces are kept.
     """
