@@ -33,7 +33,8 @@ from .rows import POINT, Row, Rows
 from .solids import Poses, changed
 
 BESIDE = 0.2
-"""Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
+"""Distance along the face of a place from a line of its pair within which it is the same, over the size of the smaller
+block [-]. Along the normal it may be as far as the blocks overlap."""
 ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
 REGAINED = 1.25
@@ -181,7 +182,9 @@ def pressed_at(
     j, off = nearest(gone.rows, ends, vector(found.place, i, axes), face + other, blocks, axes)
     there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
     alike = sense * there.sense * dot(vector(found.normal, i, axes), there.normal)
-    if off >= BESIDE * min(blocks.sizes[face], blocks.sizes[other]) or alike <= ALIKE:
+    deep = dot(vector(found.normal, i, axes), minus(there.at, vector(found.place, i, axes)))
+    beside = math.sqrt(max(off * off - deep * deep, 0.0))
+    if beside >= BESIDE * min(blocks.sizes[face], blocks.sizes[other]) or alike <= ALIKE:
         return 0.0
     pressed: float = max(overlap - gone.slack[j], 0.0)
     return pressed
