@@ -94,13 +94,14 @@ class Encounters:
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
-        self.finder = Finder(blocks, drawn)
+        self.finder = Finder(blocks, drawn, masonry.points)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
         self.jointed = _jointed(masonry, self.finder, of)
+        self.finder.jointed = np.unique(self.jointed[1])
         self.kind, start = system.lines.dtype, self.motion(system).poses
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
         self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)

@@ -1,10 +1,11 @@
 """The law of the contact of two blocks beyond their joints.
 
-Two blocks that had a joint keep its stiffness, dashpot and friction, that of a mortared joint without its bond, shared
-among the places where they touch. Two that had none take those of the softer block: of its stiffest joint, or of half
-of all its joints if that is more, since a block of a wall has joints on two sides. Where faces lie over each other by
-less than a tenth of the area of such a joint, the pair has less in proportion. So blocks that only touch along their
-edges bear nothing.
+Two blocks that had a joint keep its stiffness and dashpot per area of what lies over each other, and its friction, that
+of a mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. It keeps a
+tenth of its stiffness down to a hundredth of its area, or corners would sink in. Two that had none take those of the
+softer block: of its stiffest joint, or of half of all its joints if that is more, since a block of a wall has joints on
+two sides. They keep all of it down to a tenth of the area of such a joint. Below, both have less in proportion, so that
+blocks which only touch along their edges bear nothing. The places where a pair touches share what it has.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from .rows import Rows
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
 WHOLE = 0.1
-"""Part of the area of a joint over which two faces have all that a pair has [-]."""
+"""Part of the area of a joint over which two faces that had none have all that a pair has, and part of its stiffness
+that one which has slid keeps until this part of that area is left [-]."""
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -84,7 +86,9 @@ class PairLaw(NamedTuple):
         had = are_among(pair, self.jointed)
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
-        share = share * np.where(area > 0, np.minimum(area / (WHOLE * shared[:, -1]), 1.0), 1.0)
+        over = area / shared[:, -1]
+        kept = np.where(had, np.maximum(over, np.minimum(over / WHOLE, WHOLE)), np.minimum(over / WHOLE, 1.0))
+        share = share * np.where(area > 0, kept, 1.0)
         return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
 
 

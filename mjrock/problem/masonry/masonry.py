@@ -95,7 +95,8 @@ class Masonry:
             joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each of their
             corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint of n
             lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with 9. In
-            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff.
+            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint that has
+            slid keeps its lines and k_n, on the part of its faces that still lies over each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
