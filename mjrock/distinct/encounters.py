@@ -22,8 +22,6 @@ from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
 from .looking import (
-    FALL,
-    LOOK,
     NEAR,
     PASSED,
     SURE,
@@ -31,7 +29,9 @@ from .looking import (
     Reach,
     Seen,
     Wear,
+    fallen,
     held,
+    longest_time,
     take_motion,
     wait,
     watch,
@@ -103,7 +103,8 @@ class Encounters:
         self.jointed = _jointed(masonry, self.finder, of)
         self.finder.jointed = np.unique(self.jointed[1])
         self.kind, start = system.lines.dtype, self.motion(system).poses
-        self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
+        look = longest_time(self.sizes[self.blocks.free])
+        self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
         self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)
         self.met = self._nothing_met()
 
@@ -120,7 +121,7 @@ class Encounters:
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
+        return Met(Seen.nothing(self.reach.start, self.reach.look), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
 
     def _limits(self, start: Poses) -> Array:
         """How far each block may move from where it stands before it is looked at [m], shape (blocks,)."""
@@ -155,15 +156,15 @@ class Encounters:
             met.handed = met.handed | worn
             stays = self._moves_of(met.pair) == met.found
             intact = self.jointed[1][~met.handed[self.jointed[0]]]
-            reach = SURE * (seen.ahead + FALL + NEAR * self.sizes)
+            reach = SURE * (seen.ahead + fallen(self.reach.look) + NEAR * self.sizes)
             found = self.finder.found(motion.poses, reach, seen.stale, intact)
             soon = np.empty(len(found.gap), dtype=bool)
-            wait(found, motion, self.sizes, seen, soon)
+            wait(found, motion, self.sizes, seen, soon, self.reach.look)
             of_gone = np.append(worn[self.wear.pairs], ~stays)
             if soon.any() or of_gone.any():
                 system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
                 books = books.with_room(len(system.lines))
-        steps = max(1, int(seen.due[seen.watched].min(initial=LOOK) / h))
+        steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
         met.since = steps * h
         return system, books, steps
 
@@ -198,8 +199,8 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(chosen(lines, which), slack[which], np.empty(len(which)))
-        new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
+        gone = Lines.of(chosen(lines, which), slack[which])
+        new = Lines.of(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
         soft = (share < 1) & (gone.depth > 0)
