@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
     from .problem.wall.friction_damper import FrictionDamper
     from .problem.wall.section import Gable, Opening
-    from .problem.wall.tie import Tie
+    from .problem.wall.tie import Tie, strengths_of_bar
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
@@ -109,7 +109,7 @@ __all__ = [
     "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in", "reference_frequency",
     "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",
     "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical", "solve_compliant", "solve_explicit",
-    "stiffness_range", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "stiffness_range", "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)

@@ -33,10 +33,9 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
-    ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
     acting = *links_of(scene), rows(kind.link, 0), Ground.of(None), moving((), d), moving((), 1)
-    system = System(scene.freedom.axes, bodies, lines, edges, ways, rows(kind.bond, 0), *acting)
-    return started(system, scene.potential.unmoved.reshape(n, -1))
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
+    return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
 
 def lines_of(scene: Scene) -> Rows:

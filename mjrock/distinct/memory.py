@@ -110,6 +110,7 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried.ties["support"], carried.dampers["support"] = system.ties["support"], system.dampers["support"]
     carried.lines["widest"] = carried.bonds["age"] = 0.0
     carry_drives(memory, system)
-    return system._replace(
+    carried = system._replace(
         bodies=carried.bodies, lines=carried.lines, bonds=carried.bonds, ties=carried.ties, dampers=carried.dampers
     )
+    return carried.with_ways()

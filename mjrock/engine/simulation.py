@@ -10,7 +10,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
-from ..problem.wall.plausible import warn_of_low_stop
+from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
@@ -182,8 +182,11 @@ def simulate(
     if isinstance(case, MasonryCase):
         require_still(case)
         warn_if_sheared(case.masonry)
-    elif contacts is not None and contacts.base.friction is None:
-        warn_of_low_stop(case)
+    else:
+        if contacts is not None and contacts.base.friction is None:
+            warn_of_low_stop(case)
+        if start is None:
+            warn_if_still(case, forces=forces)
     if options.timestep is not None:
         require_unbreakable(case)
     if forces:
