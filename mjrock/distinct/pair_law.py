@@ -1,11 +1,11 @@
 """The law of the contact of two blocks beyond their joints.
 
-Two blocks that had a joint keep its stiffness and dashpot per area of what lies over each other, and its friction, that
-of a mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. Two that had
-none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more, since a block
-of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area of such a
-joint, they have less in proportion. So blocks that only touch along their edges bear nothing. The places where a pair
-touches share what it has.
+Two blocks that had a joint keep its stiffness and dashpot per area of what lies over each other, and its friction,
+that of a mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. Two
+that had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more,
+since a block of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area
+of such a joint, they have less in proportion. So blocks that only touch along their edges bear nothing. The places
+where a pair touches share what it has.
 
 A block without any joint is loose. It has what a joint over its largest face would have, per area that of the softest
 joint of the masonry. Where it is the softer block, the pair has that over the area on which the two faces lie, as a
@@ -121,8 +121,8 @@ class PairLaw(NamedTuple):
 
 
 def part_of_face(over: Array) -> Array:
-    """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area, from
-    this area over that of the face or the joint."""
+    """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area,
+    from this area over that of the face or the joint."""
     return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
 
 

@@ -168,10 +168,10 @@ def test_the_plane_inside_space_a_block_slides_over_an_edge_and_a_support_moves(
         dict(run.fallen), abs=0.01
     )  # prisms are larger and looked at otherwise
     assert list(run.fallen) == ["block_1"]
-    over = int(np.argmax(run.pose[:, 0, 0] > 2.0 - 1.9))  # from there on what lies over the ground is less at each look
-    assert over > 200
-    np.testing.assert_allclose(angles(spatial)[:over], run.theta[:over], atol=1e-9)
-    np.testing.assert_allclose(angles(spatial)[over:600], run.theta[over:600], atol=1e-6)
+    left = int(np.argmax(run.pose[:, 0, 0] > 0.04))  # it has left its joint, at the look after a slip of 5 % of 0.7 m
+    assert left > 150
+    np.testing.assert_allclose(angles(spatial)[:left], run.theta[:left], atol=1e-9)
+    np.testing.assert_allclose(angles(spatial)[left:600], run.theta[left:600], atol=1e-6)
 
 
 def test_the_plane_inside_space_a_block_spins_on_a_tie_a_damper_and_a_load():

@@ -81,7 +81,9 @@ def test_least_shares_of_pairs():
 
 
 @pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize(("over", "kept"), [(1e-3, 0.01), (0.025, 0.25), (0.2, 0.25), (0.5, 0.5), (1.0, 1.0), (1.5, 1.5)])
+@pytest.mark.parametrize(
+    ("over", "kept"), [(1e-3, 0.01), (0.025, 0.25), (0.2, 0.25), (0.5, 0.5), (1.0, 1.0), (1.5, 1.5)]
+)
 def test_a_pair_that_had_joints_keeps_their_law_per_area(in_space, over, kept):
     """Two joints add up, with the least friction; that of a joint without its bond is the residual one."""
     scale = 2.0 if in_space else 1.0
