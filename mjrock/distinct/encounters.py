@@ -208,8 +208,8 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines.of(chosen(lines, which), slack[which])
-        new = Lines.of(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
+        gone = Lines.unwritten(chosen(lines, which), slack[which])
+        new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
         soft = (share < 1) & (gone.depth > 0)

@@ -77,7 +77,7 @@ class Lines(NamedTuple):
     at: Array
 
     @classmethod
-    def of(cls, table: Rows, slack: Array) -> Lines:
+    def unwritten(cls, table: Rows, slack: Array) -> Lines:
         """Lines with room for the rest."""
         return cls(table, slack, np.empty(len(table)), np.empty_like(table["at"]))
 

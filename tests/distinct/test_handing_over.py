@@ -105,7 +105,7 @@ def test_a_line_is_where_its_place_was_found(d, face, other, slack):
 
 def with_points(table, both, d):
     """Lines with their points, of two blocks whose numbers have some sum."""
-    lines = Lines.of(table, np.zeros(len(table)))
+    lines = Lines.unwritten(table, np.zeros(len(table)))
     for line, at in zip(table, lines.at, strict=True):
         at[:] = handover.place_of(line, both, blocks(d), system(d).axes).at
     return lines
@@ -113,7 +113,7 @@ def with_points(table, both, d):
 
 def lines_of(table, slack, depth):
     """Lines of which it is known how deep they press."""
-    lines = Lines.of(table, np.array(slack, dtype=float))
+    lines = Lines.unwritten(table, np.array(slack, dtype=float))
     lines.depth[:] = depth
     return lines
 

@@ -50,7 +50,7 @@ def test_what_presses_follows_the_lines_before_it_and_gains_no_energy():
         np.array([0]), np.array([1]), np.zeros((1, 2)), np.zeros((1, 2)), np.array([-1.0]), np.ones(1), np.ones(1)
     )
     for stiffness, depth in ((2.0, 0.5), (1.0, 1.0), (0.81, 1 / 0.9)):
-        gone, new = (Lines.of(rows(kind, 1, k=k), np.zeros(1)) for k in (1.0, stiffness))
+        gone, new = (Lines.unwritten(rows(kind, 1, k=k), np.zeros(1)) for k in (1.0, stiffness))
         gone.depth[:] = new.depth[:] = 0.5
         press(new, (0, 1), found, gone, (0, 1))
         assert new.depth[0] == pytest.approx(0.5 * depth)
