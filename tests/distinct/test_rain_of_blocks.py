@@ -51,7 +51,10 @@ def rain(seed, in_space, k_n=K_N):
         low += 0.9 * size
     stands = [box(-6, 6, -1, 0, fixed=True, name="ground"), box(0.5, 0.8, 0, 0.1)]
     if in_space:
-        stands = [mr.Polyhedron.box((12, 12, 1), (0, 0, -0.5), fixed=True), mr.Polyhedron.box((0.3, 0.3, 0.1), (1, 0, 0.05))]
+        stands = [
+            mr.Polyhedron.box((12, 12, 1), (0, 0, -0.5), fixed=True),
+            mr.Polyhedron.box((0.3, 0.3, 0.1), (1, 0, 0.05)),
+        ]
     settings = {"friction": rng.choice([0.2, 0.6]), "xi": rng.choice([0.0, 0.05, 0.2]), "frequency": 2000.0}
     masonry = mr.Masonry([*stands, *bodies], k_n=k_n, k_s=rng.choice([None, 0.5 * k_n]), **settings)
     rates = rng.uniform(-1, 1, (len(bodies), 6 if in_space else 3))
