@@ -117,14 +117,15 @@ class Encounters:
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
-        """The same at the start of a run.
+        """The same at the start of a run, with room of its own to write into.
 
         Args:
             supports: names of the fixed blocks that move, in the order of the supports.
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.met = self._nothing_met()
+        fresh.finder, wear = self.finder.apart(), self.wear
+        fresh.wear, fresh.met = wear._replace(slip=wear.slip.copy(), gap=wear.gap.copy()), self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:

@@ -80,6 +80,16 @@ def test_blocks_that_fall_are_named():
     assert falling(mr.Masonry([GROUND, post])) == ()
 
 
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_block_that_may_slide_does_not_fall_with_those_that_nothing_carries(friction, in_space):
+    """The mechanism of least power may have any slip of a block on level ground without friction."""
+    floating = [box(2, 2.5, 3, 3.5, name="floats"), box(2, 2.5, 3.5, 4, name="on it")]
+    blocks = [GROUND, box(0, 0.5, 0, 1, name="stands"), *floating]
+    made = [mr.Polyhedron.prism(block) for block in blocks] if in_space else blocks
+    assert falling(mr.Masonry(made, friction=friction)) == ("floats", "on it")
+
+
 def test_the_weight_of_an_added_mass_holds_a_block_down():
     """A cap of 1040 kg turns about the edge of its post by a lever of 0.05 m; what is on its tail has 0.6 m."""
     blocks = [GROUND, box(-0.3, 0.3, 0, 1, name="post"), box(-0.3, 1.0, 1, 1.4, name="cap")]

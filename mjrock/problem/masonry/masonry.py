@@ -78,7 +78,8 @@ class Masonry:
     points in place of the lines. Blocks are convex; a unit that is not, such as an L or a hook, is a `Compound`.
 
     In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
-    of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
+    of a joint are farther apart than the whole masonry is large, when a block has turned by 90 degrees, or when one
+    lies lower than a face that it has left, four times the largest extent of a block away from their joint. Friction
     that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
@@ -857,8 +858,12 @@ class Masonry:
 
         Raises:
             ImportError: if ezdxf is missing.
-            ValueError: if the file is not valid, for a polyline that is open, has arcs or is not convex, or a block
-                that touches no other; the message names it. Or as `Masonry` does.
+            ValueError: if the file is not valid, for inserted blocks that hold each other or are too many, for a
+                polyline that is open, has arcs or is not convex, or a block that touches no other; the message names
+                it. Or as `Masonry` does.
+
+        Warns:
+            UserWarning: if the drawing is damaged and was repaired while it was read.
         """
         fixed, path = _names(fixed), require_path("path", path)
         ground = require_flag("ground", ground)

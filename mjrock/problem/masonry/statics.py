@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import scipy
-from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse.csgraph import connected_components
 
 from ...linear import loose
-from ...quantities import GRAVITY, Array
+from ...quantities import GRAVITY, Array, Flags
 from .joint_law import Law, shear_limit
-from .lines import rates, slips
+from .lines import free_numbers, rates, slips
 from .masonry import Masonry
 
 UNBALANCED = 1e-7
@@ -50,7 +51,9 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
     answer = _balanced(masonry, applied, masonry.joint_friction)
     if _stands(answer):
         return ()
-    return moving(masonry, answer.eqlin.marginals)
+    lacks = _lacking(masonry, answer.x)
+    free = dict(zip((masonry.names[i] for i in masonry.free), lacks.tolist(), strict=True))
+    return tuple(name for name in moving(masonry, answer.eqlin.marginals) if free[name])
 
 
 def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[float, tuple[str, ...]] | None:
@@ -197,6 +200,26 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     return scipy.optimize.linprog(
         prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), bounds=bounds, method=method(masonry)
     )
+
+
+def _lacking(masonry: Masonry, forces: Array) -> Flags:
+    """Which free blocks are connected with one that lacks forces, shape (free,). Others may slide as these fall, and do
+    not fall.
+
+    Args:
+        masonry: the masonry.
+        forces: the answer of the programme of `_balanced` without `dear`.
+    """
+    number, count = free_numbers(masonry.blocks), len(masonry.free)
+    pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
+    pairs = pairs[(pairs >= 0).all(axis=1)]
+    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    part = connected_components(graph, directed=False)[1]
+    unknowns = len(weight_of(masonry))
+    first = (EDGES if masonry.in_space else 2) * len(masonry.lines.k)
+    missing = forces[first : first + 2 * unknowns].reshape(2, count, -1).sum(axis=(0, 2))
+    of_part = np.bincount(part, weights=missing)
+    return np.asarray((of_part >= min(UNBALANCED, of_part.max()))[part])
 
 
 def _stands(answer: Any) -> bool:
