@@ -55,7 +55,7 @@ def gaps(
     low, high = (np.array([end(block.corners, axis=0) for block in blocks]) for end in (np.min, np.max))
     apart = np.array([np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1) for i in loose])
     apart[np.arange(len(loose)), loose] = np.inf
-    one, other = np.unravel_index(apart.argmin(), apart.shape)
+    one, other = divmod(int(apart.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
     said = f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
     needed = needed_tolerance(loose, joints_within, tolerance)
