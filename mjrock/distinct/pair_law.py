@@ -92,6 +92,12 @@ class PairLaw(NamedTuple):
         fixed = np.array([block.fixed for block in masonry.blocks])
         return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose)
 
+    @property
+    def slowest(self) -> float:
+        """The largest dashpot over its spring [s]."""
+        shared = np.concatenate([self.of_pair[0], self.of_block[0]])
+        return float((shared[:, 1] / shared[:, 0]).max())
+
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
         face that lies over the other [m2], zero for edges, shape (n,) each."""
