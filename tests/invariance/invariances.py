@@ -7,6 +7,7 @@ size of the scene [-], or None where it does not apply. A new one is a function 
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from copy import deepcopy
@@ -81,14 +82,19 @@ class Trial:
 
     @cached_property
     def growth(self) -> float:
-        """How far the motion moves for a relative change of k_n, from a change of 1e-11 up and down [-]."""
+        """How far the motion moves for a relative change of k_n, from a change of 1e-11 up and down [-].
+
+        It is infinite where such a change ends the run with an error."""
         found = []
         for nudge in (NUDGE, -NUDGE):
             scene = deepcopy(self.scene)
             for name in ("k_n", "k_side", "k_s"):
                 if scene.get(name):
                     scene[name] *= 1 + nudge
-            found.append(self.away(motion_of(self.again(scene))) / NUDGE)
+            try:
+                found.append(self.away(motion_of(self.again(scene))) / NUDGE)
+            except (ValueError, RuntimeError):
+                return math.inf
         return max(found)
 
 

@@ -317,7 +317,7 @@ def mortar(rng: Rng, size: float, k: float, friction: float) -> Scene:
     if rng.random() < 0.4:
         crushing = strength * rng.uniform(5, 20)
         bond |= {"crushing": crushing, "crushing_energy": crushing**2 / k * log_uniform(rng, 2, 50)}
-        bond["hardening"] = perhaps(rng, 0.5, 0.2 * bond["crushing_energy"] / crushing)
+        bond["hardening"] = perhaps(rng, 0.5, min(0.2 * bond["crushing_energy"] / crushing, 0.02))
     return bond
 
 
@@ -352,6 +352,13 @@ def actions(rng: Rng, scene: Scene, *, settled: bool) -> Scene:
     names = [unit["name"] for unit in scene["units"] if unit["fixed"]]
     made["supports"] = {str(rng.choice(names)): {"t": t, "displacement": way}} if rng.random() < 0.3 else {}
     return made
+
+
+def to_another(rng: Rng, scene: Scene, device: Scene) -> Scene:
+    """Where a device ends that is fixed to another block."""
+    other = scene["units"][rng.integers(len(scene["units"]))]
+    reach = other["parts"][0]["corners"].mean(axis=0) - device["at"]
+    return {} if other["name"] == device["block"] else {"reach": reach, "to": other["name"]}
 
 
 def devices(rng: Rng, scene: Scene) -> list[Scene]:
@@ -401,5 +408,9 @@ def devices(rng: Rng, scene: Scene) -> list[Scene]:
                 device["direction"] = np.sign(push[0]) * np.eye(d)[0]
             if device["guided"]:
                 scene["kick"] = None
-        made.append({"block": held["name"], "at": corners.mean(axis=0), "reach": -size * way} | device)
+        device = {"block": held["name"], "at": corners.mean(axis=0), "reach": -size * way} | device
+        if d == 3 and rng.random() < 0.3:
+            made.append(device | to_another(rng, scene, device))
+        else:
+            made.append(device)
     return made
