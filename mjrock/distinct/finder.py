@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -111,6 +112,12 @@ class Finder:
         self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
         most = int(np.diff(self.solids.first).max())
         self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 3))
+
+    def apart(self) -> Finder:
+        """The same with room of its own, which runs in two threads must not share."""
+        fresh = copy(self)
+        fresh._table, fresh._room = np.empty_like(self._table), np.empty_like(self._room)
+        return fresh
 
     def found(self, poses: Poses, reach: Array, watched: Flags, skipped: Integers) -> Found:
         """Where pairs of blocks of which one is watched are nearer than the sum of what they reach.
