@@ -115,6 +115,9 @@ class MasonryCase(Carrying):
             require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
             effect = numbered(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
+            if effect.block is None:
+                require_pushing(f"effects[{i}]", effect, self.masonry)
+                continue
             require_whole(f"effects[{i}], block", effect.block, 0, len(self.masonry.blocks) - 1)
             block = self.masonry.blocks[effect.block]
             name = f"effects[{i}] on {self.masonry.names[effect.block]}"
