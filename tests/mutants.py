@@ -281,12 +281,6 @@ EQUIVALENT = {
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
     "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",
     "friction.py: HELD = 2e-09": "any small number serves to divide by",
-    **{
-        f"solids.py: edges = np.concatenate([across[1:], unlike_ways(normals[:, ::-1] {change})])": (
-            "it divides by -1, or doubles what is zero in the plane"
-        )
-        for change in ("/ (1.0, 1.0, -1.0)", "* (1.0, 2.0, -1.0)")
-    },
     "touches.py: if line.push <= 0:": "a line that does not push has nothing that is still to act",
     "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
         "a line that met its face a step ago was closed for the step, in both ways"

@@ -21,7 +21,7 @@ from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
 from .rows import Rows, joined, kinds, rows
 from .system import Supports, System
-from .turning import rotations, start_turning
+from .turning import is_flat, rotations, start_turning
 
 
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
@@ -34,10 +34,9 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
-    ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
     acting = *links_of(scene), rows(kind.link, 0), Ground.of(None), moving((), d), moving((), 1)
-    system = System(scene.freedom.axes, bodies, lines, edges, ways, rows(kind.bond, 0), *acting)
-    return started(system, scene.potential.unmoved.reshape(n, -1))
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
+    return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
 
 def lines_of(scene: Scene) -> Rows:
@@ -165,12 +164,20 @@ def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequenc
     for body, each in zip(held, actuators, strict=True):
         if each.guide.turning:
             bodies["inverse_inertia"][body] = 0.0
-            bodies["spin"][body] = 0.0
         if each.guide.rising:
             bodies["inverse_mass"][body, d - 1] = 0.0
-            bodies["velocity"][body, d - 1] = 0.0
     histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
     return system._replace(actuators=table, drives=moving(histories, 1))
+
+
+def guided_as(bodies: Rows, others: Rows) -> None:
+    """Give moving bodies the guides of others. What a guide holds, or has held, has no velocity."""
+    held = [~some["inverse_inertia"].any(axis=(1, 2)) for some in (bodies, others)]
+    for name in ("inverse_mass", "inverse_inertia"):
+        bodies[name] = others[name]
+    bodies["velocity"][bodies["inverse_mass"] == 0] = 0.0
+    for name in ("spin",) if is_flat(bodies) else ("spin", "momentum"):
+        bodies[name][held[0] | held[1]] = 0.0
 
 
 def copied(system: System) -> System:

@@ -58,6 +58,7 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
         for name in ("k", "c", "k_s", "c_s", "friction", "margin", "grip"):
             bonds[name][which] = lines[name][which]
         bonds["tension"][which], bonds["cohesion"][which] = bond.tension * area[which], bond.cohesion * area[which]
+        bonds["share"][which] = area[which] / area[which].sum()
         bonds["residual"][which] = masonry.residual_friction[i]
         bonds["falls"][which] = masonry.joint_friction[i] - masonry.residual_friction[i]
         bonds["torn"][which] = bond.tension / bond.opening_energy

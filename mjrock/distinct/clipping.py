@@ -62,15 +62,17 @@ def face_towards(solids: Solids, block: int, way: Vector) -> int:
 
 @inlined
 def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, room: Array) -> int:
-    """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left."""
+    """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left.
+
+    A convex one gets one corner more at most. One that rounding has dented gets no more than there is room for."""
     left = 0
     for i in range(count):
         a, b = vector(polygon, i, way), vector(polygon, (i + 1) % count, way)
         beyond, next_beyond = dot(way, a) - reach, dot(way, b) - reach
-        if beyond <= slack:
+        if beyond <= slack and left < len(room):
             put(room[left], a)
             left += 1
-        if (beyond <= slack) != (next_beyond <= slack):
+        if (beyond <= slack) != (next_beyond <= slack) and left < len(room):
             share = min(max(beyond / (beyond - next_beyond), 0.0), 1.0)
             put(room[left], plus(a, scaled(share, minus(b, a))))
             left += 1

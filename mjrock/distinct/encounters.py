@@ -10,6 +10,7 @@ moves with its body, and its normal with the other. What the springs of a find h
 
 from __future__ import annotations
 
+import math
 from copy import copy
 from dataclasses import dataclass
 
@@ -37,8 +38,9 @@ from .looking import (
     watch,
     wears,
 )
+from .loose import longest_step_of_loose
 from .pair_law import SHARED, PairLaw, least_among, pair_number
-from .rows import chosen, joined, rows
+from .rows import chosen, joined, rows, unsound
 from .softening import Sides, shares_within
 from .solids import Poses
 from .system import Books, System
@@ -50,6 +52,11 @@ STABLE = 0.5
 blocks that have not moved, act on it besides."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
+ROLLED = 0.5
+"""Turn of a joint about its end, over the angle to the nearest side beside it, beyond which it is handed over too [-].
+So a polygon of many sides rolls on to the next one."""
+FLUSH = 0.9999
+"""Cosine of the angle of two sides of a block from which on they are one plane [-]."""
 TOWARDS = 0.4
 """Way of a block over its distance from the nearest one without a common joint, from which on it is looked at [-]."""
 
@@ -84,6 +91,8 @@ class Encounters:
         masonry: the masonry.
         system: its bodies where they stand, and the lines of its joints.
         joint: number of the joint of each line. The account of the encounters comes after those of the joints.
+
+    `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
     """
 
     def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
@@ -96,10 +105,11 @@ class Encounters:
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
         self.finder = Finder(blocks, drawn)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
+        self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
-        np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
+        np.minimum.at(left, of, _serving(masonry))
         self.jointed = _jointed(masonry, self.finder, of)
         self.kind, start = system.lines.dtype, self.motion(system).poses
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
@@ -107,14 +117,15 @@ class Encounters:
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
-        """The same at the start of a run.
+        """The same at the start of a run, with room of its own to write into.
 
         Args:
             supports: names of the fixed blocks that move, in the order of the supports.
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.met = self._nothing_met()
+        fresh.finder, wear = self.finder.apart(), self.wear
+        fresh.wear, fresh.met = wear._replace(slip=wear.slip.copy(), gap=wear.gap.copy()), self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:
@@ -122,13 +133,12 @@ class Encounters:
         return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
 
     def _limits(self, start: Poses) -> Array:
-        """How far each block may move from where it stands before it is looked at [m], shape (blocks,)."""
+        """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
+        a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
-        found = self.finder.found(start, 0.5 * self.sizes, every, jointed)
-        apart, limits = (
-            found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other]),
-            self.sizes.copy(),
-        )
+        found = self.finder.found(start, self.sizes, every, jointed)
+        apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        limits = TOWARDS * self.sizes
         for block in (found.face, found.other):
             np.minimum.at(limits, block, np.where(apart, TOWARDS * found.gap, PASSED * self.sizes[block]))
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
@@ -209,6 +219,9 @@ class Encounters:
             new.rows[name] = share * column if name in SHARED else column
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
+        for place in unsound(np.asarray(new.rows))[:1]:
+            one, other = (self.names[int(block[place])] for block in (found.face, found.other))
+            raise ArithmeticError(f"the contact of {one} and {other}")
         if worn.any():
             for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
                 joints[name][worn] = 0.0
@@ -217,10 +230,7 @@ class Encounters:
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
         lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
-        ways = system.ways
-        if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
-            ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
-        system = system._replace(lines=lines, ways=ways)
+        system = system._replace(lines=lines).with_ways()
         books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 
@@ -234,6 +244,22 @@ class Encounters:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / STABLE)
+
+
+def _serving(masonry: Masonry) -> Array:
+    """Opening of the whole or slip of a part up to which each joint serves [m], shape (joints,).
+
+    Where a joint turns about its end, the other end slips by 1 less the cosine of the turn, times the width.
+    """
+    normals = [np.array([side.normal for side in block.sides]) for block in masonry.blocks]
+    serving = np.empty(len(masonry.joints))
+    for i, joint in enumerate(masonry.joints):
+        cosine = -1.0
+        for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            beside = normals[block] @ normals[block][side]
+            cosine = max(cosine, float(beside[beside < FLUSH].max(initial=-1.0)))
+        serving[i] = min(LEFT, 1 - math.cos(ROLLED * math.acos(cosine))) * joint.width
+    return serving
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:

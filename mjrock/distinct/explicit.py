@@ -9,6 +9,7 @@ import numpy as np
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
+from ..problem.wall.plausible import warn_if_still
 from ..quantities import require_flag, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
@@ -91,6 +92,8 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
+    if isinstance(case, Case) and start is None:
+        warn_if_still(case, forces=forces)
     setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)

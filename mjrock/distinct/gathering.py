@@ -58,7 +58,7 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
         line, bonded = system.lines[p], False
         if p < len(system.bonds):
             bonded = system.bonds[p].k > 0
-            samples.damage[row, line.group] += 1 - system.bonds[p].left
+            samples.damage[row, line.group] += system.bonds[p].share * (1 - system.bonds[p].left)
         if was_open(line) and not bonded:
             continue
         meet = where_friction_rubs(meeting(system, line, axes))

@@ -128,9 +128,8 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
     damage = None
     if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
-        lines = np.bincount(run.scene.contacts.joint, minlength=samples.damage.shape[1])
         dry = [bond is None for bond in run.case.masonry.bonds]
-        damage = np.where(dry, np.nan, samples.damage / lines)
+        damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, samples.guided, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)

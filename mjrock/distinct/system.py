@@ -58,6 +58,13 @@ class System(NamedTuple):
     supports: Supports
     drives: Supports
 
+    def with_ways(self) -> System:
+        """The system with room for the ways of all its lines, if one of them sticks rigidly."""
+        needed = (len(self.axes) - 1) * len(self.lines)
+        if len(self.ways) >= needed or not np.isinf(self.lines["k_s"]).any():
+            return self
+        return self._replace(ways=rows(self.ways.dtype, needed))
+
 
 class Books(NamedTuple):
     """Work since the start [J].
@@ -123,7 +130,7 @@ class Samples(NamedTuple):
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
         pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
-        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints).
+        damage: share of its bond that each joint has lost, the mean over its area [-], shape (samples, joints).
         guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
             (samples, actuators, nv). All five have no columns where no forces are kept.
     """

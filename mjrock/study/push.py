@@ -19,13 +19,13 @@ from tqdm import tqdm
 from ..distinct.explicit import solve_explicit
 from ..problem.masonry.actuator import LARGEST, Actuator
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.collapse import horizontal
 from ..problem.masonry.effects import laden
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.effect import Effect
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown
 from ..result.response import Response
 from ..result.start import required_start
+from .limit_analysis import horizontal
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
 """Pieces of a push, points of the curve in each, and samples of a point."""

@@ -277,3 +277,54 @@ def test_without_a_guide_there_is_none():
     driven = actuator(-B, 0.1, ([0.0, 0.1], [0.0, 0.01]))
     answer, _ = pushed(panel(0.3), driven, duration=0.1, forces=True)
     assert answer.forces.guides == {}
+
+
+def held(guided, in_space):
+    """An actuator that rests at the top of the panel, on a soft spring."""
+    at = (0.0, 0.0, 2 * H) if in_space else (0.0, 2 * H)
+    return mr.Actuator("panel", at, 1, None, 1e6, 1e3, guided=guided)
+
+
+MAY = {
+    ("upright", False): ("x and z", [0, 1]),
+    ("translation", False): ("x", [0]),
+    ("upright", True): ("x and y and z", [0, 1, 2]),
+    ("translation", True): ("x and y", [0, 1]),
+}
+"""Along which axes a guided block may move, in the plane and in space, and which of its velocities these are."""
+
+
+@pytest.mark.parametrize(("guided", "in_space"), MAY)
+def test_a_start_that_the_guide_does_not_allow_is_refused(guided, in_space):
+    masonry, jack = panel(0.5, in_space=in_space), held(guided, in_space)
+    said, free = MAY[guided, in_space]
+    pose = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).pose[-1]
+    for velocity in 0.2 * np.eye(6 if in_space else 3)[:, None]:
+        if velocity[0, free].any():
+            answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.05, effects=jack, velocity=velocity), ledger=True)
+            assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
+            continue
+        refused = rf"velocity of panel = \[.*: its actuator guides it, which lets it move along {said} alone"
+        with pytest.raises(ValueError, match=f"^{refused}"):
+            mr.MasonryCase(masonry, 0.05, effects=jack, velocity=velocity)
+        with pytest.raises(ValueError, match=f"^start, {refused}"):
+            mr.solve_explicit(mr.MasonryCase(masonry, 0.05, effects=jack), start=(pose, velocity))
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_run_that_carries_on_has_the_guides_of_its_own_case(in_space):
+    """Not those of the run before, whose steps it knows; what little speed that run has left is taken."""
+    masonry = panel(0.5, in_space=in_space)
+    shaken = mr.GroundMotion.sine(6.0, 0.4, 1)
+
+    def rocked(effects, start=None):
+        case = mr.MasonryCase(masonry, 0.3, motion=shaken, effects=effects)
+        return mr.solve_explicit(case, start=start, output_step=0.01)
+
+    for effects in ((), held("upright", in_space)):
+        still = mr.solve_explicit(mr.MasonryCase(masonry, 0.02, effects=effects)).end
+        assert still.memory is not None
+        assert np.abs(rocked(held("upright", in_space), still).tilt).max() < 1e-6
+        free, alone = rocked((), still), rocked(())
+        assert alone.tilt.max() > 0.01
+        np.testing.assert_allclose(free.tilt, alone.tilt, atol=1e-4)

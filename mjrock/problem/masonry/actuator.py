@@ -50,9 +50,9 @@ class Actuator(Effect):
             None rests, for `push`, which finds its own.
         stiffness: of its spring [N/m], 1 to 1e12.
         damping: of its dashpot [N s/m], 0 to 1e12.
-        guided: how the block is guided from rest on: None leaves it free, "upright" keeps it from turning, as a beam
-            that a constant load presses on the wall, and "translation" from turning and rising, as a beam of a rig
-            that is held in both. Guides do no work.
+        guided: how the block is guided from the start on: None leaves it free, "upright" keeps it from turning, as a
+            beam that a constant load presses on the wall, and "translation" from turning and rising, as a beam of a rig
+            that is held in both. Guides do no work, so that the block starts with no velocity that they do not allow.
 
     Raises:
         TypeError, ValueError: for a value outside its range. A case checks that the point is on the block.

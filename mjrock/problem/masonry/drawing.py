@@ -1,4 +1,4 @@
-"""What is odd about blocks as they are drawn: sizes in another unit, and faces that rounded vertices have split."""
+"""What is odd about masonry as it is given: sizes or damping in another unit, faces split by rounded vertices."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...quantities import named
+from ...quantities import Array, named
 from .compound import AnyBlock
 from .joints import Joint
 from .joints_in_space import SpaceJoint
@@ -16,6 +16,12 @@ LARGEST, SMALLEST = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
 ALIKE = 0.99
 """Cosine of the angle between the normals of two joints of the same two blocks, which convex blocks cannot have [-]."""
+
+
+def odd_damping(xi: Array) -> str:
+    """What is odd about damping ratios of joints at the lowest frequency [-], in words, empty where nothing is."""
+    most = float(xi.max(initial=0.0))
+    return f"xi = {most:g} is {most:.0%} of critical; damping ratios are fractions" if most > 1 else ""
 
 
 def odd_sizes(blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:

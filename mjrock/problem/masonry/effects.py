@@ -32,13 +32,27 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     """
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        force = np.array(effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added))
-        arm, row = np.array(placed(masonry, effect)) - masonry.centroids[effect.block], masonry.free.index(effect.block)
-        if masonry.in_space:
-            total[row] += [*force, *np.cross(arm, force)]
-        else:
-            total[row] += force[0], force[2], force[0] * arm[1] - force[2] * arm[0]
+        force = effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added)
+        total[masonry.free.index(effect.block)] += acting(masonry, effect, np.array(force))
     return total
+
+
+def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
+    """The same of the weight of added masses along a unit vector, shape (2,), in space (3,)."""
+    total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
+    for effect in effects:
+        force = GRAVITY * effect.mass_added * (way if masonry.in_space else np.array([way[0], 0.0, way[1]]))
+        total[masonry.free.index(effect.block)] += acting(masonry, effect, force)
+    return total
+
+
+def acting(masonry: Masonry, effect: Effect, force: Array) -> Array:
+    """A force where an effect acts, along x, y and z [N], and its moment about the centroid of the block, see
+    `applied`."""
+    arm = np.array(placed(masonry, effect)) - masonry.centroids[effect.block]
+    if masonry.in_space:
+        return np.array([*force, *np.cross(arm, force)])
+    return np.array([force[0], force[2], force[0] * arm[1] - force[2] * arm[0]])
 
 
 def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:

@@ -1,7 +1,8 @@
 """States of rigid masonry at its limit: forces of the joints, and a mechanism that these forces do not stop.
 
 Forces of the joints are x >= 0: the pressures n of the contact lines, the shares q of friction along the edges of its
-cones, and the friction that is left. They balance the weight w and the multiplier lambda times the forces f that grow:
+cones, and the friction that is left. They balance the constant forces w, the weight among them, and the multiplier
+lambda times the forces f that grow:
 
     M x + lambda f + w = 0,    M = [N  Q  0; mu G  -E  -I].
 
@@ -75,7 +76,7 @@ class Programme(NamedTuple):
     Args:
         matrix: M, moments over the size of their block.
         grip: the part mu G of it, in a matrix of the same shape.
-        weight: w, over the weight of all blocks, and zero in the rows of friction.
+        weight: w, weight and other constant forces, over the weight of all blocks, and zero in the rows of friction.
         grown: f, likewise.
         edges: directions of the edges of the cones, shape (edges, groups, d).
         leader: number of the first contact line of each group, shape (groups,). In the plane the lines of a joint are
@@ -94,12 +95,13 @@ class Programme(NamedTuple):
     method: str
 
     @classmethod
-    def of(cls, masonry: Masonry, grown: Array, across: tuple[Array, ...]) -> Programme:
-        """Those of masonry under its weight and forces that grow [N, N m], of all unknowns.
+    def of(cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...]) -> Programme:
+        """Those of masonry under forces that are constant, its weight among them, and forces that grow [N, N m], of all
+        unknowns.
 
         The edges of the cones begin at the first of the directions `across` along the faces.
         """
-        lines, sizes, weight = masonry.lines, sizes_of(masonry), weight_of(masonry)
+        lines, sizes = masonry.lines, sizes_of(masonry)
         m, group = len(lines.k), np.arange(len(lines.k)) if masonry.in_space else lines.joint
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
         edges = edges_of(across)
@@ -110,10 +112,10 @@ class Programme(NamedTuple):
         balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]
         matrix = csc_array(block_array([[*balance, None], [held, *[-whole] * (len(edges) + 1)]]))
         rest = csr_array((len(leader), matrix.shape[1] - m))
-        grip = csc_array(block_array([[csr_array((len(weight), m)), None], [held, rest]]))
-        total, none = float(np.abs(weight).sum()), np.zeros(len(leader))
-        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (weight, grown))
-        return cls(matrix, grip, down, pushed, edges[:, leader], leader, len(weight), method(masonry))
+        grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [held, rest]]))
+        total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
+        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (constant, grown))
+        return cls(matrix, grip, down, pushed, edges[:, leader], leader, len(sizes), method(masonry))
 
     def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> Any:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""

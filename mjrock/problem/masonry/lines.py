@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, vstack
 
-from ...geometry.convex import spread, within
+from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
@@ -63,21 +63,29 @@ class Lines(NamedTuple):
         return pairs[:, 0], pairs[:, 1]
 
 
-def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int) -> Lines:
+def lines_of(
+    blocks: Sequence[AnyBlock],
+    joints: Sequence[Joint | SpaceJoint],
+    k_n: Array,
+    points: int,
+    bonded: Sequence[bool] | None = None,
+) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
     point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,).
-    A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
+    A joint has so many lines as `points` says, in space see `geometry.convex.spread`. Those that are `bonded` have the
+    stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
     for number, joint in enumerate(joints):
-        k_joint = k_n[number]
+        k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
-            own = _on_edge(joint, points, k_joint)
+            own = _on_edge(joint, points, k_joint, exact)
         else:
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
-            own = _on_face(joint, faces, points, k_joint)
+            flat, areas = sectioned(joint.flat, points) if exact else spread(joint.flat, points)
+            own = _on_face(joint, faces, flat, k_joint * areas)
         for place, stiffness, overhangs in own:
             turned = overhangs and not blocks[joint.below].fixed
             rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
@@ -88,25 +96,27 @@ def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
 
 
-def _on_edge(joint: Joint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[tuple[Array, float, bool]]:
     """Places of the lines of a joint, evenly from end to end, their stiffness, and whether the block above overhangs.
 
-    The outer two have half the tributary width.
+    The outer two have half the tributary width, or in a joint that is `exact` less, see `exact_shares`.
     """
-    for i, (place, width) in enumerate(zip(*contact_lines(joint.width, points), strict=True)):
+    places, widths = contact_lines(joint.width, points)
+    widths = joint.width * exact_shares(points) if exact else widths
+    for i, (place, width) in enumerate(zip(places, widths.tolist(), strict=True)):
         overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
         yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
 
 
-def _on_face(joint: SpaceJoint, faces: Sequence[Array], points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
-    """The same of the points of a joint in space. Those at its corners may be of the block below alone, and those on an
-    edge of the face below that lies within the face above are."""
-    flat, areas = spread(joint.flat, points)
+def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> Iterator[tuple[Array, float, bool]]:
+    """The same of the points of a joint in space, which lie `flat` in its plane, and have the stiffness k [N/m]. Those
+    at its corners may be of the block below alone, and those on an edge of the face below that lies within the face
+    above are."""
     below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
     edges = (within(below, flat) < EDGE) & (within(above[::-1], flat) > EDGE)
-    for place, area, on_edge in zip(joint.outline[0] + flat @ joint.axes, areas, edges.tolist(), strict=True):
+    for place, stiffness, on_edge in zip(joint.outline[0] + flat @ joint.axes, k, edges.tolist(), strict=True):
         apart = np.abs(joint.outline - place).max(axis=1)
-        yield place, k_n * area, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
+        yield place, stiffness, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
 
 
 def edge_ends(edge: Side, joint: Joint) -> tuple[float, float]:

@@ -42,8 +42,9 @@ from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, cu
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
-from .drawing import odd_sizes, split_faces
+from .drawing import odd_damping, odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
+from .joint_law import Law
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
@@ -77,7 +78,8 @@ class Masonry:
     points in place of the lines. Blocks are convex; a unit that is not, such as an L or a hook, is a `Compound`.
 
     In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
-    of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
+    of a joint are farther apart than the whole masonry is large, when a block has turned by 90 degrees, or when one
+    lies lower than a face that it has left, four times the largest extent of a block away from their joint. Friction
     that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
@@ -95,7 +97,8 @@ class Masonry:
             joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each of their
             corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint of n
             lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with 9. In
-            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff.
+            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint with a
+            bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
@@ -107,14 +110,16 @@ class Masonry:
         k_s: shear stiffness of the joints [N/m3], 1e4 to 1e16, or a function of the joint, for `solve_explicit`. None
             lets them stick rigidly, up to their friction, as they always do in MuJoCo.
         bond: what mortar holds, a `Bond` or a function of the joint that gives one, or None where a joint is dry, for
-            `solve_explicit`. It needs `k_s`, and three `points` or more are advised, see docs/mortar.md.
+            `solve_explicit`. It needs `k_s` and three `points` or more. The first crack in bending is that of the
+            elastic section for any number of them; five or more follow the crack, see docs/mortar.md.
 
     Raises:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
 
     Warns:
-        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
-            so large or small that they are probably not in m, and for faces that rounded vertices have split.
+        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for an xi
+            above 1 without one, for blocks so large or small that they are probably not in m, and for faces that
+            rounded vertices have split.
 
     Examples:
         >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
@@ -137,9 +142,13 @@ class Masonry:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
         joints = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
+        if self.law is not None:
+            del joints["xi"]
         said = [
             f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in joints.items() if v is not None
         ]
+        if self.law is not None:
+            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = "" if self.bond is None else ", mortar"
         return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
 
@@ -191,7 +200,8 @@ class Masonry:
             _ = self.retardation
         elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
             warnings.warn(odd, Implausible, stacklevel=3)
-        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
+        overdamped = "" if self.law is not None or self.frequency is not None else odd_damping(self.joint_damping)
+        for odd in (overdamped, odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
             if odd:
                 warnings.warn(odd, Implausible, stacklevel=3)
 
@@ -288,12 +298,14 @@ class Masonry:
     @cached_property
     def bonds(self) -> tuple[Bond | None, ...]:
         """The bond of each joint, None where it is dry."""
-        return bonds_of(self.bond, self.joints, self.joint_shear, self.joint_friction)
+        law = Law(self.joint_stiffness, 0.0, self.joint_shear, self.joint_friction)
+        return bonds_of(self.bond, self.joints, law, self.points)
 
     @cached_property
     def lines(self) -> Lines:
         """The contact lines of all joints."""
-        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points)
+        bonded = [bond is not None for bond in self.bonds]
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points, bonded)
 
     @cached_property
     def retardation(self) -> Array:
@@ -839,8 +851,12 @@ class Masonry:
 
         Raises:
             ImportError: if ezdxf is missing.
-            ValueError: if the file is not valid, for a polyline that is open, has arcs or is not convex, or a block
-                that touches no other; the message names it. Or as `Masonry` does.
+            ValueError: if the file is not valid, for inserted blocks that hold each other or are too many, for a
+                polyline that is open, has arcs or is not convex, or a block that touches no other; the message names
+                it. Or as `Masonry` does.
+
+        Warns:
+            UserWarning: if the drawing is damaged and was repaired while it was read.
         """
         fixed, path = _names(fixed), require_path("path", path)
         ground = require_flag("ground", ground)

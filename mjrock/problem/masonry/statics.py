@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import scipy
-from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse.csgraph import connected_components
 
 from ...linear import loose
-from ...quantities import GRAVITY, Array
+from ...quantities import GRAVITY, Array, Flags
 from .joint_law import Law, shear_limit
-from .lines import rates, slips
+from .lines import free_numbers, rates, slips
 from .masonry import Masonry
 
 UNBALANCED = 1e-7
@@ -24,6 +25,8 @@ MOST_FRICTION = 2.0
 """Largest coefficient of friction that is thought of as a remedy [-]."""
 ROUNDED = 1e-3
 """To how much a coefficient of friction that is lacking is rounded up [-]."""
+NUDGE = 1e-3
+"""Push to the side, over the weight, under which blocks fall that stand at their limit alone [-]."""
 DEAR = 1e-3
 """Price of a force beyond the friction that a joint has, over that of one that is missing [-]."""
 EDGES = 8
@@ -48,7 +51,9 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
     answer = _balanced(masonry, applied, masonry.joint_friction)
     if _stands(answer):
         return ()
-    return moving(masonry, answer.eqlin.marginals)
+    lacks = _lacking(masonry, answer.x)
+    free = dict(zip((masonry.names[i] for i in masonry.free), lacks.tolist(), strict=True))
+    return tuple(name for name in moving(masonry, answer.eqlin.marginals) if free[name])
 
 
 def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[float, tuple[str, ...]] | None:
@@ -72,6 +77,22 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
     beyond = np.reshape(answer.x[edges * m : 2 * edges * m], (edges, m)).sum(axis=0)
     short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
+
+
+def nudged(masonry: Masonry, applied: Array | float = 0.0) -> tuple[tuple[str, ...], bool] | None:
+    """What falls of rigid blocks that stand at their limit alone: under a nudge sideways, as a share of the weight.
+
+    Returns:
+        The names of the blocks, and whether more friction would keep them; None of blocks that stand the nudge any way.
+    """
+    weight = weight_of(masonry).reshape(len(masonry.free), -1)
+    for axis in range(2 if masonry.in_space else 1):
+        for way in (NUDGE, -NUDGE):
+            push = np.zeros_like(weight)
+            push[:, axis] = way * weight.sum(axis=1)
+            if names := falling(masonry, applied + push):
+                return names, friction_lacking(masonry, applied + push) is not None
+    return None
 
 
 def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -179,6 +200,26 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
     return scipy.optimize.linprog(
         prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), bounds=bounds, method=method(masonry)
     )
+
+
+def _lacking(masonry: Masonry, forces: Array) -> Flags:
+    """Which free blocks are connected with one that lacks forces, shape (free,). Others may slide as these fall, and do
+    not fall.
+
+    Args:
+        masonry: the masonry.
+        forces: the answer of the programme of `_balanced` without `dear`.
+    """
+    number, count = free_numbers(masonry.blocks), len(masonry.free)
+    pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
+    pairs = pairs[(pairs >= 0).all(axis=1)]
+    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    part = connected_components(graph, directed=False)[1]
+    unknowns = len(weight_of(masonry))
+    first = (EDGES if masonry.in_space else 2) * len(masonry.lines.k)
+    missing = forces[first : first + 2 * unknowns].reshape(2, count, -1).sum(axis=(0, 2))
+    of_part = np.bincount(part, weights=missing)
+    return np.asarray((of_part >= min(UNBALANCED, of_part.max()))[part])
 
 
 def _stands(answer: Any) -> bool:
