@@ -1,10 +1,16 @@
 """The ledger of explicit steps closes: what no account had before, each in the smallest scene that shows it."""
 
+from contextlib import nullcontext
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import mjrock as mr
 from mjrock.distinct import encounters
+from mjrock.distinct.reading import require_sound
+from mjrock.distinct.rows import rows
+from mjrock.distinct.system import ENERGY
 
 SOFT = {"k_n": 2e5, "friction": 0.5, "xi": 0.0}
 """Joints into which a cube of 1 m sinks by 0.1 m."""
@@ -202,3 +208,19 @@ def test_friction_gives_nothing_where_shear_springs_gain_as_lines_are_handed_ove
     assert gained[0] > 1e-3 * run.ledger.largest
     assert np.diff(run.ledger.friction).min() > -1e-6 * run.ledger.largest
     assert unaccounted(run) < 1e-3
+
+
+@pytest.mark.parametrize(("share", "fails"), [(0.99, False), (1.01, True)])
+def test_what_wedged_springs_hold_counts_as_energy_that_there_was(share, fails):
+    """A thousandth of it may appear, as of what moves: an arch that is wedged holds far more than moves in it."""
+    looks = rows(ENERGY, 3, elastic=[3e6, 4e6, 3.9e6], kinetic=[0.0, 0.0, share * 4e3])
+    run = SimpleNamespace(
+        energy=np.zeros(1),
+        looked=np.arange(3.0),
+        samples=SimpleNamespace(looks=looks),
+        above_rest=lambda energy: energy["kinetic"],
+        scene=SimpleNamespace(rest_energies=np.zeros(3)),
+        rounding=0.0,
+    )
+    with pytest.raises(RuntimeError, match=r"0\.10% of the energy there was") if fails else nullcontext():
+        require_sound(run, {"timestep": 1e-3})
