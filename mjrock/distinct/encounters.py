@@ -5,7 +5,8 @@ slid by so much, it is handed over for good, with its friction, to contacts that
 that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
 gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
 they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
-moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked.
+moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked,
+along a face what they hold more: what they hold less friction takes.
 """
 
 from __future__ import annotations
@@ -23,8 +24,6 @@ from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
 from .looking import (
-    FALL,
-    LOOK,
     NEAR,
     PASSED,
     SURE,
@@ -32,7 +31,9 @@ from .looking import (
     Reach,
     Seen,
     Wear,
+    fallen,
     held,
+    longest_time,
     take_motion,
     wait,
     watch,
@@ -72,6 +73,7 @@ class Met:
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
         found: moves of both blocks when each line was found, shape (lines,).
+        softest: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
         since: time from the last look to the next [s].
     """
 
@@ -81,6 +83,7 @@ class Met:
     slack: Array
     share: Array
     found: Integers
+    softest: Array
     since: float
 
 
@@ -103,7 +106,7 @@ class Encounters:
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
-        self.finder = Finder(blocks, drawn)
+        self.finder = Finder(blocks, drawn, masonry.points)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
         self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
@@ -111,8 +114,10 @@ class Encounters:
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, _serving(masonry))
         self.jointed = _jointed(masonry, self.finder, of)
+        self.finder.jointed = np.unique(self.jointed[1])
         self.kind, start = system.lines.dtype, self.motion(system).poses
-        self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
+        look = longest_time(self.sizes[self.blocks.free])
+        self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
         self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)
         self.met = self._nothing_met()
 
@@ -130,7 +135,8 @@ class Encounters:
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
+        seen, zeros = Seen.nothing(self.reach.start, self.reach.look), np.zeros(0)
+        return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:
         """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
@@ -164,15 +170,15 @@ class Encounters:
             met.handed = met.handed | worn
             stays = self._moves_of(met.pair) == met.found
             intact = self.jointed[1][~met.handed[self.jointed[0]]]
-            reach = SURE * (seen.ahead + FALL + NEAR * self.sizes)
+            reach = SURE * (seen.ahead + fallen(self.reach.look) + NEAR * self.sizes)
             found = self.finder.found(motion.poses, reach, seen.stale, intact)
             soon = np.empty(len(found.gap), dtype=bool)
-            wait(found, motion, self.sizes, seen, soon)
+            wait(found, motion, self.sizes, seen, soon, self.reach.look)
             of_gone = np.append(worn[self.wear.pairs], ~stays)
             if soon.any() or of_gone.any():
                 system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
                 books = books.with_room(len(system.lines))
-        steps = max(1, int(seen.due[seen.watched].min(initial=LOOK) / h))
+        steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
         met.since = steps * h
         return system, books, steps
 
@@ -199,7 +205,7 @@ class Encounters:
             h: length of a step [s].
         """
         met, count = self.met, len(self.wear.pairs)
-        lines = np.asarray(system.lines)
+        lines, sheared = np.asarray(system.lines), in_shear(system)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
         if len(system.bonds):
@@ -207,8 +213,8 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(chosen(lines, which), slack[which], np.empty(len(which)))
-        new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
+        gone = Lines.unwritten(chosen(lines, which), slack[which])
+        new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
         soft = (share < 1) & (gone.depth > 0)
@@ -229,9 +235,14 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
+        pressing = found.gap < 0
+        for block in (found.face[pressing], found.other[pressing]):
+            np.minimum.at(met.softest, block, share[pressing])
         lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
         system = system._replace(lines=lines).with_ways()
-        books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
+        books.totals[0].friction -= given
+        books.ends[1] += before + given - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
@@ -244,6 +255,15 @@ class Encounters:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / STABLE)
+
+
+def in_shear(system: System) -> float:
+    """Energy in the shear springs of all lines and bonds [J]."""
+    energy = 0.0
+    for table in (system.lines, system.bonds):
+        sprung = np.asarray(table)[np.isfinite(table["k_s"])]
+        energy += 0.5 * float((sprung["k_s"] * (sprung["grip"].T ** 2).sum(axis=0)).sum())
+    return energy
 
 
 def _serving(masonry: Masonry) -> Array:

@@ -21,6 +21,8 @@ Outline = np.ndarray
 """Corners x, z of a convex part [m], shape (n, 2)."""
 PLACES = ("plane", "space", "wall", "plane", "space")
 """Where scenes are, in turn."""
+LENGTH = 0.3
+"""Length of blocks of the plane, over the size of the scene [-]. As prisms in space they stand."""
 DENSITY = 2000.0
 """Of most blocks [kg/m3]."""
 
@@ -44,7 +46,7 @@ def draw(seed: int) -> Scene:
     if place == "space":
         units = [in_space(rng, unit, size) for unit in units]
     loose = kind in ("rain", "hulls", "pile")
-    scene |= {"kind": kind, "units": [finished(rng, i, unit) for i, unit in enumerate(units)]}
+    scene |= {"kind": kind, "units": [finished(rng, i, unit, LENGTH * size) for i, unit in enumerate(units)]}
     scene |= joints(rng, size, loose=loose) | actions(rng, scene, settled=not loose and rng.random() < 0.8)
     scene["devices"] = devices(rng, scene)
     beyond_the_engine = scene["bond"] or scene["supports"] or any(each["kind"] == "jack" for each in scene["devices"])
@@ -267,13 +269,13 @@ def in_space(rng: Rng, flat: Scene, size: float) -> Scene:
     return flat | {"parts": parts}
 
 
-def finished(rng: Rng, number: int, drawn: Scene) -> Scene:
+def finished(rng: Rng, number: int, drawn: Scene, length: float) -> Scene:
     """A unit as a scene has it."""
     return {
         "name": f"{'fixed' if drawn['fixed'] else 'block'}_{number}",
         "parts": [{"corners": part} for part in drawn["parts"]],
         "density": float(rng.choice([DENSITY, rng.uniform(500, 4000)])),
-        "length": 1.0,
+        "length": length,
         "fixed": drawn["fixed"],
     }
 
@@ -317,7 +319,7 @@ def mortar(rng: Rng, size: float, k: float, friction: float) -> Scene:
     if rng.random() < 0.4:
         crushing = strength * rng.uniform(5, 20)
         bond |= {"crushing": crushing, "crushing_energy": crushing**2 / k * log_uniform(rng, 2, 50)}
-        bond["hardening"] = perhaps(rng, 0.5, 0.2 * bond["crushing_energy"] / crushing)
+        bond["hardening"] = perhaps(rng, 0.5, min(0.2 * bond["crushing_energy"] / crushing, 0.02))
     return bond
 
 
@@ -354,6 +356,13 @@ def actions(rng: Rng, scene: Scene, *, settled: bool) -> Scene:
     return made
 
 
+def to_another(rng: Rng, scene: Scene, device: Scene) -> Scene:
+    """Where a device ends that is fixed to another block."""
+    other = scene["units"][rng.integers(len(scene["units"]))]
+    reach = other["parts"][0]["corners"].mean(axis=0) - device["at"]
+    return {} if other["name"] == device["block"] else {"reach": reach, "to": other["name"]}
+
+
 def devices(rng: Rng, scene: Scene) -> list[Scene]:
     """At most two devices, of which one may be a jack."""
     size, d = scene["size"], 2 if scene["place"] == "plane" else 3
@@ -362,7 +371,9 @@ def devices(rng: Rng, scene: Scene) -> list[Scene]:
     for _ in range(rng.choice([0, 0, 1, 1, 2])):
         held = free[rng.integers(len(free))]
         corners = held["parts"][0]["corners"]
-        weight = held["density"] * mr.GRAVITY * float(np.prod(np.ptp(corners, axis=0))) * (1.0 if d == 2 else 1)
+        weight = (
+            held["density"] * mr.GRAVITY * float(np.prod(np.ptp(corners, axis=0))) * (held["length"] if d == 2 else 1)
+        )
         stiffness, time = weight / size * log_uniform(rng, 3, 300), math.sqrt(size / mr.GRAVITY)
         way = np.eye(d)[0] if d == 2 or rng.random() < 0.5 else np.eye(d)[1]
         push = rng.normal(size=d) * np.append(np.ones(d - 1), 0.2)
@@ -401,5 +412,9 @@ def devices(rng: Rng, scene: Scene) -> list[Scene]:
                 device["direction"] = np.sign(push[0]) * np.eye(d)[0]
             if device["guided"]:
                 scene["kick"] = None
-        made.append({"block": held["name"], "at": corners.mean(axis=0), "reach": -size * way} | device)
+        device = {"block": held["name"], "at": corners.mean(axis=0), "reach": -size * way} | device
+        if d == 3 and rng.random() < 0.3:
+            made.append(device | to_another(rng, scene, device))
+        else:
+            made.append(device)
     return made
