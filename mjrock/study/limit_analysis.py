@@ -101,7 +101,7 @@ def collapse_multiplier(
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
     none = direction is None and angle is None
-    push = np.zeros(3 if masonry.in_space else 2) if none else _direction(masonry, direction, angle)
+    push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
     given = _constant(masonry, effects)
     grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
@@ -173,22 +173,26 @@ def _loads(masonry: Masonry, loads: Mapping[str, ArrayLike]) -> Array:
     return total
 
 
-def _direction(masonry: Masonry, direction: float | ArrayLike | None, angle: float | None) -> Array:
-    """The unit vector of the force, shape (2,), in space (3,)."""
-    given = require_reals(
-        "direction", 1.0 if direction is None else direction, "1, -1 or a vector in plan of the shape (2,)"
-    )
+def horizontal(
+    masonry: Masonry, direction: float | ArrayLike | None, angle: float | None, name: str = "direction"
+) -> Array:
+    """The unit vector of a horizontal force, shape (2,), in space (3,), from what `collapse_multiplier` takes.
+
+    Raises:
+        TypeError, ValueError: for what is no direction, with its name.
+    """
+    given = require_reals(name, 1.0 if direction is None else direction, "1, -1 or a vector in plan of the shape (2,)")
     if given.shape == () and abs(float(given)) == 1:
         given = np.array([float(given), 0.0])
     elif given.shape != (2,) or not masonry.in_space:
         valid = "1 or -1" + (", or a vector in plan of the shape (2,)" if masonry.in_space else "")
-        raise ValueError(f"direction = {shown(direction)} is not a direction; the valid ones are {valid}")
+        raise ValueError(f"{name} = {shown(direction)} is not a direction; the valid ones are {valid}")
     length = float(np.hypot(*given))
     if not 1e-9 < length < math.inf:
-        raise ValueError(f"direction = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")
+        raise ValueError(f"{name} = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")
     if angle is not None:
         if not masonry.in_space:
-            raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give direction = 1 or -1")
+            raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give {name} = 1 or -1")
         angle = require_within("angle", angle, -2 * math.pi, 2 * math.pi, "rad")
         return np.array([math.cos(angle), math.sin(angle), 0.0])
     return np.append(given / length, 0.0) if masonry.in_space else given

@@ -90,6 +90,10 @@ def numbered(name: str, effect: Effect, masonry: Masonry) -> Effect:
 def require_pushing(name: str, actuator: Actuator, masonry: Masonry) -> None:
     """Raise a ValueError that names the field, unless an actuator pushes its block, in the plane or in space."""
     d = 3 if masonry.in_space else 2
+    if actuator.block is None:
+        if len(actuator.direction) != d:
+            raise ValueError(f"{name}, direction = {actuator.direction}: all blocks of this masonry take {d} numbers")
+        return
     if len(actuator.at) != d:
         raise ValueError(f"{name}, at = {actuator.at} m has {len(actuator.at)} numbers; this masonry takes {d}")
     _require_on(f"{name}, at", actuator.at, masonry.blocks[actuator.block])
