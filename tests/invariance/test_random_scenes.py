@@ -14,15 +14,18 @@ from tests.invariance.quantities import changed, moved, scaled, turned
 from tests.invariance.random_scenes import PLACES, draw
 from tests.invariance.runs import solve
 
+FIRST, SCENES, CHUNK, DRAWN = 1000, 300, 10, 4
+"""Of the slow scenes: the first seed, how many there are, how many are one test, and how many invariances each is
+under."""
 EVERY_DAY = (2, 5, 7, 12, 22)
 STACK = 5
 """A plane stack on springs with a record."""
 PAGE = Path(__file__).parents[2] / "docs" / "invariances.md"
 
 
-def broken(seed):
-    """What is wrong with the scene of a seed, in words."""
-    row = judge(seed)
+def broken(seed, names=None):
+    """What is wrong with the scene of a seed under these invariances or all, in words."""
+    row = judge(seed, names)
     unlike = [f"{name}: {said}" for name, (verdict, said) in row.get("apart", {}).items() if verdict == "unexplained"]
     unnamed = [f"unnamed: {row['unnamed']}"] if "unnamed" in row else []
     return [
@@ -33,6 +36,16 @@ def broken(seed):
 @pytest.mark.parametrize("seed", EVERY_DAY)
 def test_a_scene(seed):
     assert not broken(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(FIRST, FIRST + SCENES, CHUNK))
+def test_scenes(first):
+    """Each under some of the invariances, drawn by its seed."""
+    found = []
+    for seed in range(first, first + CHUNK):
+        found += broken(seed, np.random.default_rng(seed).choice(list(INVARIANCES), DRAWN, replace=False))
+    assert not found, "\n".join(found)
 
 
 def alike(one, other):
