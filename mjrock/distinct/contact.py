@@ -42,8 +42,12 @@ OPEN = 1.0
 """Gap of a line that has left its face [m]."""
 TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
-PASSES = 3
-"""Passes over the lines that touched in a step, which change the rates of each other."""
+MOST_PASSES = 20
+"""Most passes over the lines that touched in a step, which change the rates of each other. Each brings their impulses
+some ten times closer."""
+SAME = 1e-13
+"""Change of an impulse in a pass, over the largest one, below which the passes end [-]. So it does not matter in which
+order lines stand."""
 
 
 class Meeting(NamedTuple):
@@ -241,7 +245,8 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
     taken, put_in = 0.0, 0.0
     for i in range(count):
         books.struck[i] = 0.0
-    for _ in range(PASSES):
+    for _ in range(MOST_PASSES):
+        changed = largest = 0.0
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line, axes)
@@ -251,6 +256,9 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
             if line.face >= 0:
                 strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
             books.struck[i] += impulse
+            changed, largest = max(changed, abs(impulse)), max(largest, abs(books.struck[i]))
+        if changed <= SAME * largest:
+            break
     for i in range(count):
         line = system.lines[books.touched[i]]
         if line.support >= 0:

@@ -14,7 +14,7 @@ from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .compound import AnyBlock
-from .joints import Joint
+from .joints import LEVEL, Joint
 from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
 from .sides import Side
@@ -73,11 +73,14 @@ def lines_of(
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
-    point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,).
-    A joint has so many lines as `points` says, in space see `geometry.convex.spread`. Those that are `bonded` have the
-    stiffness k_n I in bending, see `geometry.convex.sectioned`.
+    point is on the block below, unless that one is fixed. Of two blocks beside each other it is on the one that is
+    farther from the middle of the masonry, where both or neither have a corner there: so mirrored masonry has mirrored
+    lines. The stiffness of each joint is k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, in
+    space see `geometry.convex.spread`. Those that are `bonded` have the stiffness k_n I in bending, see
+    `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
+    middle = np.mean([block.centroid for block in blocks if not block.fixed], axis=0)
     for number, joint in enumerate(joints):
         k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
@@ -86,14 +89,29 @@ def lines_of(
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
             flat, areas = sectioned(joint.flat, points) if exact else spread(joint.flat, points)
             own = _on_face(joint, faces, flat, k_joint * areas)
+        beside = abs(joint.normal[-1]) < LEVEL and not blocks[joint.below].fixed
+        inner = beside and _is_nearer(blocks[joint.above], blocks[joint.below], middle)
         for place, stiffness, overhangs in own:
             turned = overhangs and not blocks[joint.below].fixed
+            if inner and _has_corner(blocks[joint.below], place) == _has_corner(blocks[joint.above], place):
+                turned = True
             rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
             at.append(place)
             normal.append(-joint.normal if turned else joint.normal)
             k.append(stiffness)
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
+
+
+def _is_nearer(block: AnyBlock, other: AnyBlock, middle: Array) -> bool:
+    """Whether a block is nearer to the middle of the masonry than another one, apart from its height."""
+    off, beyond = (float(np.linalg.norm((each.centroid - middle)[:-1])) for each in (block, other))
+    return off < beyond - EDGE
+
+
+def _has_corner(block: AnyBlock, place: Array) -> bool:
+    """Whether a corner of a block is at a place."""
+    return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE)
 
 
 def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[tuple[Array, float, bool]]:
