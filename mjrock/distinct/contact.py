@@ -42,12 +42,9 @@ OPEN = 1.0
 """Gap of a line that has left its face [m]."""
 TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
-MOST_PASSES = 20
-"""Most passes over the lines that touched in a step, which change the rates of each other. Each brings their impulses
-some ten times closer."""
-SAME = 1e-13
-"""Change of an impulse in a pass, over the largest one, below which the passes end [-]. So it does not matter in which
-order lines stand."""
+PASSES = 3
+"""Passes over the lines that touched in a step, which change the rates of each other. A pass takes the rates of all
+lines before it strikes any, so that it does not matter in which order they stand."""
 
 
 class Meeting(NamedTuple):
@@ -245,20 +242,19 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
     taken, put_in = 0.0, 0.0
     for i in range(count):
         books.struck[i] = 0.0
-    for _ in range(MOST_PASSES):
-        changed = largest = 0.0
+    for _ in range(PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line, axes)
             rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet, axes))
-            impulse = due_impulse(line, rate) - books.struck[i]
+            books.asked[i] = due_impulse(line, rate) - books.struck[i]
+        for i in range(count):
+            line, impulse = system.lines[books.touched[i]], books.asked[i]
+            meet = meeting(system, line, axes)
             strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
             if line.face >= 0:
                 strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))
             books.struck[i] += impulse
-            changed, largest = max(changed, abs(impulse)), max(largest, abs(books.struck[i]))
-        if changed <= SAME * largest:
-            break
     for i in range(count):
         line = system.lines[books.touched[i]]
         if line.support >= 0:

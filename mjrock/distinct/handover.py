@@ -256,7 +256,8 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks, axes: tuple[int, ...]) -> None:
     """Let a line take over a share of the friction of one that is gone, and of its push of the last step.
 
-    Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest one gives its rate.
+    Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest
+    gives its rate.
     """
     poses, old, new = blocks.poses, place_of(gone, both, blocks, axes), place_of(line, both, blocks, axes)
     line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
