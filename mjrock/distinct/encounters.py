@@ -5,7 +5,8 @@ slid by so much, it is handed over for good, with its friction, to contacts that
 that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
 gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
 they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
-moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked.
+moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked,
+along a face what they hold more: what they hold less friction takes.
 """
 
 from __future__ import annotations
@@ -72,6 +73,7 @@ class Met:
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
         found: moves of both blocks when each line was found, shape (lines,).
+        softest: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
         since: time from the last look to the next [s].
     """
 
@@ -81,6 +83,7 @@ class Met:
     slack: Array
     share: Array
     found: Integers
+    softest: Array
     since: float
 
 
@@ -119,19 +122,21 @@ class Encounters:
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
-        """The same at the start of a run.
+        """The same at the start of a run, with room of its own to write into.
 
         Args:
             supports: names of the fixed blocks that move, in the order of the supports.
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.met = self._nothing_met()
+        fresh.finder, wear = self.finder.apart(), self.wear
+        fresh.wear, fresh.met = wear._replace(slip=wear.slip.copy(), gap=wear.gap.copy()), self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(Seen.nothing(self.reach.start, self.reach.look), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
+        seen, zeros = Seen.nothing(self.reach.start, self.reach.look), np.zeros(0)
+        return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:
         """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
@@ -169,6 +174,7 @@ class Encounters:
             found = self.finder.found(motion.poses, reach, seen.stale, intact)
             soon = np.empty(len(found.gap), dtype=bool)
             wait(found, motion, self.sizes, seen, soon, self.reach.look)
+            soon &= found.share > 0
             of_gone = np.append(worn[self.wear.pairs], ~stays)
             if soon.any() or of_gone.any():
                 system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
@@ -200,7 +206,7 @@ class Encounters:
             h: length of a step [s].
         """
         met, count = self.met, len(self.wear.pairs)
-        lines = np.asarray(system.lines)
+        lines, sheared = np.asarray(system.lines), in_shear(system)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
         if len(system.bonds):
@@ -230,9 +236,14 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
+        pressing = found.gap < 0
+        for block in (found.face[pressing], found.other[pressing]):
+            np.minimum.at(met.softest, block, share[pressing])
         lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
         system = system._replace(lines=lines).with_ways()
-        books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
+        books.totals[0].friction -= given
+        books.ends[1] += before + given - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
@@ -245,6 +256,15 @@ class Encounters:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / STABLE)
+
+
+def in_shear(system: System) -> float:
+    """Energy in the shear springs of all lines and bonds [J]."""
+    energy = 0.0
+    for table in (system.lines, system.bonds):
+        sprung = np.asarray(table)[np.isfinite(table["k_s"])]
+        energy += 0.5 * float((sprung["k_s"] * (sprung["grip"].T ** 2).sum(axis=0)).sum())
+    return energy
 
 
 def _serving(masonry: Masonry) -> Array:

@@ -33,7 +33,8 @@ from .rows import POINT, Row, Rows
 from .solids import Poses, changed
 
 BESIDE = 0.2
-"""Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
+"""Distance along the face of a place from a line of its pair within which it is the same, over the size of the smaller
+block [-]. Along the normal it may be as far as the blocks overlap."""
 ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
 REGAINED = 1.25
@@ -186,13 +187,14 @@ def pressed_at(
     """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`. It is that of the
     nearest line of such a normal: at a corner two joints of a pair may have their lines."""
     overlap: float = max(-found.gap[i], 0.0)
-    face, other, at = found.face[i], found.other[i], vector(found.place, i, axes)
-    best, least = -1, (BESIDE * min(blocks.sizes[face], blocks.sizes[other])) ** 2
+    face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, axes), vector(found.normal, i, axes)
+    bound, best, least = (BESIDE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
     for j in range(ends[0], ends[1] if overlap > 0 else ends[0]):
         square = square_between(gone, j, at)
         if square < least:
             there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
-            if sense * there.sense * dot(vector(found.normal, i, axes), there.normal) > ALIKE:
+            deep = dot(normal, minus(there.at, at))
+            if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > ALIKE:
                 best, least = j, square
     pressed: float = max(overlap - gone.slack[best], 0.0) if best >= 0 else 0.0
     return pressed

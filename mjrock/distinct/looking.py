@@ -296,8 +296,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
 
 @compiled
 def held(system: System, which: Integers, depth: Array) -> float:
-    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]. What shear
-    springs lose, friction takes."""
+    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]."""
     return held_by_lines(system, which, depth, system.axes)
 
 

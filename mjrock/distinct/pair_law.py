@@ -96,6 +96,12 @@ class PairLaw(NamedTuple):
         fixed = np.array([block.fixed for block in masonry.blocks])
         return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose)
 
+    @property
+    def slowest(self) -> float:
+        """The largest dashpot over its spring [s]."""
+        shared = np.concatenate([self.of_pair[0], self.of_block[0]])
+        return float((shared[:, 1] / shared[:, 0]).max())
+
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
         face that lies over the other [m2], zero for edges, shape (n,) each."""
@@ -116,8 +122,9 @@ class PairLaw(NamedTuple):
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
         first = both[0, :, 0] <= both[1, :, 0]
-        rules = np.where(fixed[0] | (~fixed[1] & ~first), *self.loose[ends[::-1]])
-        return np.where(first[:, None], *both), rules
+        second = fixed[0] | (~fixed[1] & ~first)
+        rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
+        return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
 
 
 def part_of_face(over: Array) -> Array:
@@ -157,6 +164,6 @@ def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) ->
     largest = np.reshape(areas, (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
     if not masonry.in_space:
-        length = np.array([block.length for block in blocks]).reshape(-1, 1)
+        length = np.array([block.length for block in masonry.polygons])[loose][:, None]
         per_area = per_area * np.append(length / masonry.joints[softest].length * np.ones(4), np.ones_like(length), 1)
     return largest * per_area, np.full(len(blocks), friction[softest])

@@ -166,11 +166,11 @@ def test_what_presses_is_the_overlap_less_the_slack_of_the_line_that_was_there(d
 
 @BOTH
 def test_a_line_was_there_within_a_fifth_of_the_smaller_block_and_with_a_like_normal(d):
-    """The point of the line is half an overlap off the place, across the shift."""
-    bound = math.sqrt((0.2 * 0.5) ** 2 - 0.002**2)
-    along = 0.002 * NORMAL[d][0]
-    assert presses(d, gone_at(d, bound + along - 1e-6)) > 0
-    assert presses(d, gone_at(d, bound + along + 1e-3)) == 0
+    """Along the face, whatever the overlap: the point of the line is half of it off the place along the normal."""
+    bound = 0.2 * 0.5 / math.sqrt(1 - NORMAL[d][0] ** 2)
+    assert presses(d, gone_at(d, bound - 1e-6)) > 0
+    assert presses(d, gone_at(d, bound + 1e-6)) == 0
+    assert presses(d, gone_at(d), found(d, 1, 2, gap=-0.4)) == pytest.approx(0.4)
     across = np.array([0.8, -0.6]) if d == 2 else np.array([-0.8, 0.0, 0.6])
     for cosine, there in ((0.71, True), (0.69, False)):
         normal = cosine * NORMAL[d] + math.sqrt(1 - cosine**2) * across
@@ -180,7 +180,7 @@ def test_a_line_was_there_within_a_fifth_of_the_smaller_block_and_with_a_like_no
         assert bool(presses(d, gone_at(d, normal=normal), swapped) > 0) is there
 
 
-@pytest.mark.parametrize(("off", "there"), [(0.0999, True), (0.2 * 0.5, False)])
+@pytest.mark.parametrize(("off", "there"), [(0.0999, True), (0.2 * 0.5, True), (math.hypot(0.1, 0.002) + 1e-9, False)])
 def test_at_a_fifth_of_the_smaller_block_no_line_was_there(off, there, monkeypatch):
     monkeypatch.setattr(handover, "square_between", lambda *given: off**2)
     assert bool(presses(2, gone_at(2)) > 0) is there

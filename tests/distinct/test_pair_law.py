@@ -30,7 +30,7 @@ def masonry(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
         for (low, high), width in zip(ends, widths, strict=True)
     ]
     same = {name: np.ones(len(ends)) for name in ("joint_stiffness", "joint_shear", "retardation")}
-    given = {"joints": joints, "in_space": blocks[0].in_space, "residual_friction": residual}
+    given = {"joints": joints, "in_space": blocks[0].in_space, "residual_friction": residual, "polygons": blocks}
     return SimpleNamespace(blocks=blocks, **given, **same | {name: np.array(each) for name, each in known.items()})
 
 
