@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from .problem.masonry.actuator import Actuator
     from .problem.masonry.bond import BONDS, Bond
     from .problem.masonry.case import MasonryCase
-    from .problem.masonry.collapse import Collapse, collapse_multiplier
+    from .problem.masonry.collapse import Collapse
     from .problem.masonry.compound import Compound
     from .problem.masonry.joints import Joint
     from .problem.masonry.joints_in_space import SpaceJoint
@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from .study.fragility import Fragility, fit_fragility
     from .study.grid import Grid
     from .study.ida import ida, overturning_intensity
+    from .study.limit_analysis import collapse_multiplier
     from .study.masonry_by_matching import matched_masonry
     from .study.mechanism import MechanismCheck, mechanism_check
     from .study.push import Push, push

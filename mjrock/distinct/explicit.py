@@ -123,7 +123,7 @@ def solve_explicit(
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
     if isinstance(case, MasonryCase):
-        stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept])
+        stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
     run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)

@@ -138,16 +138,18 @@ def fragility(
     name = f"{folded(style.get('label', solver))}: " if solver else ""
     label = f"{name}{fit.median:.2f} {unit}, {fit.dispersion:.2f}"
     top = max(2 * fit.median, fit.tried[1] if math.isfinite(fit.tried[1]) else 0.0)
+    points = found = np.empty(0)
     if levels is not None and shares is not None:
         points, found = equal_rows(levels=levels, shares=shares)
         top = float(points.max())
-        ax.plot(points, found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
     x = np.linspace(0.02 * top, top, 300)
     low, high = fit.band(x)
     right = ax.get_xlim()[1] if ax.collections else 0.0
     ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
-    curve = None if levels is not None else label
+    curve = None if points.size else label
     ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8, label=curve)
+    if points.size:
+        ax.plot(points, found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
     ax.set_xlim(0, max(1.02 * top, right))
     ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
     return ax

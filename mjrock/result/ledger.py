@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..quantities import Array
+from ..quantities import Array, require_reals, shown
 
 ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, over the energy there was [-]."""
@@ -140,15 +141,22 @@ class Ledger:
         taken = {f"taken by {name} [J]": account for name, account in self.taken.items()}
         return held | taken | {f"put in by {name} [J]": account for name, account in self.put_in.items()}
 
-    def at(self, t: Array) -> Ledger:
-        """The ledger at other times, interpolated."""
+    def at(self, t: ArrayLike) -> Ledger:
+        """The ledger at other times [s], of any shape, interpolated.
+
+        Raises:
+            TypeError, ValueError: unless the times are finite real numbers.
+        """
+        times = require_reals("t", t, "times in s")
+        if not np.isfinite(times).all():
+            raise ValueError(f"t = {shown(t)} holds a value that is not finite; it takes times in s")
 
         def then(part: Any) -> Any:
             if isinstance(part, Mapping):
                 return {name: then(account) for name, account in part.items()}
-            return np.interp(t, self.t, part)
+            return np.interp(times, self.t, part)
 
-        return Ledger(**{name: then(part) for name, part in vars(self).items()} | {"t": t})
+        return Ledger(**{name: then(part) for name, part in vars(self).items()} | {"t": times})
 
     def __repr__(self) -> str:
         taken, put_in = (

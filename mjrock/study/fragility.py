@@ -26,6 +26,8 @@ ITERATIONS = 100
 """Most steps of Newton's method; a fit takes five to ten."""
 FARTHEST = 8.0
 """Score beyond which a share counts as 0 or 1 in a penalised fit [-]."""
+HELD = "90% intervals of 5 to 40 groups held the median in 88 to 96 and the dispersion in 89 to 98 of 100 simulations"
+"""How often the intervals hold the truth (`scripts/studies/fragility_coverage.py`)."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,8 @@ class Fragility:
         return min(low, float(ends[0])), max(high, float(ends[1]))
 
     def table(self, confidence: float = 0.9) -> str:
-        """Median and dispersion with their intervals, and how many runs and groups stand behind them, as text."""
+        """Median and dispersion with their intervals, how many runs and groups stand behind them, and how often such
+        intervals hold, as text."""
         fitted = {
             "median": (self.median, *self.median_interval(confidence)),
             "dispersion": (self.dispersion, *self.dispersion_interval(confidence)),
@@ -130,8 +133,9 @@ class Fragility:
             f"{name:<10}  {value:.4g}, {confidence:.0%} interval {low:.4g} to {high:.4g}"
             for name, (value, low, high) in fitted.items()
         ]
-        kept = "taken as independent" if self.groups is None else f"of {self.groups} groups"
-        return "\n".join([*lines, f"{self.count} runs {kept}"])
+        if self.groups is None:
+            return "\n".join([*lines, f"{self.count} runs taken as independent"])
+        return "\n".join([*lines, f"{self.count} runs of {self.groups} groups", HELD])
 
     def csv(
         self, path: str | Path | None = None, *, intensity: ArrayLike | None = None, confidence: float = 0.9

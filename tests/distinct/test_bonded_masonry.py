@@ -93,6 +93,7 @@ def test_bonds_without_strength_are_dry_bit_for_bit():
     assert np.array_equal(dry.pose, none.pose)
 
 
+@pytest.mark.filterwarnings("ignore:tension = .* is it in MPa:mjrock.Implausible")
 def test_bonds_of_next_to_no_strength_move_as_dry_ones():
     """Dry joints whose lines share the area in the same way are those that could be crushed alone, and are not."""
     uncrushed = mr.Bond(0.0, 0.0, 1.0, 1.0, 1e12, 1e15)

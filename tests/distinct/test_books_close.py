@@ -81,7 +81,8 @@ def test_a_corner_that_has_come_through_an_edge_keeps_pressing_on_it(in_space, i
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize("k_s", [None, 2e5])
 def test_what_contacts_lose_at_the_end_of_a_face_has_an_account(in_space, k_s):
-    """A cube that rocks slides off its table. Its joint is handed over before it comes to the end."""
+    """A cube that rocks slides off its table. Its joint is handed over before it comes to the end, and the part of it
+    that has left the table leaves what its springs hold: in all no more than they held at most."""
     if in_space:
         table, cube = (
             mr.Polyhedron.box((2.02, 3, 1), (0.01, 0, -0.5), fixed=True),
@@ -94,7 +95,7 @@ def test_what_contacts_lose_at_the_end_of_a_face_has_an_account(in_space, k_s):
     case = mr.MasonryCase(mr.Masonry([table, cube], **SOFT, k_s=k_s), 0.5, velocity=velocity)
     run = mr.solve_explicit(case, timestep=2e-4, ledger=True)
     assert run.ledger.ends["joints"][-1] == 0
-    assert 5e-4 < run.ledger.ends["encounters"][-1] / run.ledger.kinetic.max() < 0.02
+    assert 5e-4 * run.ledger.kinetic.max() < run.ledger.ends["encounters"][-1] < run.ledger.elastic.max()
     assert unaccounted(run) < 2e-3
 
 

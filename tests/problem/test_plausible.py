@@ -68,8 +68,8 @@ MISUSE = {
         r"Tie: ultimate = 8 m, and where it is held the wall opens by 0\.6\d* m until it overturns: .* in m",
     ),
     "strength in Pa": (
-        lambda: with_effect(mr.Tie(8.0, 2e9, strength=235e6)),
-        r"strength = 2.35e\+08 N, and the wall weighs 2.01e\+06 N: is it in N, and no stress in Pa",
+        lambda: mr.Case(SMALL, 0.05, 1.0, effects=mr.Tie(4.0, 5e9, strength=235e6)),
+        r"strength = 2.35e\+08 N, and the wall weighs 7.06e\+04 N: is it in N, and no stress in Pa",
     ),
     "slip force in kN": (
         lambda: with_effect(mr.FrictionDamper(8.0, 2e7, 60.0)),
@@ -257,6 +257,11 @@ def plausible(rng):
         effects.append(mr.Load(rng.uniform(0.02, 0.5) * wall.weight, height, rng.uniform(-0.3, 0.3) * thickness))
     if rng.random() < 0.3:
         effects.append(mr.AddedMass(rng.uniform(0.005, 0.2) * wall.mass, height))
+    held = rng.uniform(0.6, 1.0) * height
+    if rng.random() < 0.15:
+        effects.append(mr.Damper(held, rng.uniform(0.02, 0.6) * 2 * wall.mass * wall.p))
+    if rng.random() < 0.15:
+        effects.append(mr.FrictionDamper(held, rng.uniform(2, 50) * 1e6, rng.uniform(0.005, 0.1) * wall.weight))
     share = rng.choice([1.0, rng.uniform(0.75, 0.95)])
     stop = True if share == 1 else mr.SideStop(share * height)
     asked = {"side_stop": stop, "effects": tuple(effects)}

@@ -61,6 +61,9 @@ MISUSE = {
         lambda: case(effects=mr.Actuator(3, (-0.3, 4.0), 1, ([0.0, 1.0], [0.0, 5e-3]), 10.0)),
         r"actuator_0: stiffness = 10 N/m pushes with at most 0.05 N, .* is it in N/m\?",
     ),
+    "strength of mortar in MPa": (lambda: mr.Bond(0.2, 0.3, 18.0, 125.0), r"tension = 0.2 Pa, .* is it in MPa\?"),
+    "cohesion in MPa": (lambda: mr.Bond(2e5, 0.3, 18.0, 125.0), r"cohesion = 0.3 Pa, .* is it in MPa\?"),
+    "energy in N/mm": (lambda: mr.Bond(2e5, 3e5, 0.018, 0.125), r"opening_energy = 0.018 J/m2, .* is it in N/mm\?"),
     "xi in percent": (lambda: columns(1, 1e9, xi=5.0), r"xi = 5 is 500% of critical; damping ratios are fractions"),
     "slack in mm, in space": (
         lambda: case(BLOCK, effects=mr.Tie(stiffness=1e7, slack=5.0, at=(-0.3, 0, 3), block=1)),

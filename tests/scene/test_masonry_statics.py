@@ -14,7 +14,7 @@ from scenes import unbalanced
 import mjrock as mr
 from mjrock.problem.masonry import polyhedron
 from mjrock.problem.masonry.effects import applied
-from mjrock.problem.masonry.statics import falling, friction_lacking
+from mjrock.problem.masonry.statics import falling, friction_lacking, nudged
 from mjrock.scene.masonry import require_standing, standing_masonry
 from scripts.studies import two_storeys
 
@@ -125,6 +125,19 @@ def test_a_keystone_without_thrust_is_not_told_to_be_stiffer(k_n):
     with pytest.raises(ValueError, match=r"cannot stand: key would slide down, however large k_n is.*press") as said:
         require_standing(masonry)
     assert "raise k_n" not in str(said.value)
+
+
+def test_a_brick_that_hangs_over_by_half_tips_and_one_at_the_angle_of_friction_slides():
+    """Rigid blocks stand at these limits alone, and neither is held by wedging."""
+    low = box(0, 0.4, 0, 0.2, name="low")
+    for over, said in ((0.2, "top would tip, .* more to stand on"), (0.21, "top would fall under the weight$")):
+        bricks = mr.Masonry([GROUND, low, box(over, over + 0.4, 0.2, 0.4, name="top")], friction=0.5, k_n=1e9)
+        with pytest.raises(ValueError, match=said):
+            require_standing(bricks)
+    require_standing(mr.Masonry([GROUND, low, box(0.199, 0.599, 0.2, 0.4, name="top")], friction=0.5, k_n=1e9))
+    slope = tilted(mr.Masonry([GROUND, box(-0.5, 0.5, 0, 0.2)], friction=math.tan(0.2) * (1 + 1e-9)), 0.2)
+    assert nudged(slope)[1]
+    assert nudged(mr.Masonry.arch(5.0, 0.9)) is None
 
 
 def test_a_wall_beside_a_smooth_one_on_a_soft_base_is_told_to_be_stiffer():

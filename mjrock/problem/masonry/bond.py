@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...quantities import keep, require_kind, require_within, shown
+from ...quantities import Implausible, keep, require_kind, require_within, shown
 from .bond_law import HARDENED, YIELDS
 from .joint_law import Law
 from .joints import Joint
@@ -21,6 +22,10 @@ ROUNDED_UP = 1.01
 """Factor on values in messages, so that what is rounded to three digits is within the range."""
 STRONGEST, TOUGHEST = 1e12, 1e15
 """Largest strength [Pa] and largest fracture energy [J/m2]. The largest ones stand for joints that never break."""
+
+
+WEAKEST, FRAGILE = 100.0, 0.06
+"""Strength [Pa] and fracture energy [J/m2] below which they are taken for ones in MPa and N/mm."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,9 @@ class Bond:
 
     Raises:
         ValueError: for a value outside its range.
+
+    Warns:
+        Implausible: for strengths that are probably in MPa, and fracture energies that are probably in N/mm.
 
     Examples:
         >>> bond = mr.Bond(tension=0.2e6, cohesion=0.3e6, opening_energy=18.0, slip_energy=125.0)
@@ -90,6 +98,18 @@ class Bond:
                 f"cohesion = {self.cohesion:g} Pa with a tension of 0: cohesion ends where a joint opens; the valid "
                 "range of the tension is then above 0"
             )
+        if odd := self._doubt():
+            warnings.warn(odd, Implausible, stacklevel=3)
+
+    def _doubt(self) -> str:
+        """What is odd about strengths and energies, in words, empty where nothing is."""
+        for name in ("tension", "cohesion"):
+            if 0 < (strength := getattr(self, name)) < WEAKEST:
+                return f"{name} = {strength:g} Pa, and one unit presses with more than {WEAKEST:g} Pa: is it in MPa?"
+        for name in ("opening_energy", "slip_energy"):
+            if (energy := getattr(self, name)) < FRAGILE and self.tension >= 1e4:
+                return f"{name} = {energy:g} J/m2, and mortar takes more than {FRAGILE:g} J/m2: is it in N/mm?"
+        return ""
 
     @property
     def is_dry(self) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csr_array, vstack
+from scipy.sparse import block_diag, coo_array, csr_array, eye_array, vstack
 
 from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
@@ -158,21 +158,29 @@ def slips(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
 
-def lowest_frequency(blocks: Sequence[AnyBlock], lines: Lines, friction: Array) -> float:
+def lowest_frequency(
+    blocks: Sequence[AnyBlock], lines: Lines, friction: Array, along: Array | float = math.inf
+) -> float:
     """The lowest natural frequency of masonry whose joints are all closed and do not slide [rad/s].
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
     weight's own part of the stiffness is left out, as in `reference_frequency`, which is the case of one block.
+
+    Inclined faces may leave no motion in which none of them slides, as those of a wedge do. There joints give way along
+    their faces by their springs `along` [N/m], shape (m,), and slide where these are infinite.
     """
     masses, axes = masses_of(blocks)
-    opening, sliding = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
-    if axes is not None:
-        opening, sliding = csr_array(opening @ axes), csr_array(sliding @ axes)
+    axes = csr_array(eye_array(len(masses))) if axes is None else axes
+    moves = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
+    opening, sliding = (csr_array(part @ axes) for part in moves)
     held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    grip = sliding[np.tile(held, sliding.shape[0] // len(held))]
-    square = lowest_square(sprung(opening, lines.k), masses, grip, RIGID)
+    grip, stiffness = sliding[np.tile(held, sliding.shape[0] // len(held))], sprung(opening, lines.k)
+    square = lowest_square(stiffness, masses, grip, RIGID)
     if square == 0:
-        raise ValueError("the blocks have no joint that a motion could compress, and xi refers to no frequency")
+        springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
+        for way in lines.across:
+            stiffness = stiffness + sprung(csr_array(rates(blocks, lines, way) @ axes), springs)
+        square = lowest_square(stiffness, masses, grip[:0], RIGID)
     return math.sqrt(square)
 
 

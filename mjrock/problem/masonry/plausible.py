@@ -12,7 +12,7 @@ from ...quantities import GRAVITY, Array
 from ..wall.effect import Anchored
 from ..wall.plausible import IN_G, NEGLIGIBLE, Whole, of_effects, of_motion
 from .actuator import Actuator
-from .collapse import collapse_multiplier
+from .collapse import limit_of, pushed
 from .effects import held_at
 from .masonry import Masonry
 
@@ -38,8 +38,9 @@ def stood(case: Any) -> float:
 
 @lru_cache(maxsize=16)
 def _multiplier(masonry: Masonry) -> float:
+    ways = np.eye(3 if masonry.in_space else 2)[0] * [[1.0], [-1.0]]
     try:
-        return min(collapse_multiplier(masonry, way).multiplier for way in (1, -1))
+        return min(limit_of(masonry, way, pushed(masonry, way)).multiplier for way in ways)
     except ValueError:  # it cannot stand, which the solvers say
         return math.inf
 

@@ -18,9 +18,9 @@ from .ties_on_wall import TiePull, moment_at_strength, pulled
 
 NEGLIGIBLE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
-EXCESSIVE, HEAVIEST = 100.0, 1000.0
-"""Force of a tie or damper, and load or thrust, over the weight above which it is taken for one in another unit [-]: a
-bar holds up to some 30 times a pinnacle, and a jack presses a panel with up to some 200 times its weight."""
+EXCESSIVE = 1000.0
+"""Force of a tie, damper, load or thrust over the weight above which it is taken for one in another unit [-]: a jack
+presses a panel with up to some 200 times its weight, and a bar of 30 mm holds 100 times a small model."""
 STIFFEST = 1e10
 """Stiffness above which that of a tie is taken for a modulus [N/m]; a steel bar of 100 mm and 1 m has 1.6e9."""
 CUT_OFF = 0.2
@@ -162,7 +162,7 @@ def of_effects(effects: Sequence[Effect], whole: Whole, room: Room) -> list[str]
         if isinstance(effect, Thrust | Load):
             if 0 < abs(effect.force) < NEGLIGIBLE * weight:
                 found.append(_against_weight(name, "force", effect.force, whole, "kN"))
-            elif abs(effect.force) > HEAVIEST * weight:
+            elif abs(effect.force) > EXCESSIVE * weight:
                 found.append(_against_weight(name, "force", effect.force, whole, "N"))
         elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE * whole.mass:
             found.append(
