@@ -302,14 +302,14 @@ EQUIVALENT = {
     "looking.py: serve = max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09)": (
         "any small speed serves to divide by"
     ),
-    "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * FALL + NEAR * size)": (
+    "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * fallen(look) + NEAR * size)": (
         "no gap is the bound to the last bit"
     ),
     **{
         f"looking.py: {line}": "no time is the bound to the last bit"
         for line in (
-            "stale = (moved and due <= EARLY) or speed * due > kept",
-            "seen.due[block] = due if due > EARLY else LOOK",
+            "stale = (moved and due <= EARLY * look) or speed * due > kept",
+            "seen.due[block] = due if due > EARLY * look else look",
         )
     },
     **{

@@ -14,6 +14,7 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..problem.wall.effect import LinkLaw
 from ..quantities import Array
+from ..scene.checks import GROUND
 from ..scene.ground import Ground
 from ..scene.parts import Links
 from ..scene.scene import Scene
@@ -136,13 +137,18 @@ def moving(histories: Sequence[tuple[Sequence[float], Array]], d: int) -> Suppor
 
 
 def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequence[Actuator]) -> System:
-    """The system with actuators, which count displacements from the pose of rest, and with the blocks they guide."""
+    """The system with actuators, which count displacements from the pose of rest, and with the blocks they guide.
+
+    One that drives all blocks has no body."""
     if not actuators:
         return system
     number, d, bodies = free_numbers(masonry.blocks), len(system.axes), system.bodies
-    held, way = number[[each.block for each in actuators]], np.array([each.way for each in actuators])
-    at = np.array([each.at for each in actuators]) - scene.bodies.rest[held]
+    held = np.array([GROUND if each.block is None else number[each.block] for each in actuators])
+    way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
+    at = np.array([each.way if each.at is None else each.at for each in actuators])
+    at = np.where(single, at - scene.bodies.rest[held], 0.0)
     change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
+    mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
     table = rows(
         kinds(d).link,
         len(actuators),
@@ -153,7 +159,7 @@ def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequenc
         between=way,
         k=np.array([each.stiffness for each in actuators]),
         c=np.array([each.damping for each in actuators]),
-        reach=((bodies["place"][held] + change) * way).sum(axis=1),
+        reach=(np.where(single, bodies["place"][held] + change, mean) * way).sum(axis=1),
     )
     for body, each in zip(held, actuators, strict=True):
         if each.guide.turning:

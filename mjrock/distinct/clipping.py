@@ -116,6 +116,15 @@ def parted(polygon: Array, count: int) -> int:
 
 
 @inlined
+def turn_at(polygon: Array, count: int, i: int) -> float:
+    """The angle by which the outline of a polygon turns at a corner, over a whole turn."""
+    at = vector(polygon, i, SPACE.axes)
+    before = minus(at, vector(polygon, i - 1 if i else count - 1, SPACE.axes))
+    after = minus(vector(polygon, (i + 1) % count, SPACE.axes), at)
+    return math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
+
+
+@inlined
 def area_of(polygon: Array, count: int) -> float:
     """Area of a polygon [m2]."""
     first, area = vector(polygon, 0, SPACE.axes), 0.0
@@ -204,13 +213,10 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
         return count
     area = area_of(room, corners)
     for i in range(corners):
-        at = vector(room, i, SPACE.axes)
-        before = minus(at, vector(room, i - 1 if i else corners - 1, SPACE.axes))
-        after = minus(vector(room, (i + 1) % corners, SPACE.axes), at)
-        share = math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
+        share = turn_at(room, corners, i)
         if share > SAME:
             if count < len(table):
-                meet(solids, faces, blocks, at, table, count)
+                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table, count)
                 table[count, 9], table[count, 10] = share, area
             count += 1
     return count

@@ -208,7 +208,7 @@ def press_lines(
             drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
         elif line.friction > 0:
             books.active[active] = p
-            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, meet.arm, meet.face_arm, velocity)
+            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, (meet.arm, meet.face_arm), velocity, kick)
             begin(system, line, (len(axes) - 1) * active, shear_limit(line, push), kick, axes)
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))

@@ -24,8 +24,6 @@ from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
 from .looking import (
-    FALL,
-    LOOK,
     NEAR,
     PASSED,
     SURE,
@@ -33,7 +31,9 @@ from .looking import (
     Reach,
     Seen,
     Wear,
+    fallen,
     held,
+    longest_time,
     take_motion,
     wait,
     watch,
@@ -106,7 +106,7 @@ class Encounters:
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
-        self.finder = Finder(blocks, drawn)
+        self.finder = Finder(blocks, drawn, masonry.points)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
         self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
@@ -114,8 +114,10 @@ class Encounters:
         left = np.full(len(self.law.jointed), np.inf)
         np.minimum.at(left, of, _serving(masonry))
         self.jointed = _jointed(masonry, self.finder, of)
+        self.finder.jointed = np.unique(self.jointed[1])
         self.kind, start = system.lines.dtype, self.motion(system).poses
-        self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
+        look = longest_time(self.sizes[self.blocks.free])
+        self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
         self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)
         self.met = self._nothing_met()
 
@@ -133,7 +135,7 @@ class Encounters:
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        seen, zeros = Seen.nothing(self.reach.start), np.zeros(0)
+        seen, zeros = Seen.nothing(self.reach.start, self.reach.look), np.zeros(0)
         return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:
@@ -168,15 +170,16 @@ class Encounters:
             met.handed = met.handed | worn
             stays = self._moves_of(met.pair) == met.found
             intact = self.jointed[1][~met.handed[self.jointed[0]]]
-            reach = SURE * (seen.ahead + FALL + NEAR * self.sizes)
+            reach = SURE * (seen.ahead + fallen(self.reach.look) + NEAR * self.sizes)
             found = self.finder.found(motion.poses, reach, seen.stale, intact)
             soon = np.empty(len(found.gap), dtype=bool)
-            wait(found, motion, self.sizes, seen, soon)
+            wait(found, motion, self.sizes, seen, soon, self.reach.look)
+            soon &= found.share > 0
             of_gone = np.append(worn[self.wear.pairs], ~stays)
             if soon.any() or of_gone.any():
                 system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
                 books = books.with_room(len(system.lines))
-        steps = max(1, int(seen.due[seen.watched].min(initial=LOOK) / h))
+        steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
         met.since = steps * h
         return system, books, steps
 
@@ -211,8 +214,8 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(chosen(lines, which), slack[which], np.empty(len(which)))
-        new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
+        gone = Lines.unwritten(chosen(lines, which), slack[which])
+        new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
         soft = (share < 1) & (gone.depth > 0)

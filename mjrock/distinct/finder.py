@@ -22,6 +22,7 @@ from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.joints import each_with_each, numbered_parts
 from ..quantities import Array, Flags, Integers
 from .clipping import clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .grid import lay_out
 from .pair_law import pair_number
 from .solids import Poses, Solids, inside_of, solids_of
 
@@ -42,6 +43,8 @@ LEAD = 1e-6
 face, for it to be taken [-]. The corners of the smaller one then lie over it."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
+NONE = np.zeros(0, dtype=np.int64)
+"""Numbers of no pairs."""
 
 
 class Found(NamedTuple):
@@ -52,7 +55,7 @@ class Found(NamedTuple):
         place: halfway between the two surfaces [m], shape (n, d).
         normal: unit vector out of the face, shape (n, d).
         gap: between the surfaces, negative for an overlap [m], shape (n,).
-        share: of what the pair has, shape (n,).
+        share: of what the pair has, zero where no face lies over the other, shape (n,).
         area: of the part of a face that lies over the other [m2], in the plane its length [m], zero for edges, (n,).
     """
 
@@ -79,6 +82,8 @@ class Near(NamedTuple):
         reach: of each solid [m], shape (solids,).
         watched, fixed: shape (solids,). One of two solids is watched, and one is free.
         skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
+        jointed: numbers of pairs of solids that had a joint, increasing.
+        cells: of the grid of a joint, along x and z and along y.
     """
 
     low: Array
@@ -89,6 +94,8 @@ class Near(NamedTuple):
     watched: Flags
     fixed: Flags
     skipped: Integers
+    jointed: Integers = NONE
+    cells: tuple[int, int] = (1, 1)
 
 
 class Finder:
@@ -97,10 +104,13 @@ class Finder:
     Args:
         blocks: the blocks.
         drawn: where their centroids are drawn [m], shape (blocks, d).
+        points: of the joints of masonry. `jointed` has the numbers of the pairs of solids that had one, increasing.
     """
 
-    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array) -> None:
+    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array, points: int = 2) -> None:
         self.flat = drawn.shape[1] == 2
+        self.jointed = NONE
+        self._cells = points - 1, 1 if self.flat else points - 1
         self._half = min(block.size for block in blocks)  # of the length of a prism, which plays no part
         self.first, self.number = numbered_parts(blocks)
         self.owner = np.repeat(np.arange(len(blocks)), self.number)
@@ -132,7 +142,8 @@ class Finder:
         low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
         low, high = low - reach[:, None], high + reach[:, None]
         axis = int(np.ptp(low, axis=0).argmax())
-        near = Near(low, high, np.argsort(low[:, axis]), axis, reach, watched, self._fixed, skipped)
+        order, pairs = np.argsort(low[:, axis]), (skipped, self.jointed)
+        near = Near(low, high, order, axis, reach, watched, self._fixed, *pairs, self._cells)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = np.empty((2 * count, 11))
         table = self._table[:count]
@@ -197,7 +208,8 @@ def among(values: Integers, number: int) -> bool:
 
 @compiled
 def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
-    """Write the places of all pairs that are near, see `clipping.clip`.
+    """Write the places of all pairs that are near, see `clipping.clip`, those of faces in the grid of their joint where
+    they had one.
 
     Returns:
         How many there are, or more than there is room for where there may be too many.
@@ -213,9 +225,11 @@ def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
                 continue
             if solids.owner[a] == solids.owner[b]:
                 continue
-            if are_apart(near, a, b) or among(near.skipped, min(a, b) * blocks + max(a, b)):
+            pair, number = (min(a, b), max(a, b)), min(a, b) * blocks + max(a, b)
+            if are_apart(near, a, b) or among(near.skipped, number):
                 continue
-            count = find_pair(solids, near.reach[a] + near.reach[b], (min(a, b), max(a, b)), table, count, room)
+            cells = near.cells if among(near.jointed, number) else (1, 1)
+            count = find_pair(solids, near.reach[a] + near.reach[b], pair, table, count, room, cells)
     return count
 
 
@@ -229,9 +243,17 @@ def are_apart(near: Near, a: int, b: int) -> bool:
 
 
 @inlined
-def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
-    """Write the places of a pair that is nearer than it reaches [m]. Returns how many places there are then, or more
-    than there is room for where there may be."""
+def find_pair(
+    solids: Solids,
+    reach: float,
+    blocks: tuple[int, int],
+    table: Array,
+    count: int,
+    room: Array,
+    cells: tuple[int, int] = (1, 1),
+) -> int:
+    """Write the places of a pair that is nearer than it reaches [m], on faces in a grid of some cells. Returns how many
+    places there are then, or more than there is room for where there may be."""
     a, b = blocks
     face, apart = face_between(solids, a, b, reach)
     other_face, other_apart = (-1, -math.inf) if apart > reach else face_between(solids, b, a, reach)
@@ -250,7 +272,24 @@ def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Arra
             way, across = across_edges(solids, a, b)
             if across > EDGES * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
-    return clip(solids, face, blocks, table, count, room)
+    if cells[0] > 1:
+        last = lay_out(solids, face, blocks, cells, table, count, room)
+    else:
+        last = clip(solids, face, blocks, table, count, room)
+    return last if last > count else pass_by(solids, face, blocks, best, table, count)
+
+
+@inlined
+def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Array, count: int) -> int:
+    """Write a corner of a face that another block is near and does not lie over, as two that come together at their
+    corners: a place without a share, so that it is known when to look again. Returns how many places there are then."""
+    corner = solids.first[face]
+    for i in range(corner, solids.first[face + 1]):
+        if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
+            corner = i
+    write_place(table, count, blocks, corner_of(solids, corner), normal_of(solids, face), gap)
+    table[count, 9], table[count, 10] = 0.0, 0.0
+    return count + 1
 
 
 @inlined

@@ -15,7 +15,7 @@ from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array
 from .limit import longest_step
-from .pair_law import SHARED, PairLaw, part_of_loose, side_area
+from .pair_law import SHARED, PairLaw, part_of_face, side_area
 from .rows import chosen, joined, rows
 from .system import System
 
@@ -44,6 +44,6 @@ def _springs(block: AnyBlock, shared: Array) -> list[tuple[Array, Array, Array]]
     springs = []
     for side in block.sides:
         over = np.array([side_area(side, in_space=block.in_space) / shared[-1]])
-        part = SIDES * float(part_of_loose(over)[0]) / len(side.corners)
+        part = SIDES * float(part_of_face(over)[0]) / len(side.corners)
         springs.append((np.asarray(side.corners), np.asarray(side.normal), part * shared[:-1]))
     return springs

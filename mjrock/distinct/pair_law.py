@@ -1,16 +1,20 @@
 """The law of the contact of two blocks beyond their joints.
 
-Two blocks that had a joint keep its stiffness, dashpot and friction, that of a mortared joint without its bond, shared
-among the places where they touch. Two that had none take those of the softer block: of its stiffest joint, or of half
-of all its joints if that is more, since a block of a wall has joints on two sides. Where faces lie over each other by
-less than a tenth of the area of such a joint, the pair has less in proportion. So blocks that only touch along their
-edges bear nothing.
+Two blocks that had a joint keep its stiffness and dashpot per area of what lies over each other, and its friction,
+that of a mortared joint without its bond. So a joint that has slid is as stiff as one that is drawn where it is. Two
+that had none take those of the softer block: of its stiffest joint, or of half of all its joints if that is more,
+since a block of a wall has joints on two sides. Where their faces lie over each other by less than a tenth of the area
+of such a joint, they have less in proportion. So blocks that only touch along their edges bear nothing. The places
+where a pair touches share what it has.
 
 A block without any joint is loose. It has what a joint over its largest face would have, per area that of the softest
 joint of the masonry. Where it is the softer block, the pair has that over the area on which the two faces lie, as a
-joint that is drawn there would have. A corner or a small face of a loose block has a quarter of the largest face, with
-the same decrease for areas that are ten times smaller still. A fixed block has over the area of the free one what its
-own joints have per area, so that how many blocks stand on the ground plays no part.
+joint that is drawn there would have. A fixed block has over the area of the free one what its own joints have per area,
+so that how many blocks stand on the ground plays no part.
+
+A corner or a small face of a loose block has a quarter of the largest face, and what is left of a joint that has slid
+has a quarter of the joint, with the same decrease for areas that are ten times smaller still. Otherwise they would sink
+in.
 """
 
 from __future__ import annotations
@@ -28,9 +32,9 @@ from .rows import Rows
 SHARED = ("k", "c", "k_s", "c_s")
 """What the places of a pair share."""
 WHOLE = 0.1
-"""Part of the area of a joint over which two faces have all that a pair has [-]."""
+"""Part of the area of a joint over which two faces that had none have all that a pair has [-]."""
 LEAST = 0.25
-"""Part of what a loose block has over its largest face that a smaller one has too [-]."""
+"""Part of what a loose block has over its largest face, or a pair over its joint, that a smaller area has too [-]."""
 
 
 def pair_number(a: Integers, b: Integers, blocks: int) -> Integers:
@@ -107,7 +111,7 @@ class PairLaw(NamedTuple):
         there = np.searchsorted(self.jointed, pair[had])
         shared[had], friction[had] = self.of_pair[0][there], self.of_pair[1][there]
         over = area / shared[:, -1]
-        part = np.where(loose & ~had, part_of_loose(over), np.minimum(over / WHOLE, 1.0))
+        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE, 1.0))
         share = share * np.where(area > 0, part, 1.0)
         return {**dict(zip(SHARED, share * shared[:, :-1].T, strict=True)), "friction": friction}
 
@@ -118,12 +122,14 @@ class PairLaw(NamedTuple):
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
         first = both[0, :, 0] <= both[1, :, 0]
-        rules = np.where(fixed[0] | (~fixed[1] & ~first), *self.loose[ends[::-1]])
-        return np.where(first[:, None], *both), rules
+        second = fixed[0] | (~fixed[1] & ~first)
+        rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
+        return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
 
 
-def part_of_loose(over: Array) -> Array:
-    """Part of what a loose block has over its largest face that it has over another area, over that of this face."""
+def part_of_face(over: Array) -> Array:
+    """Part of what a loose block has over its largest face, or a pair over its joint, that it has over another area,
+    from this area over that of the face or the joint."""
     return np.asarray(np.maximum(over, np.minimum(over / WHOLE, LEAST)))
 
 
@@ -158,6 +164,6 @@ def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) ->
     largest = np.reshape(areas, (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
     if not masonry.in_space:
-        length = np.array([block.length for block in blocks]).reshape(-1, 1)
+        length = np.array([block.length for block in masonry.polygons])[loose][:, None]
         per_area = per_area * np.append(length / masonry.joints[softest].length * np.ones(4), np.ones_like(length), 1)
     return largest * per_area, np.full(len(blocks), friction[softest])

@@ -232,6 +232,8 @@ def guides_of(case: Case | MasonryCase, gathered: Gathered) -> dict[str, Array]:
         return guides
     d = 3 if case.masonry.in_space else 2
     for i, actuator in enumerate(case.actuators.values()):
+        if actuator.block is None:
+            continue
         name, upwards = case.masonry.names[actuator.block], -gathered.guided[:, i, d - 1]
         if actuator.guide.rising or (actuator.guide.turning and name not in guides):
             upwards = upwards if actuator.guide.rising else np.zeros_like(upwards)

@@ -45,8 +45,9 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
         size = np.linalg.norm(pose[:, 3:], axis=1)
         for length in size[np.abs(size - 1) > UNIT].tolist():
             require_within("start, length of a quaternion", length, 1 - UNIT, 1 + UNIT)
-    if isinstance(case, MasonryCase) and case.actuators:
-        smallest = min(case.masonry.blocks[actuator.block].size for actuator in case.actuators.values())
+    guiding = [one for one in case.actuators.values() if any(one.guide)] if isinstance(case, MasonryCase) else []
+    if isinstance(case, MasonryCase) and guiding:
+        smallest = min(case.masonry.blocks[one.block].size for one in guiding)
         case.require_guided("start, velocity", velocity, HELD * math.sqrt(GRAVITY * smallest))
         velocity = np.where(case.guided, 0.0, velocity)
     return pose, velocity

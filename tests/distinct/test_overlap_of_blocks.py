@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
@@ -60,6 +61,16 @@ def test_slightly_turned_blocks_that_overlap_by_some_hundredths_of_a_millimetre(
     assert common_volume(solids, 0, 1) == pytest.approx(0.5 * 0.4 * 1e-4 * 0.2, rel=1e-3)
 
 
+def test_blocks_are_held_against_a_support_where_it_is():
+    """Of two supports one sinks by 5 m at once. What stood on it falls into the air, and overlaps nothing."""
+    still, sinks = box(-2, 0, -1, 0, fixed=True, name="still"), box(1, 3, -1, 0, fixed=True, name="sinks")
+    masonry = mr.Masonry((still, sinks, box(1.5, 2, 0, 1), box(-1, -0.5, 0, 1)), k_n=1e8, xi=0.3)
+    supports = {"still": ([0.0, 1.0], [0.0] * 2, [0.0] * 2), "sinks": ([0.0, 0.01], [0.0] * 2, [0.0, -5.0])}
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.25, supports=supports), output_step=0.01)
+    assert answer.pose[-1, 0, 1] < -0.25
+    assert answer.stats["overlap"] < 1e-3
+
+
 @pytest.mark.parametrize(
     ("share", "left", "said"),
     [
@@ -75,12 +86,12 @@ def test_what_keeps_blocks_apart_names_the_step_where_that_is_the_cause(share, l
 
 def lands(**options):
     """A light box that is thrown onto a heavy one, neither of which has a joint."""
-    box = mr.Polyhedron.box
+    solid = mr.Polyhedron.box
     blocks = [
-        box((9.0, 1.0, 1.0), (0.0, 0.0, -0.5), fixed=True, name="ground"),
-        box((0.2, 0.2, 0.2), (3.0, 0.0, 0.1)),
-        box((1.0, 1.0, 1.0), (0.0, 0.0, 0.5 + 1e-3), name="heavy"),
-        box((0.05, 0.05, 0.05), (0.1, 0.0, 1.05), name="light"),
+        solid((9.0, 1.0, 1.0), (0.0, 0.0, -0.5), fixed=True, name="ground"),
+        solid((0.2, 0.2, 0.2), (3.0, 0.0, 0.1)),
+        solid((1.0, 1.0, 1.0), (0.0, 0.0, 0.5 + 1e-3), name="heavy"),
+        solid((0.05, 0.05, 0.05), (0.1, 0.0, 1.05), name="light"),
     ]
     masonry = mr.Masonry(blocks, k_n=options.pop("k_n", 1e10), friction=0.5, xi=0.0)
     velocity = [[0.0] * 6, [0.0] * 6, [0.0, 0.0, -3.0, 0.0, 0.0, 0.0]]

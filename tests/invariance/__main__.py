@@ -30,7 +30,7 @@ from .random_scenes import place_of
 
 Row = dict[str, Any]
 
-LONGEST = 600.0
+LONGEST = 300.0
 """Longest time of a scene [s]."""
 VERDICTS = ("equal", "expected", "unexplained")
 

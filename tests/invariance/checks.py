@@ -9,8 +9,8 @@ import numpy as np
 import mjrock as mr
 from mjrock.geometry.poses import rotations
 from mjrock.problem.masonry.effects import laden
-from mjrock.problem.masonry.tilt import motions_of_tilt
 
+from .balance import is_stepwise, unbalanced, unbalanced_bodies
 from .quantities import Scene
 
 UNBALANCED = 1e-6
@@ -20,7 +20,7 @@ OVERLAP = 0.01
 """Largest share of a block that lies inside another without a warning [-]."""
 UNPAID = 0.01
 """Largest residual of the ledger over its largest part without a warning [-], as `solve_explicit` warns."""
-GIVEN_BACK = 1e-3
+GIVEN_BACK = 5e-3
 """Most that an account which can only take gives back, over the largest part of the ledger [-]."""
 BELOW = 0.15
 """How far a corner may lie below the ground, over the size of its block [-], where no overlap is warned of."""
@@ -42,11 +42,14 @@ def complaints(scene: Scene, answer: mr.Response, said: list[str]) -> Iterator[s
         yield f"overlap without a warning: {answer.stats['overlap']:.1%}"
     if answer.ledger is not None:
         yield from complaints_of_ledger(answer.ledger, said)
-    if scene["place"] != "wall":
-        if not overlapping and (depth := below_the_ground(scene, answer)) > BELOW:
-            yield f"below the ground: {depth:.1%} of a block"
-        if scene["solver"] == "explicit" and (missing := unbalanced(answer)) > UNBALANCED:
+    if scene["place"] != "wall" and not overlapping and (depth := below_the_ground(scene, answer)) > BELOW:
+        yield f"below the ground: {depth:.1%} of a block"
+    if scene["solver"] == "explicit" and is_stepwise(answer):
+        if (missing := unbalanced(answer)) > UNBALANCED:
             yield f"out of balance: {missing:.1e} of the weight"
+        alone = scene["place"] != "wall" and answer.stats["overlap"] == 0
+        if alone and (missing := unbalanced_bodies(answer)) > UNBALANCED:
+            yield f"a body is out of balance: {missing:.1e} of the weight"
 
 
 def finite(answer: mr.Response) -> bool:
@@ -93,31 +96,3 @@ def below_the_ground(scene: Scene, answer: mr.Response) -> float:
         depth = high[-1] - placed[..., -1].min(axis=1)
         most = max(most, float(np.where(above, depth, 0.0).max()) / block.size)
     return most
-
-
-def unbalanced(answer: mr.Response) -> float:
-    """Largest force missing in the balance of all bodies over the samples but the first and the last [-].
-
-    Mass times the change of the velocity in a step is the sum of the reactions, the constant forces, the weight and
-    what the ground's acceleration brings. The samples are steps of one length; where they are not, the answer is zero.
-    """
-    case, d, t = answer.case, 3 if answer.in_space else 2, answer.t
-    masonry, h = case.masonry, answer.stats["timestep"]
-    if len(t) < 4 or np.abs(np.diff(t) - h).max() > 1e-9 * h + 1e-15:
-        return 0.0
-    mass = laden(masonry, case.effects)[0][list(masonry.free)]
-    place = answer.pose[:, :, :d]
-    change = np.einsum("b,nbd->nd", mass, place[2:] - 2 * place[1:-1] + place[:-2]) / h**2
-    force = sum(answer.reactions.values())[1:-1].copy()
-    for effect in case.passive:
-        if effect.force_vector is not None:
-            force += np.array(effect.force_vector)[[0, 2] if d == 2 else [0, 1, 2]]
-    force[:, -1] -= mr.GRAVITY * mass.sum()
-    turning = motions_of_tilt(case.tilt, case.duration) if case.tilt else ()
-    shaken = dict(zip(("motion", "vertical"), turning, strict=False))
-    for name, axis in (("motion", 0), ("transverse", 1), ("vertical", d - 1)):
-        motion = shaken.get(name, getattr(case, name))
-        if motion is not None:
-            force[:, axis] -= mass.sum() * (motion.velocity(t[1:-1] + 0.5 * h) - motion.velocity(t[1:-1] - 0.5 * h)) / h
-    scale = mr.GRAVITY * mass.sum() + max(float(np.abs(force).max()) for force in answer.reactions.values())
-    return float(np.abs(force - change).max()) / scale

@@ -21,6 +21,8 @@ Outline = np.ndarray
 """Corners x, z of a convex part [m], shape (n, 2)."""
 PLACES = ("plane", "space", "wall", "plane", "space")
 """Where scenes are, in turn."""
+LENGTH = 0.3
+"""Length of blocks of the plane, over the size of the scene [-]. As prisms in space they stand."""
 DENSITY = 2000.0
 """Of most blocks [kg/m3]."""
 
@@ -44,11 +46,13 @@ def draw(seed: int) -> Scene:
     if place == "space":
         units = [in_space(rng, unit, size) for unit in units]
     loose = kind in ("rain", "hulls", "pile")
-    scene |= {"kind": kind, "units": [finished(rng, i, unit) for i, unit in enumerate(units)]}
-    scene |= joints(rng, size, loose=loose) | actions(rng, scene, settled=not loose and rng.random() < 0.8)
+    scene |= {"kind": kind, "units": [finished(rng, i, unit, LENGTH * size) for i, unit in enumerate(units)]}
+    scene |= joints(rng, size, loose=loose)
+    stands = STANDS.get(kind, 0.0) if scene["friction"] or kind == "stack" else 0.0
+    scene |= actions(rng, scene, settled=bool(rng.random() < stands))
     scene["devices"] = devices(rng, scene)
     beyond_the_engine = scene["bond"] or scene["supports"] or any(each["kind"] == "jack" for each in scene["devices"])
-    if kind in STACKED and scene["settled"] and not beyond_the_engine and rng.random() < 0.3:
+    if scene["settled"] and not beyond_the_engine and rng.random() < 0.3:
         scene["solver"] = "MuJoCo"
     return scene
 
@@ -250,8 +254,8 @@ def hull(points: Outline) -> Outline:
     return np.array(half(ordered) + half(ordered[::-1]))
 
 
-STACKED = ("stack", "bond", "arch", "voronoi", "lintel")
-"""Kinds whose blocks all stand on joints."""
+STANDS = {"stack": 0.9, "bond": 0.8, "arch": 0.8, "lintel": 0.9, "voronoi": 0.3, "compound": 0.3}
+"""Share of the scenes that start at rest. Others are as drawn: many of them would not stand."""
 KINDS = {each.__name__: each for each in (stack, bond, arch, voronoi, lintel, pile, compound, rain)}
 
 
@@ -267,13 +271,13 @@ def in_space(rng: Rng, flat: Scene, size: float) -> Scene:
     return flat | {"parts": parts}
 
 
-def finished(rng: Rng, number: int, drawn: Scene) -> Scene:
+def finished(rng: Rng, number: int, drawn: Scene, length: float) -> Scene:
     """A unit as a scene has it."""
     return {
         "name": f"{'fixed' if drawn['fixed'] else 'block'}_{number}",
         "parts": [{"corners": part} for part in drawn["parts"]],
         "density": float(rng.choice([DENSITY, rng.uniform(500, 4000)])),
-        "length": 1.0,
+        "length": length,
         "fixed": drawn["fixed"],
     }
 
@@ -317,7 +321,7 @@ def mortar(rng: Rng, size: float, k: float, friction: float) -> Scene:
     if rng.random() < 0.4:
         crushing = strength * rng.uniform(5, 20)
         bond |= {"crushing": crushing, "crushing_energy": crushing**2 / k * log_uniform(rng, 2, 50)}
-        bond["hardening"] = perhaps(rng, 0.5, 0.2 * bond["crushing_energy"] / crushing)
+        bond["hardening"] = perhaps(rng, 0.5, min(0.2 * bond["crushing_energy"] / crushing, 0.02))
     return bond
 
 
@@ -354,6 +358,13 @@ def actions(rng: Rng, scene: Scene, *, settled: bool) -> Scene:
     return made
 
 
+def to_another(rng: Rng, scene: Scene, device: Scene) -> Scene:
+    """Where a device ends that is fixed to another block."""
+    other = scene["units"][rng.integers(len(scene["units"]))]
+    reach = other["parts"][0]["corners"].mean(axis=0) - device["at"]
+    return {} if other["name"] == device["block"] else {"reach": reach, "to": other["name"]}
+
+
 def devices(rng: Rng, scene: Scene) -> list[Scene]:
     """At most two devices, of which one may be a jack."""
     size, d = scene["size"], 2 if scene["place"] == "plane" else 3
@@ -362,7 +373,9 @@ def devices(rng: Rng, scene: Scene) -> list[Scene]:
     for _ in range(rng.choice([0, 0, 1, 1, 2])):
         held = free[rng.integers(len(free))]
         corners = held["parts"][0]["corners"]
-        weight = held["density"] * mr.GRAVITY * float(np.prod(np.ptp(corners, axis=0))) * (1.0 if d == 2 else 1)
+        weight = (
+            held["density"] * mr.GRAVITY * float(np.prod(np.ptp(corners, axis=0))) * (held["length"] if d == 2 else 1)
+        )
         stiffness, time = weight / size * log_uniform(rng, 3, 300), math.sqrt(size / mr.GRAVITY)
         way = np.eye(d)[0] if d == 2 or rng.random() < 0.5 else np.eye(d)[1]
         push = rng.normal(size=d) * np.append(np.ones(d - 1), 0.2)
@@ -401,5 +414,9 @@ def devices(rng: Rng, scene: Scene) -> list[Scene]:
                 device["direction"] = np.sign(push[0]) * np.eye(d)[0]
             if device["guided"]:
                 scene["kick"] = None
-        made.append({"block": held["name"], "at": corners.mean(axis=0), "reach": -size * way} | device)
+        device = {"block": held["name"], "at": corners.mean(axis=0), "reach": -size * way} | device
+        if d == 3 and rng.random() < 0.3:
+            made.append(device | to_another(rng, scene, device))
+        else:
+            made.append(device)
     return made

@@ -123,6 +123,8 @@ def effect_of(masonry: mr.Masonry, device: Scene) -> Any:
         place["height"] = at[1]
     if device["kind"] in LINKS:
         anchor = {"anchor": at + device["reach"]} if masonry.in_space else {"length": -device["reach"][0]}
+        if "to" in device:
+            anchor["anchor_block"] = device["to"]
         return LINKS[device["kind"]](**place, **anchor, **of_link(device))
     if device["kind"] == "thrust":
         force = device["force"]

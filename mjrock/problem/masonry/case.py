@@ -119,6 +119,9 @@ class MasonryCase(Carrying):
             require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
             effect = numbered(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
+            if effect.block is None:
+                require_pushing(f"effects[{i}]", effect, self.masonry)
+                continue
             require_whole(f"effects[{i}], block", effect.block, 0, len(self.masonry.blocks) - 1)
             block = self.masonry.blocks[effect.block]
             name = f"effects[{i}] on {self.masonry.names[effect.block]}"
@@ -150,6 +153,8 @@ class MasonryCase(Carrying):
         d = 3 if self.masonry.in_space else 2
         held = np.zeros((len(self.masonry.free), 3 * d - 3), dtype=bool)
         for actuator in self.actuators.values():
+            if not any(actuator.guide):
+                continue  # it may drive all blocks
             body = self.masonry.free.index(actuator.block)
             held[body, d - 1] |= actuator.guide.rising
             held[body, d:] |= actuator.guide.turning

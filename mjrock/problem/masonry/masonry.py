@@ -99,7 +99,8 @@ class Masonry:
             corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint of n
             lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with 9. In
             space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint with a
-            bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I.
+            bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I. A joint that has slid
+            keeps its lines and k_n, on the part of its faces that still lies over each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
