@@ -281,12 +281,6 @@ EQUIVALENT = {
     "friction.py: SETTLED = 0.002": "how near the impulses come, within what tests allow",
     "friction.py: STRIDE = 6": "another order of the lines ends at the same impulses",
     "friction.py: HELD = 2e-09": "any small number serves to divide by",
-    **{
-        f"solids.py: edges = np.concatenate([across[1:], unlike_ways(normals[:, ::-1] {change})])": (
-            "it divides by -1, or doubles what is zero in the plane"
-        )
-        for change in ("/ (1.0, 1.0, -1.0)", "* (1.0, 2.0, -1.0)")
-    },
     "touches.py: if line.push <= 0:": "a line that does not push has nothing that is still to act",
     "touches.py: met: float = gap / rate if line.depth == 0 and h * rate <= gap else h": (
         "a line that met its face a step ago was closed for the step, in both ways"
@@ -308,14 +302,14 @@ EQUIVALENT = {
     "looking.py: serve = max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 2e-09)": (
         "any small speed serves to divide by"
     ),
-    "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * FALL + NEAR * size)": (
+    "looking.py: soon[i] = found.gap[i] <= SURE * (speed * until + 2 * fallen(look) + NEAR * size)": (
         "no gap is the bound to the last bit"
     ),
     **{
         f"looking.py: {line}": "no time is the bound to the last bit"
         for line in (
-            "stale = (moved and due <= EARLY) or speed * due > kept",
-            "seen.due[block] = due if due > EARLY else LOOK",
+            "stale = (moved and due <= EARLY * look) or speed * due > kept",
+            "seen.due[block] = due if due > EARLY * look else look",
         )
     },
     **{

@@ -58,11 +58,11 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
     """The contacts of a scene.
 
     Friction of a base that holds is a number that holds it, and no law of sliding. A joint that bears weight, and whose
-    dashpot is weaker than the stiffest vibration, has it centred in long steps too where the scene asks for that.
+    dashpot is weaker than the stiffest vibration, has it centred in long steps too.
     """
     weight = inverse_weights(scene)
     held = method.held_masses * scene.freedom.translations / (3 * weight)
-    mild = scene.limits.damped_joints & (scene.bears > 0) & (scene.contacts.c * weight < scene.highest_frequency)
+    mild = (scene.bears > 0) & (scene.contacts.c * weight < scene.highest_frequency)
     return Points(
         places=scene.places,
         law=ContactLaw(scene.contacts.k, scene.contacts.c, scene.contacts.friction),

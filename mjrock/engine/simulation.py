@@ -11,7 +11,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
-from ..problem.wall.plausible import warn_of_low_stop
+from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
@@ -29,11 +29,23 @@ from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
 from .run import EngineRun, explained, sound_timestep
-from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_sheared, warn_if_slid, warn_of_gain
+from .run_warnings import (
+    require_still,
+    warn_if_coarse,
+    warn_if_lifted,
+    warn_if_sheared,
+    warn_if_slid,
+    warn_of_gain,
+    warn_of_masonry,
+)
 from .stepping import fitted_steps, fixed_steps
 
 Asked = tuple[Case | MasonryCase, Contacts | None]
 """A case and its contacts; those of masonry are its own."""
+ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
+"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground. Rocking under a record
+multiplies an error of its first impacts, two-sided by some 10 in the median and by more than 100 in one of ten
+(`scripts/measure/records_accuracy.py`)."""
 SPACING = 1e-3
 """Distance of samples between fitted steps, where none is asked for [s]."""
 
@@ -128,7 +140,7 @@ def simulate(
     contacts: Contacts | None = None,
     timestep: float | None = None,
     *,
-    accuracy: float = 1e-3,
+    accuracy: float | None = None,
     newmark_beta: float = 0.25,
     coulomb: bool | None = None,
     output_step: float | None = None,
@@ -143,8 +155,10 @@ def simulate(
         case: the wall, its release, its sides; or masonry and what moves it. Masonry settles under its weight first.
         contacts: the interfaces of the wall; masonry has its own joints.
         timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.engine.stepping`.
-        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1. A run in
-            which energy appears from nowhere is discarded and repeated with a tenth of it, twice at most.
+        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy from one impact to the next
+            [-], 1e-8 to 0.1. None stands for 1e-3, and for 1e-4 for a wall on moving ground, whose rocking multiplies
+            what an impact errs by. A run in which energy appears from nowhere is discarded and repeated with a tenth of
+            it, twice at most.
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.solref`.
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
@@ -169,8 +183,9 @@ def simulate(
 
     Warns:
         UserWarning: if a fixed step is too long to resolve the contacts, if explicit steps would follow masonry of more
-            than eight blocks in a fraction of the time, or if a tie without an `ultimate` was drawn out by more than a
-            bar or an anchor follows.
+            than eight blocks in a fraction of the time, if energy appears from nowhere after blocks of masonry fell, if
+            a ledger does not close, or if a tie without an `ultimate` was drawn out by more than a bar or an anchor
+            follows.
 
     Examples:
         >>> answer = mr.simulate(case, contacts)
@@ -179,12 +194,16 @@ def simulate(
     """
     given, watch = locals().copy(), Stopwatch()
     require_case(case, contacts)
+    accuracy = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
     if isinstance(case, MasonryCase):
         require_still(case)
         warn_if_sheared(case.masonry)
-    elif contacts is not None and contacts.base.friction is None:
-        warn_of_low_stop(case)
+    else:
+        if contacts is not None and contacts.base.friction is None:
+            warn_of_low_stop(case)
+        if start is None:
+            warn_if_still(case, forces=forces)
     if options.timestep is not None:
         require_unbreakable(case)
     if forces:
@@ -211,10 +230,17 @@ def simulate(
         if contacts.base.friction is None:
             warn_if_slid(run, case.block.half_base)
         warn_of_gain(response, run, case, options.remedy)
+    else:
+        warn_of_masonry(response, run, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     return response
+
+
+def default_accuracy(case: Case | MasonryCase) -> float:
+    """What fitted steps aim at where nothing else is asked for [-]."""
+    return ACCURACY_SHAKEN if isinstance(case, Case) and case.shaken else ACCURACY
 
 
 def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:

@@ -14,6 +14,7 @@ from ..patience import first_answer
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
+from ..problem.wall.plausible import warn_if_still
 from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, describe
@@ -76,6 +77,7 @@ def solve_analytical(
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warnings.warn(unlike, Implausible, stacklevel=2)
+    warn_if_still(case)
     watch = Stopwatch()
     with first_answer(solve_analytical, case=case, e=e, rtol=rtol, output_step=output_step, rest=rest):
         motion = _rocking(case, e, rtol, rest)
