@@ -167,7 +167,7 @@ class Programme(NamedTuple):
     def pulled(self) -> int:
         """Where the pulls of the ties begin in x."""
         limited = self.matrix.shape[0] - self.unknowns - len(self.leader)
-        return self.matrix.shape[1] - self.ties - limited
+        return int(self.matrix.shape[1] - self.ties - limited)
 
     def on_lines(self, masonry: Masonry, x: Array) -> Array:
         """Forces x of a state as those of the contact lines, over the weight of all blocks, shape (m, d)."""
