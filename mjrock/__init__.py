@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from .problem.masonry.actuator import Actuator
     from .problem.masonry.bond import BONDS, Bond
     from .problem.masonry.case import MasonryCase
-    from .problem.masonry.collapse import Collapse, collapse_multiplier
+    from .problem.masonry.collapse import Collapse
     from .problem.masonry.compound import Compound
     from .problem.masonry.joints import Joint
     from .problem.masonry.joints_in_space import SpaceJoint
@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from .problem.wall.effects import AddedMass, Load, SideStop, Thrust
     from .problem.wall.friction_damper import FrictionDamper
     from .problem.wall.section import Gable, Opening
-    from .problem.wall.tie import Tie
+    from .problem.wall.tie import Tie, strengths_of_bar
     from .quantities import GRAVITY, Implausible
     from .reference.compliant import solve_compliant
     from .reporting.page import report
@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from .study.fragility import Fragility, fit_fragility
     from .study.grid import Grid
     from .study.ida import ida, overturning_intensity
+    from .study.limit_analysis import collapse_multiplier
     from .study.masonry_by_matching import matched_masonry
     from .study.mechanism import MechanismCheck, mechanism_check
     from .study.push import Push, push
@@ -109,7 +110,7 @@ __all__ = [
     "mjcf_of", "overturning_intensity", "paired_ratio", "push", "pushover", "records_in", "reference_frequency",
     "report", "response_spectrum", "results", "rigid_impact", "rocking_spectrum", "scaled_to_sa", "scaled_to_spectrum",
     "scaled_together", "scene_of", "sensitivity", "simulate", "solve_analytical", "solve_compliant", "solve_explicit",
-    "stiffness_range", "wall_mjcf", "wall_scene", "wall_stiffness",
+    "stiffness_range", "strengths_of_bar", "wall_mjcf", "wall_scene", "wall_stiffness",
 ]  # fmt: skip
 
 IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (.+)$", re.MULTILINE)

@@ -76,9 +76,11 @@ class CoulombFriction:
             The numbers of the explicit pairs that slide in the step, also as `.sliding`.
 
         Raises:
+            TypeError: for what is no `MjData`.
             ValueError: for another `MjData` than that of the calls since `release`, or if something else has changed
                 `pair_dim` of the model since.
         """
+        require_kind("data", data, mujoco.MjData)
         if self._data is not None and data is not self._data:
             raise ValueError(
                 "data is another MjData than that of the calls before, and the model holds what slides in that one; "
@@ -102,7 +104,8 @@ class CoulombFriction:
 
     def release(self, data: mujoco.MjData | None = None) -> None:
         """Give every contact its friction row back, and clear the friction of the last step from `qfrc_applied` of its
-        `MjData`, if that is given. The next call may then have another."""
+        `MjData`, if that is given. The next call may then have another. TypeError for what is no `MjData`."""
+        require_kind("data", data, mujoco.MjData, type(None))
         self.model.pair_dim[:] = self.dimensions
         self.sliding, self._data, self._now = (), None, self.dimensions
         if data is not None:

@@ -14,13 +14,14 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
 from ..problem.wall.effect import LinkLaw
 from ..quantities import Array
+from ..scene.checks import GROUND
 from ..scene.ground import Ground
 from ..scene.parts import Links
 from ..scene.scene import Scene
 from .faces import edges_of, margins, outlines_of_joints
 from .rows import Rows, joined, kinds, rows
 from .system import Supports, System
-from .turning import rotations, start_turning
+from .turning import is_flat, rotations, start_turning
 
 
 def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
@@ -33,10 +34,9 @@ def system_of(scene: Scene, masonry: Masonry | None = None) -> System:
     lines, edges = lines_of(scene), rows(kind.edge, 0)
     if masonry is not None:
         edges = add_joints(lines, scene, masonry)
-    ways = rows(kind.way, (d - 1) * len(lines) if np.isinf(lines["k_s"]).any() else 0)
     acting = *links_of(scene), rows(kind.link, 0), Ground.of(None), moving((), d), moving((), 1)
-    system = System(scene.freedom.axes, bodies, lines, edges, ways, rows(kind.bond, 0), *acting)
-    return started(system, scene.potential.unmoved.reshape(n, -1))
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), rows(kind.bond, 0), *acting)
+    return started(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
 
 
 def lines_of(scene: Scene) -> Rows:
@@ -137,13 +137,18 @@ def moving(histories: Sequence[tuple[Sequence[float], Array]], d: int) -> Suppor
 
 
 def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequence[Actuator]) -> System:
-    """The system with actuators, which count displacements from the pose of rest, and with the blocks they guide."""
+    """The system with actuators, which count displacements from the pose of rest, and with the blocks they guide.
+
+    One that drives all blocks has no body."""
     if not actuators:
         return system
     number, d, bodies = free_numbers(masonry.blocks), len(system.axes), system.bodies
-    held, way = number[[each.block for each in actuators]], np.array([each.way for each in actuators])
-    at = np.array([each.at for each in actuators]) - scene.bodies.rest[held]
+    held = np.array([GROUND if each.block is None else number[each.block] for each in actuators])
+    way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
+    at = np.array([each.way if each.at is None else each.at for each in actuators])
+    at = np.where(single, at - scene.bodies.rest[held], 0.0)
     change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
+    mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
     table = rows(
         kinds(d).link,
         len(actuators),
@@ -154,17 +159,25 @@ def driven_by(system: System, scene: Scene, masonry: Masonry, actuators: Sequenc
         between=way,
         k=np.array([each.stiffness for each in actuators]),
         c=np.array([each.damping for each in actuators]),
-        reach=((bodies["place"][held] + change) * way).sum(axis=1),
+        reach=(np.where(single, bodies["place"][held] + change, mean) * way).sum(axis=1),
     )
     for body, each in zip(held, actuators, strict=True):
         if each.guide.turning:
             bodies["inverse_inertia"][body] = 0.0
-            bodies["spin"][body] = 0.0
         if each.guide.rising:
             bodies["inverse_mass"][body, d - 1] = 0.0
-            bodies["velocity"][body, d - 1] = 0.0
     histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
     return system._replace(actuators=table, drives=moving(histories, 1))
+
+
+def guided_as(bodies: Rows, others: Rows) -> None:
+    """Give moving bodies the guides of others. What a guide holds, or has held, has no velocity."""
+    held = [~some["inverse_inertia"].any(axis=(1, 2)) for some in (bodies, others)]
+    for name in ("inverse_mass", "inverse_inertia"):
+        bodies[name] = others[name]
+    bodies["velocity"][bodies["inverse_mass"] == 0] = 0.0
+    for name in ("spin",) if is_flat(bodies) else ("spin", "momentum"):
+        bodies[name][held[0] | held[1]] = 0.0
 
 
 def copied(system: System) -> System:

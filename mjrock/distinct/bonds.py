@@ -58,6 +58,7 @@ def bonded(system: System, masonry: Masonry, joint: Integers) -> System:
         for name in ("k", "c", "k_s", "c_s", "friction", "margin", "grip"):
             bonds[name][which] = lines[name][which]
         bonds["tension"][which], bonds["cohesion"][which] = bond.tension * area[which], bond.cohesion * area[which]
+        bonds["share"][which] = area[which] / area[which].sum()
         bonds["residual"][which] = masonry.residual_friction[i]
         bonds["falls"][which] = masonry.joint_friction[i] - masonry.residual_friction[i]
         bonds["torn"][which] = bond.tension / bond.opening_energy
@@ -141,7 +142,8 @@ def crush_line(books: Books, line: Row, bond: Row, gap: float, axes: tuple[int, 
 def slide(
     bodies: Rows, line: Row, bond: Row, normal: Vector, slip: Vector, push: float, h: float
 ) -> tuple[Vector, float]:
-    """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and what cohesion took [J]."""
+    """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and what all its cohesion takes
+    [J]. Where crushing limits the force there is not as much."""
     bond.friction = bond.residual + bond.falls * bond.left
     limit = bonded_limit(bond, push)
     trial = stretched(bodies, line.face, bond.grip, normal, scaled(h, slip))
@@ -177,10 +179,13 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
     push = pressed - bond.secant * gap
     books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
     last = spin_components(bond.dragged, axes)
+    held = sheared(bond, axes)
     drag, taken = slide(bodies, line, bond, meet.normal, slip, push + normal_force(line, gap, rate), h)
     mean = scaled(0.5 * h, plus(last, drag))
+    done = -dot(mean, slip)
+    taken = min(taken, max(done + held - sheared(bond, axes), 0.0))  # no more than there is
     books.bonds[1] += taken
-    books.totals[0].friction -= dot(mean, slip) + taken
+    books.totals[0].friction += done - taken
     if line.support >= 0:
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
         books.totals[0].ground += carried(line, supports, work)
@@ -196,12 +201,19 @@ def hold(system: System, books: Books, line: Row, bond: Row, h: float, axes: tup
 
 
 @inlined
+def sheared(bond: Row, axes: tuple[int, ...]) -> float:
+    """Energy in the spring of a bond along the face [J]."""
+    grip = spin_components(bond.grip, axes)
+    energy: float = stored_along(bond, dot(grip, grip))
+    return energy
+
+
+@inlined
 def bonded_energy(system: System, axes: tuple[int, ...]) -> tuple[float, float]:
     """Energy in the springs of all bonds along normals and along faces [J]."""
     along_normals, along_faces = 0.0, 0.0
     for p in range(len(system.bonds)):
         bond = system.bonds[p]
-        grip = spin_components(bond.grip, axes)
         along_normals += 0.5 * bond.secant * bond.gap * bond.gap
-        along_faces += stored_along(bond, dot(grip, grip))
+        along_faces += sheared(bond, axes)
     return along_normals, along_faces

@@ -62,15 +62,17 @@ def face_towards(solids: Solids, block: int, way: Vector) -> int:
 
 @inlined
 def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, room: Array) -> int:
-    """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left."""
+    """Cut a polygon to where it reaches no further along a direction. Returns how many corners are left.
+
+    A convex one gets one corner more at most. One that rounding has dented gets no more than there is room for."""
     left = 0
     for i in range(count):
         a, b = vector(polygon, i, way), vector(polygon, (i + 1) % count, way)
         beyond, next_beyond = dot(way, a) - reach, dot(way, b) - reach
-        if beyond <= slack:
+        if beyond <= slack and left < len(room):
             put(room[left], a)
             left += 1
-        if (beyond <= slack) != (next_beyond <= slack):
+        if (beyond <= slack) != (next_beyond <= slack) and left < len(room):
             share = min(max(beyond / (beyond - next_beyond), 0.0), 1.0)
             put(room[left], plus(a, scaled(share, minus(b, a))))
             left += 1
@@ -111,6 +113,15 @@ def parted(polygon: Array, count: int) -> int:
             put(polygon[left], at)
             left += 1
     return left
+
+
+@inlined
+def turn_at(polygon: Array, count: int, i: int) -> float:
+    """The angle by which the outline of a polygon turns at a corner, over a whole turn."""
+    at = vector(polygon, i, SPACE.axes)
+    before = minus(at, vector(polygon, i - 1 if i else count - 1, SPACE.axes))
+    after = minus(vector(polygon, (i + 1) % count, SPACE.axes), at)
+    return math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
 
 
 @inlined
@@ -202,13 +213,10 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Array, count
         return count
     area = area_of(room, corners)
     for i in range(corners):
-        at = vector(room, i, SPACE.axes)
-        before = minus(at, vector(room, i - 1 if i else corners - 1, SPACE.axes))
-        after = minus(vector(room, (i + 1) % corners, SPACE.axes), at)
-        share = math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
+        share = turn_at(room, corners, i)
         if share > SAME:
             if count < len(table):
-                meet(solids, faces, blocks, at, table, count)
+                meet(solids, faces, blocks, vector(room, i, SPACE.axes), table, count)
                 table[count, 9], table[count, 10] = share, area
             count += 1
     return count

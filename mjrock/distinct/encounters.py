@@ -5,11 +5,13 @@ slid by so much, it is handed over for good, with its friction, to contacts that
 that have no common joint are looked at once one of them has moved nearly as far as the other was away at rest. A find
 gives each pair its places, with the law of `pair_law`. Where the step asks for softer ones, they stay soft as long as
 they press: from find to find stiff and soft in turn, blocks would sink into each other. Until the next find each place
-moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked.
+moves with its body, and its normal with the other. What the springs of a find hold less than those before it is booked,
+along a face what they hold more: what they hold less friction takes.
 """
 
 from __future__ import annotations
 
+import math
 from copy import copy
 from dataclasses import dataclass
 
@@ -22,8 +24,6 @@ from .bonds import holding, released
 from .finder import Finder, Found
 from .handover import Blocks, Lines, Pairs, hand_over
 from .looking import (
-    FALL,
-    LOOK,
     NEAR,
     PASSED,
     SURE,
@@ -31,14 +31,17 @@ from .looking import (
     Reach,
     Seen,
     Wear,
+    fallen,
     held,
+    longest_time,
     take_motion,
     wait,
     watch,
     wears,
 )
+from .loose import longest_step_of_loose
 from .pair_law import SHARED, PairLaw, least_among, pair_number
-from .rows import chosen, joined, rows
+from .rows import chosen, joined, rows, unsound
 from .softening import Sides, shares_within
 from .solids import Poses
 from .system import Books, System
@@ -50,6 +53,11 @@ STABLE = 0.5
 blocks that have not moved, act on it besides."""
 LEFT = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over [-]."""
+ROLLED = 0.5
+"""Turn of a joint about its end, over the angle to the nearest side beside it, beyond which it is handed over too [-].
+So a polygon of many sides rolls on to the next one."""
+FLUSH = 0.9999
+"""Cosine of the angle of two sides of a block from which on they are one plane [-]."""
 TOWARDS = 0.4
 """Way of a block over its distance from the nearest one without a common joint, from which on it is looked at [-]."""
 
@@ -65,6 +73,7 @@ class Met:
         slack: what presses nothing of the overlap of each line [m], shape (lines,).
         share: of its law that each line has left where the step asked for softer ones [-], shape (lines,).
         found: moves of both blocks when each line was found, shape (lines,).
+        softest: the least of such shares so far of lines of each block that pressed [-], shape (blocks,).
         since: time from the last look to the next [s].
     """
 
@@ -74,6 +83,7 @@ class Met:
     slack: Array
     share: Array
     found: Integers
+    softest: Array
     since: float
 
 
@@ -84,6 +94,8 @@ class Encounters:
         masonry: the masonry.
         system: its bodies where they stand, and the lines of its joints.
         joint: number of the joint of each line. The account of the encounters comes after those of the joints.
+
+    `longest` is the longest stable step of blocks without a joint on the springs that they have [s].
     """
 
     def __init__(self, masonry: Masonry, system: System, joint: Integers) -> None:
@@ -94,41 +106,45 @@ class Encounters:
         still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
         self.blocks = Blocks(still, self.sizes, np.array(masonry.free), body, fixed, np.full(self.count, -1))
-        self.finder = Finder(blocks, drawn)
+        self.finder = Finder(blocks, drawn, masonry.points)
         self.law = PairLaw.of_joints(masonry, system.lines, joint)
+        self.longest = longest_step_of_loose(masonry, self.law, system)
         below, above = np.array([(each.below, each.above) for each in masonry.joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left = np.full(len(self.law.jointed), np.inf)
-        np.minimum.at(left, of, [LEFT * each.width for each in masonry.joints])
+        np.minimum.at(left, of, _serving(masonry))
         self.jointed = _jointed(masonry, self.finder, of)
+        self.finder.jointed = np.unique(self.jointed[1])
         self.kind, start = system.lines.dtype, self.motion(system).poses
-        self.reach = Reach(start, self._limits(start), STAYED * self.sizes)
+        look = longest_time(self.sizes[self.blocks.free])
+        self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
         self.wear = Wear(of[joint], np.zeros(len(left)), np.zeros(len(left)), left)
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
-        """The same at the start of a run.
+        """The same at the start of a run, with room of its own to write into.
 
         Args:
             supports: names of the fixed blocks that move, in the order of the supports.
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.met = self._nothing_met()
+        fresh.finder, wear = self.finder.apart(), self.wear
+        fresh.wear, fresh.met = wear._replace(slip=wear.slip.copy(), gap=wear.gap.copy()), self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        return Met(Seen.nothing(self.reach.start), intact, none, np.zeros(0), np.zeros(0), none, 0.0)
+        seen, zeros = Seen.nothing(self.reach.start, self.reach.look), np.zeros(0)
+        return Met(seen, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:
-        """How far each block may move from where it stands before it is looked at [m], shape (blocks,)."""
+        """How far each block may move from where it stands before it is looked at [m], shape (blocks,). Both blocks of
+        a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
-        found = self.finder.found(start, 0.5 * self.sizes, every, jointed)
-        apart, limits = (
-            found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other]),
-            self.sizes.copy(),
-        )
+        found = self.finder.found(start, self.sizes, every, jointed)
+        apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        limits = TOWARDS * self.sizes
         for block in (found.face, found.other):
             np.minimum.at(limits, block, np.where(apart, TOWARDS * found.gap, PASSED * self.sizes[block]))
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
@@ -154,15 +170,16 @@ class Encounters:
             met.handed = met.handed | worn
             stays = self._moves_of(met.pair) == met.found
             intact = self.jointed[1][~met.handed[self.jointed[0]]]
-            reach = SURE * (seen.ahead + FALL + NEAR * self.sizes)
+            reach = SURE * (seen.ahead + fallen(self.reach.look) + NEAR * self.sizes)
             found = self.finder.found(motion.poses, reach, seen.stale, intact)
             soon = np.empty(len(found.gap), dtype=bool)
-            wait(found, motion, self.sizes, seen, soon)
+            wait(found, motion, self.sizes, seen, soon, self.reach.look)
+            soon &= found.share > 0
             of_gone = np.append(worn[self.wear.pairs], ~stays)
             if soon.any() or of_gone.any():
                 system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)
                 books = books.with_room(len(system.lines))
-        steps = max(1, int(seen.due[seen.watched].min(initial=LOOK) / h))
+        steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
         met.since = steps * h
         return system, books, steps
 
@@ -189,7 +206,7 @@ class Encounters:
             h: length of a step [s].
         """
         met, count = self.met, len(self.wear.pairs)
-        lines = np.asarray(system.lines)
+        lines, sheared = np.asarray(system.lines), in_shear(system)
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
         worn, stays = of_gone[:count], ~of_gone[count:]
         if len(system.bonds):
@@ -197,8 +214,8 @@ class Encounters:
         pair, which = np.append(self.law.jointed[self.wear.pairs], met.pair), np.flatnonzero(of_gone)
         which = which[np.argsort(pair[which], kind="stable")]
         slack, size = np.append(np.zeros(count), met.slack), len(number)
-        gone = Lines(chosen(lines, which), slack[which], np.empty(len(which)))
-        new = Lines(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size), np.empty(size))
+        gone = Lines.unwritten(chosen(lines, which), slack[which])
+        new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before = held(system, which, gone.depth)
         share = np.append(np.ones(count), met.share)[which]
         soft = (share < 1) & (gone.depth > 0)
@@ -209,6 +226,9 @@ class Encounters:
             new.rows[name] = share * column if name in SHARED else column
         blocks = self.blocks._replace(poses=poses)
         hand_over(new, found, gone, Pairs.belonging(number, pair[which]), blocks, system.axes)
+        for place in unsound(np.asarray(new.rows))[:1]:
+            one, other = (self.names[int(block[place])] for block in (found.face, found.other))
+            raise ArithmeticError(f"the contact of {one} and {other}")
         if worn.any():
             for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
                 joints[name][worn] = 0.0
@@ -216,12 +236,14 @@ class Encounters:
         met.pair, met.slack = np.append(met.pair[stays], number), np.append(met.slack[stays], new.slack)
         met.share = np.append(met.share[stays], share)
         met.found = np.append(met.found[stays], self._moves_of(number))
+        pressing = found.gap < 0
+        for block in (found.face[pressing], found.other[pressing]):
+            np.minimum.at(met.softest, block, share[pressing])
         lines = joined(joints, chosen(others, stays), np.asarray(new.rows))
-        ways = system.ways
-        if len(ways) and len(ways) < (len(system.axes) - 1) * len(lines):
-            ways = rows(ways.dtype, (len(system.axes) - 1) * len(lines))
-        system = system._replace(lines=lines, ways=ways)
-        books.ends[1] += before - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        system = system._replace(lines=lines).with_ways()
+        given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
+        books.totals[0].friction -= given
+        books.ends[1] += before + given - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
@@ -234,6 +256,31 @@ class Encounters:
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, found.normal)
         return shares_within(sides, law, system.bodies, h / STABLE)
+
+
+def in_shear(system: System) -> float:
+    """Energy in the shear springs of all lines and bonds [J]."""
+    energy = 0.0
+    for table in (system.lines, system.bonds):
+        sprung = np.asarray(table)[np.isfinite(table["k_s"])]
+        energy += 0.5 * float((sprung["k_s"] * (sprung["grip"].T ** 2).sum(axis=0)).sum())
+    return energy
+
+
+def _serving(masonry: Masonry) -> Array:
+    """Opening of the whole or slip of a part up to which each joint serves [m], shape (joints,).
+
+    Where a joint turns about its end, the other end slips by 1 less the cosine of the turn, times the width.
+    """
+    normals = [np.array([side.normal for side in block.sides]) for block in masonry.blocks]
+    serving = np.empty(len(masonry.joints))
+    for i, joint in enumerate(masonry.joints):
+        cosine = -1.0
+        for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            beside = normals[block] @ normals[block][side]
+            cosine = max(cosine, float(beside[beside < FLUSH].max(initial=-1.0)))
+        serving[i] = min(LEFT, 1 - math.cos(ROLLED * math.acos(cosine))) * joint.width
+    return serving
 
 
 def _jointed(masonry: Masonry, finder: Finder, of: Integers) -> tuple[Integers, Integers]:

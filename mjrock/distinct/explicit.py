@@ -9,6 +9,7 @@ import numpy as np
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
+from ..problem.wall.plausible import warn_if_still
 from ..quantities import require_flag, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
@@ -91,6 +92,8 @@ def solve_explicit(
         timestep = require_within("timestep", timestep, 1e-12, min(1.0, case.duration), "s")
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case)
+    if isinstance(case, Case) and start is None:
+        warn_if_still(case, forces=forces)
     setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
@@ -120,7 +123,7 @@ def solve_explicit(
     kept = slice(followed.samples)
     samples = samples.taken(kept).since_the_start()
     if isinstance(case, MasonryCase):
-        stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept])
+        stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
     run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from ..problem.masonry.compound import AnyBlock
 from ..problem.masonry.joints import each_with_each, numbered_parts
 from ..quantities import Array, Flags, Integers
 from .clipping import clip, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .grid import lay_out
 from .pair_law import pair_number
 from .solids import Poses, Solids, inside_of, solids_of
 
@@ -32,12 +34,17 @@ FLUSH = -0.7
 """Cosine of the angle between the normals of two faces up to which they meet as faces [-]."""
 SOUGHT = 0.06
 """How much deeper than along the best face two blocks may overlap along one that comes into question, over the outline
-of a face [-]: about a third of the width of a unit."""
+of a face [-]: about a third of the width of a unit in space."""
+LESS = 0.7
+"""Overlap at the places of a face that comes into question, over that of the best face, below which it is taken [-].
+Faces of two blocks that are nearly flush differ by the cosine of their angle, see `FLUSH`, and the best one stays."""
 LEAD = 1e-6
 """By how much the other block may be less outside of a face, over how much longer its outline is than that of another
 face, for it to be taken [-]. The corners of the smaller one then lie over it."""
 OF_EDGES = 0.25
 """Share of what a pair has that two edges take [-]: that of a corner of a rectangle."""
+NONE = np.zeros(0, dtype=np.int64)
+"""Numbers of no pairs."""
 
 
 class Found(NamedTuple):
@@ -48,7 +55,7 @@ class Found(NamedTuple):
         place: halfway between the two surfaces [m], shape (n, d).
         normal: unit vector out of the face, shape (n, d).
         gap: between the surfaces, negative for an overlap [m], shape (n,).
-        share: of what the pair has, shape (n,).
+        share: of what the pair has, zero where no face lies over the other, shape (n,).
         area: of the part of a face that lies over the other [m2], in the plane its length [m], zero for edges, (n,).
     """
 
@@ -75,6 +82,8 @@ class Near(NamedTuple):
         reach: of each solid [m], shape (solids,).
         watched, fixed: shape (solids,). One of two solids is watched, and one is free.
         skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
+        jointed: numbers of pairs of solids that had a joint, increasing.
+        cells: of the grid of a joint, along x and z and along y.
     """
 
     low: Array
@@ -85,6 +94,8 @@ class Near(NamedTuple):
     watched: Flags
     fixed: Flags
     skipped: Integers
+    jointed: Integers = NONE
+    cells: tuple[int, int] = (1, 1)
 
 
 class Finder:
@@ -93,11 +104,14 @@ class Finder:
     Args:
         blocks: the blocks.
         drawn: where their centroids are drawn [m], shape (blocks, d).
+        points: of the joints of masonry. `jointed` has the numbers of the pairs of solids that had one, increasing.
     """
 
-    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array) -> None:
+    def __init__(self, blocks: Sequence[AnyBlock], drawn: Array, points: int = 2) -> None:
         self.flat = drawn.shape[1] == 2
-        self._half = float(np.median([block.size for block in blocks]))  # of the length of a prism
+        self.jointed = NONE
+        self._cells = points - 1, 1 if self.flat else points - 1
+        self._half = min(block.size for block in blocks)  # of the length of a prism, which plays no part
         self.first, self.number = numbered_parts(blocks)
         self.owner = np.repeat(np.arange(len(blocks)), self.number)
         self._fixed = np.array([block.fixed for block in blocks])[self.owner]
@@ -105,9 +119,15 @@ class Finder:
         solids = solids_of(blocks, self._half)
         self.volumes = np.bincount(self.owner, weights=[solid.volume for solid in solids])
         inside = [flags for block in blocks for flags in inside_of(block)]
-        self.solids = Solids.about(solids, centroids, inside, self.owner)
+        self.solids = Solids.about(solids, centroids, inside, self.owner, (0, 2) if self.flat else SPACE.axes)
         most = int(np.diff(self.solids.first).max())
         self._table, self._room = np.empty((256, 11)), np.empty((4 * most + 4, 3))
+
+    def apart(self) -> Finder:
+        """The same with room of its own, which runs in two threads must not share."""
+        fresh = copy(self)
+        fresh._table, fresh._room = np.empty_like(self._table), np.empty_like(self._room)
+        return fresh
 
     def found(self, poses: Poses, reach: Array, watched: Flags, skipped: Integers) -> Found:
         """Where pairs of blocks of which one is watched are nearer than the sum of what they reach.
@@ -122,7 +142,8 @@ class Finder:
         low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
         low, high = low - reach[:, None], high + reach[:, None]
         axis = int(np.ptp(low, axis=0).argmax())
-        near = Near(low, high, np.argsort(low[:, axis]), axis, reach, watched, self._fixed, skipped)
+        order, pairs = np.argsort(low[:, axis]), (skipped, self.jointed)
+        near = Near(low, high, order, axis, reach, watched, self._fixed, *pairs, self._cells)
         while (count := find(solids, near, self._table, self._room)) > len(self._table):
             self._table = np.empty((2 * count, 11))
         table = self._table[:count]
@@ -187,10 +208,11 @@ def among(values: Integers, number: int) -> bool:
 
 @compiled
 def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
-    """Write the places of all pairs that are near, see `clipping.clip`.
+    """Write the places of all pairs that are near, see `clipping.clip`, those of faces in the grid of their joint where
+    they had one.
 
     Returns:
-        How many there are. Those for which there is no room are not written.
+        How many there are, or more than there is room for where there may be too many.
     """
     count, blocks = 0, len(near.order)
     for turn in range(blocks):
@@ -203,9 +225,11 @@ def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
                 continue
             if solids.owner[a] == solids.owner[b]:
                 continue
-            if are_apart(near, a, b) or among(near.skipped, min(a, b) * blocks + max(a, b)):
+            pair, number = (min(a, b), max(a, b)), min(a, b) * blocks + max(a, b)
+            if are_apart(near, a, b) or among(near.skipped, number):
                 continue
-            count = find_pair(solids, near.reach[a] + near.reach[b], (min(a, b), max(a, b)), table, count, room)
+            cells = near.cells if among(near.jointed, number) else (1, 1)
+            count = find_pair(solids, near.reach[a] + near.reach[b], pair, table, count, room, cells)
     return count
 
 
@@ -219,25 +243,53 @@ def are_apart(near: Near, a: int, b: int) -> bool:
 
 
 @inlined
-def find_pair(solids: Solids, reach: float, blocks: tuple[int, int], table: Array, count: int, room: Array) -> int:
-    """Write the places of a pair that is nearer than it reaches [m]. Returns how many places there are then."""
+def find_pair(
+    solids: Solids,
+    reach: float,
+    blocks: tuple[int, int],
+    table: Array,
+    count: int,
+    room: Array,
+    cells: tuple[int, int] = (1, 1),
+) -> int:
+    """Write the places of a pair that is nearer than it reaches [m], on faces in a grid of some cells. Returns how many
+    places there are then, or more than there is room for where there may be."""
     a, b = blocks
     face, apart = face_between(solids, a, b, reach)
     other_face, other_apart = (-1, -math.inf) if apart > reach else face_between(solids, b, a, reach)
     best = max(apart, other_apart)
     if best > reach or face < 0 or other_face < 0:
         return count
-    if other_face >= 0 and other_apart + LEAD * (extent(solids, other_face) - extent(solids, face)) > apart:
+    if count + len(room) > len(table):
+        return count + len(room)
+    if other_apart + LEAD * (solids.extent[other_face] - solids.extent[face]) > apart:
         face, blocks = other_face, (b, a)
     if best < 0:
-        least = best - SOUGHT * min(extent(solids, face), extent(solids, other_face))
+        least = best - SOUGHT * min(solids.extent[face], solids.extent[other_face])
         face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
         if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:
             way, across = across_edges(solids, a, b)
             if across > EDGES * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
-    return clip(solids, face, blocks, table, count, room)
+    if cells[0] > 1:
+        last = lay_out(solids, face, blocks, cells, table, count, room)
+    else:
+        last = clip(solids, face, blocks, table, count, room)
+    return last if last > count else pass_by(solids, face, blocks, best, table, count)
+
+
+@inlined
+def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Array, count: int) -> int:
+    """Write a corner of a face that another block is near and does not lie over, as two that come together at their
+    corners: a place without a share, so that it is known when to look again. Returns how many places there are then."""
+    corner = solids.first[face]
+    for i in range(corner, solids.first[face + 1]):
+        if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
+            corner = i
+    write_place(table, count, blocks, corner_of(solids, corner), normal_of(solids, face), gap)
+    table[count, 9], table[count, 10] = 0.0, 0.0
+    return count + 1
 
 
 @inlined
@@ -248,6 +300,7 @@ def shallowest(
     least gap of these places [m].
 
     A corner of the whole face may lie deep below the plane of another one, far from where the two lie over each other.
+    A face whose places are open, or leave out the deepest place of the first face, does not part the blocks.
 
     Args:
         solids: the blocks where they are.
@@ -255,25 +308,48 @@ def shallowest(
         least: how far the other block is outside of a face that comes into question [m].
         table, count, room: for places that are not kept, see `clipping.clip`.
     """
-    best, of_best = face, blocks
-    most = deepest(table, count, clip(solids, face, blocks, table, count, room))
+    first = deepest(table, count, clip(solids, face, blocks, table, count, room))
+    there, most, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
+    if there:
+        most, middle = table[first, 8], vector(table[:, 2:5], first, SPACE.axes)
+    common = there and lies_in(solids, blocks[0], middle) and lies_in(solids, blocks[1], middle)
+    best, of_best, taken = face, blocks, LESS * most
     for turn in range(2):
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
         for one in range(solids.face[block], solids.face[block + 1]):
             if one != face and not solids.inside[one] and outside(solids, one, other) > least:
-                gap = deepest(table, count, clip(solids, one, (block, other), table, count, room))
-                if gap > most:
-                    best, of_best, most = one, (block, other), gap
+                row = deepest(table, count, clip(solids, one, (block, other), table, count, room))
+                gap = table[row, 8] if row >= 0 else -math.inf
+                open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
+                if gap > taken and not open_or_beside:
+                    best, of_best, taken, most = one, (block, other), gap, gap
     return best, of_best, most
 
 
 @inlined
-def deepest(table: Array, first: int, last: int) -> float:
-    """The least gap of places [m]; of none and of those for which there is no room, minus infinity."""
-    least = math.inf
-    for i in range(first, min(last, len(table))):
-        least = min(least, table[i, 8])
-    return least if first < last <= len(table) else -math.inf
+def deepest(table: Array, first: int, last: int) -> int:
+    """Which of some places has the least gap, -1 for none."""
+    best = -1
+    for i in range(first, last):
+        if best < 0 or table[i, 8] < table[best, 8]:
+            best = i
+    return best
+
+
+@inlined
+def height(solids: Solids, face: int, at: Vector) -> float:
+    """Height of a place over the plane of a face [m]."""
+    above: float = dot(normal_of(solids, face), minus(at, corner_of(solids, solids.first[face])))
+    return above
+
+
+@inlined
+def lies_in(solids: Solids, block: int, at: Vector) -> bool:
+    """Whether a place lies inside a block."""
+    inside = True
+    for face in range(solids.face[block], solids.face[block + 1]):
+        inside = inside and height(solids, face, at) <= 0
+    return inside
 
 
 @inlined
@@ -281,15 +357,6 @@ def outside(solids: Solids, face: int, other: int) -> float:
     """How far a block is outside of a face of another one [m], negative for an overlap."""
     normal = normal_of(solids, face)
     return -dot(normal, corner_of(solids, solids.first[face])) - farthest(solids, other, scaled(-1.0, normal))
-
-
-@inlined
-def extent(solids: Solids, face: int) -> float:
-    """Length of the outline of a face [m]."""
-    length = 0.0
-    for i in range(solids.first[face], solids.first[face + 1]):
-        length += length_of(minus(next_corner(solids, face, i), corner_of(solids, i)))
-    return length
 
 
 @inlined

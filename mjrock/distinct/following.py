@@ -14,8 +14,10 @@ from tqdm import tqdm
 from ..quantities import Array
 from ..result.samples import intervals
 from ..scene.explicit_step import stepping_seconds
+from .encounters import Encounters
 from .loop import Clock, advance
 from .memory import Memory, remember
+from .rows import unsound
 from .setup import Setup
 from .system import Books, Samples, System
 
@@ -111,6 +113,10 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     """Make the steps, with a progress bar where they take more than some seconds.
 
     Ctrl-C is heard between two calls of the compiled steps. How many a call makes goes by how long the last took.
+
+    Raises:
+        RuntimeError: where a row is not finite at the start, or the motion of a block is not after a call. No compiled
+            loop gets such a row.
     """
     system, encounters, stop, memory = setup.system, setup.encounters, stepping.last + 1, setup.memory
     clock = Clock(
@@ -119,6 +125,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
     clock = clock._replace(lead=LEAD if setup.foresees(stepping.h) else 0.0)
     clock = clock._replace(drag=setup.drag, local=setup.local)
     look = 0
+    require_sound_rows(system)
     if memory is not None:
         clock, look = clock._replace(before=memory.before, pushed=memory.pushed), memory.look
     at_once, ended, memory = max(1, FIRST // max(1, len(system.lines))), False, None
@@ -129,7 +136,7 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
                 if encounters is not None:
                     memory = memory._replace(met=deepcopy(encounters.met), look=look - clock.step)
             if encounters is not None and clock.step == look:
-                system, books, steps = encounters.look_on(system, books, clock.h)
+                system, books, steps = looked_on(encounters, system, books, clock)
                 look = clock.step + steps
             begun = time.perf_counter()
             ahead = (look if encounters is not None else stop, clock.step + at_once)
@@ -139,7 +146,31 @@ def follow(setup: Setup, books: Books, samples: Samples, stepping: Stepping) -> 
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * HEARD / took)))
             bar.update((step - clock.step) * clock.h)
             clock = clock._replace(step=step, row=row)
+            for body in unsound(system.bodies)[:1].tolist():
+                raise breakdown(f"the motion of {setup.scene.bodies.names[body]}", step * clock.h)
     return Followed(system, clock.step, clock.row, None if ended else memory)
+
+
+def looked_on(encounters: Encounters, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
+    """A look at the encounters, see `Encounters.look_on`. What is not finite there ends the run."""
+    try:
+        return encounters.look_on(system, books, clock.h)
+    except ArithmeticError as error:
+        raise breakdown(str(error), clock.step * clock.h) from None
+
+
+def breakdown(what: str, t: float) -> RuntimeError:
+    """The error of a run whose numbers are finite no longer at a time [s]."""
+    return RuntimeError(f"{what} breaks down by t = {t:.4g} s: its numbers are not finite; take a shorter timestep")
+
+
+def require_sound_rows(system: System) -> None:
+    """Raise a RuntimeError that names the rows of a system in which a number is not finite."""
+    for name, table in system._asdict().items():
+        if isinstance(table, np.ndarray) and table.dtype.names and len(wrong := unsound(table)):
+            raise RuntimeError(
+                f"the {name} {wrong[:5].tolist()} of the explicit steps have numbers that are not finite"
+            )
 
 
 def warn_if_long(setup: Setup, stepping: Stepping) -> None:

@@ -40,6 +40,8 @@ def keep_burden(system: System, samples: Samples, row: int, axes: tuple[int, ...
     """Keep what weight, ground motion and links do to the blocks of actuators, before any contact acts on them."""
     guided = samples.guided[row]
     for i in range(len(guided)):
+        if system.actuators[i].body < 0:
+            continue
         body = system.bodies[system.actuators[i].body]
         put(guided[i], components(body.force, axes))
         put(guided[i][len(axes) :], spin_components(body.moment, axes))
@@ -56,7 +58,7 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
         line, bonded = system.lines[p], False
         if p < len(system.bonds):
             bonded = system.bonds[p].k > 0
-            samples.damage[row, line.group] += 1 - system.bonds[p].left
+            samples.damage[row, line.group] += system.bonds[p].share * (1 - system.bonds[p].left)
         if was_open(line) and not bonded:
             continue
         meet = where_friction_rubs(meeting(system, line, axes))
@@ -72,6 +74,8 @@ def keep_forces(system: System, samples: Samples, row: int, axes: tuple[int, ...
         if line.fixed >= 0:
             increase(held[line.fixed], force)
         for i in range(len(guided)):
+            if system.actuators[i].body < 0:
+                continue
             if system.actuators[i].body == line.body:
                 add_moment(guided[i], 1.0, meet.arm, force)
             elif system.actuators[i].body == line.face:

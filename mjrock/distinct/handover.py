@@ -33,11 +33,15 @@ from .rows import POINT, Row, Rows
 from .solids import Poses, changed
 
 BESIDE = 0.2
-"""Distance of a place from a line of its pair within which it is the same, over the size of the smaller block [-]."""
+"""Distance along the face of a place from a line of its pair within which it is the same, over the size of the smaller
+block [-]. Along the normal it may be as far as the blocks overlap."""
 ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
 REGAINED = 1.25
 """Largest factor by which a find raises what presses of the overlap of a place [-]."""
+HAIR = 1e-9
+"""Opening at which a place begins that nothing presses at, over its overlap [-]. So it is not rounding that decides
+whether it has touched."""
 AS_NEAR = 1 + 1e-6
 """Square of the distance of a place over that of the nearest one up to which it is as near [-]."""
 
@@ -63,11 +67,23 @@ class Blocks(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Lines of pairs, what presses nothing of the overlap of each [m], and what does [m], shape (n,) each."""
+    """Lines of pairs.
+
+    Args:
+        rows: their numbers.
+        slack, depth: what presses nothing of the overlap of each [m], and what does [m], shape (n,) each.
+        at: room for their points [m], shape (n, d).
+    """
 
     rows: Rows
     slack: Array
     depth: Array
+    at: Array
+
+    @classmethod
+    def unwritten(cls, table: Rows, slack: Array) -> Lines:
+        """Lines with room for the rest."""
+        return cls(table, slack, np.empty(len(table)), np.empty_like(table["at"]))
 
 
 class Pairs(NamedTuple):
@@ -141,29 +157,24 @@ def place_of(line: Row, both: int, blocks: Blocks, axes: tuple[int, ...]) -> Pla
 
 
 @inlined
-def square_between(line: Row, at: Vector, both: int, blocks: Blocks, axes: tuple[int, ...]) -> float:
-    """Square of the distance of a line from a place [m2], see `nearest`."""
-    off = minus(place_of(line, both, blocks, axes).at, at)
+def square_between(lines: Lines, j: int, at: Vector) -> float:
+    """Square of the distance of line j from a place [m2]."""
+    off = minus(vector(lines.at, j, at), at)
     square: float = dot(off, off)
     return square
 
 
 @inlined
-def nearest(
-    lines: Rows, ends: tuple[int, int], at: Vector, both: int, blocks: Blocks, axes: tuple[int, ...]
-) -> tuple[int, float]:
+def nearest(lines: Lines, ends: tuple[int, int], at: Vector) -> tuple[int, float]:
     """Which of the lines of a pair is nearest to a place, -1 where there is none, and its distance [m].
 
     Args:
-        lines, ends: lines, and where those of the pair begin and end.
+        lines, ends: lines with their points, and where those of the pair begin and end.
         at: the place [m].
-        both: sum of the numbers of the two blocks.
-        blocks: all blocks.
-        axes: of the system.
     """
     best, least = -1, math.inf
     for j in range(ends[0], ends[1]):
-        square = square_between(lines[j], at, both, blocks, axes)
+        square = square_between(lines, j, at)
         if square < least:
             best, least = j, square
     return best, math.sqrt(least)
@@ -173,17 +184,19 @@ def nearest(
 def pressed_at(
     i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
 ) -> float:
-    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`."""
+    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`. It is that of the
+    nearest line of such a normal: at a corner two joints of a pair may have their lines."""
     overlap: float = max(-found.gap[i], 0.0)
-    face, other = found.face[i], found.other[i]
-    if overlap == 0 or ends[0] == ends[1]:
-        return 0.0
-    j, off = nearest(gone.rows, ends, vector(found.place, i, axes), face + other, blocks, axes)
-    there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
-    alike = sense * there.sense * dot(vector(found.normal, i, axes), there.normal)
-    if off >= BESIDE * min(blocks.sizes[face], blocks.sizes[other]) or alike <= ALIKE:
-        return 0.0
-    pressed: float = max(overlap - gone.slack[j], 0.0)
+    face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, axes), vector(found.normal, i, axes)
+    bound, best, least = (BESIDE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
+    for j in range(ends[0], ends[1] if overlap > 0 else ends[0]):
+        square = square_between(gone, j, at)
+        if square < least:
+            there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
+            deep = dot(normal, minus(there.at, at))
+            if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > ALIKE:
+                best, least = j, square
+    pressed: float = max(overlap - gone.slack[best], 0.0) if best >= 0 else 0.0
     return pressed
 
 
@@ -245,11 +258,13 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks, axes: tuple[int, ...]) -> None:
     """Let a line take over a share of the friction of one that is gone, and of its push of the last step.
 
-    Of a spring along the face the force is kept, as that of rigid friction is.
+    Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest
+    gives its rate.
     """
     poses, old, new = blocks.poses, place_of(gone, both, blocks, axes), place_of(line, both, blocks, axes)
     line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
-    line.depth, line.rate = max(line.depth, gone.depth), gone.rate
+    if gone.depth > line.depth or line.depth == 0:
+        line.depth, line.rate = gone.depth, gone.rate
     grip = scaled(share, spin_components(gone.grip, axes))
     if len(axes) == 3 and gone.face >= 0:
         grip = turned(poses, old.face, grip)
@@ -262,17 +277,17 @@ def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks, axes: tu
 
 @inlined
 def give_to_nearest(
-    gone: Row, new: Rows, places: tuple[int, int], both: int, blocks: Blocks, axes: tuple[int, ...]
+    gone: Row, new: Lines, places: tuple[int, int], both: int, blocks: Blocks, axes: tuple[int, ...]
 ) -> None:
     """Let the nearest places of a pair take over what a line has that is gone. Places that are as near share it."""
     at, count = place_of(gone, both, blocks, axes).at, 0
-    _, off = nearest(new, places, at, both, blocks, axes)
+    _, off = nearest(new, places, at)
     near = AS_NEAR * off * off
     for i in range(places[0], places[1]):
-        count += square_between(new[i], at, both, blocks, axes) <= near
+        count += square_between(new, i, at) <= near
     for i in range(places[0], places[1]):
-        if square_between(new[i], at, both, blocks, axes) <= near:
-            give(gone, new[i], 1 / count, both, blocks, axes)
+        if square_between(new, i, at) <= near:
+            give(gone, new.rows[i], 1 / count, both, blocks, axes)
 
 
 @compiled
@@ -295,16 +310,20 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
     for p in range(len(pairs.low)):
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
         both = found.face[begin] + found.other[begin]
+        for j in range(ends[0], ends[1]):
+            put(gone.at[j], place_of(gone.rows[j], both, blocks, axes).at)
         for i in range(begin, end):
             new.depth[i] = pressed_at(i, found, gone, ends, blocks, axes)
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
-            new.slack[i] = max(-found.gap[i], 0.0) - new.depth[i]
+            overlap = max(-found.gap[i], 0.0)
+            new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + HAIR) * overlap
             write_line(new.rows[i], i, new.slack[i], found, blocks, axes)
+            put(new.at[i], place_of(new.rows[i], both, blocks, axes).at)
         for j in range(ends[0], ends[1]):
             old = gone.rows[j]
             if old.push != 0 or old.depth > 0:
-                give_to_nearest(old, new.rows, (begin, end), both, blocks, axes)
+                give_to_nearest(old, new, (begin, end), both, blocks, axes)
         for i in range(begin, end):
             line = new.rows[i]
             if line.k_s < math.inf:

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
-from ..linear import rates_of
+from ..linear import entries, rates_of
 from ..problem.masonry.joints_in_space import axes_across
 from ..quantities import Array
 from ..scene.explicit_step import stable_step
@@ -26,7 +26,7 @@ def longest_step(system: System) -> float:
     lines, bodies = system.lines, len(system.bodies)
     rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
     linked = (system.ties, system.dampers, system.actuators)
-    rates += [link_rates(links, bodies) for links in linked]
+    rates += [link_rates(links, bodies) for links in linked[:2]] + [drive_rates(system)]
     lengths, root = (
         csr_array(vstack(rates)),
         csr_array(block_diag([coo_array(root) for root in roots_of_masses(system.bodies)])),
@@ -78,3 +78,13 @@ def link_rates(links: Rows, bodies: int) -> csr_array:
     between, arms = np.asarray(links["between"]), (np.asarray(links["at"]), np.asarray(links["origin"]))
     ways = between / np.linalg.norm(between, axis=1)[:, None]
     return rates_of(np.column_stack([links["body"], links["anchor"]]), arms, ways, bodies)
+
+
+def drive_rates(system: System) -> csr_array:
+    """Rates at which what actuators drive moves, for unit velocities at rest: a point, or the centroid of all."""
+    actuators, mass, bodies = system.actuators, np.asarray(system.bodies["mass"]), len(system.bodies)
+    ways = np.where((actuators["body"] < 0)[:, None], actuators["between"], 0.0)
+    turning = np.zeros((len(actuators), 2 * ways.shape[1] - 3))
+    shares = np.hstack([ways, turning])[:, None] * (mass / mass.sum())[:, None]
+    pairs = np.broadcast_to(np.arange(bodies), shares.shape[:2])
+    return csr_array(link_rates(actuators, bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from ..compiled import inlined
-from ..geometry.vectors import Vector, components, dot, minus, plus, scaled, spin_components, spun, vector
+from ..geometry.vectors import Vector, components, dot, increase, minus, plus, scaled, spin_components, spun, vector
 from .contact import add_force
 from .rows import Row, Rows
 from .system import Books, Supports, System
@@ -145,19 +145,45 @@ def pull_links(system: System, books: Books, t: float, h: float, axes: tuple[int
 @inlined
 def drive(system: System, books: Books, i: int, h: float, axes: tuple[int, ...]) -> None:
     """Add the force of actuator i, and book the work that it has put in in the last step of length h."""
-    row = system.actuators[i]
-    body, way = system.bodies[row.body], components(row.between, axes)
-    at = components(row.at, way)
-    change = rotation_change(body, at)
-    moved = dot(way, plus(components(body.place, way), change)) - row.reach
-    speed = dot(way, plus(components(body.velocity, way), spun(spin_components(body.spin, way), plus(at, change))))
+    row, way = system.actuators[i], components(system.actuators[i].between, axes)
+    moved, speed = driven_place(row, system.bodies, way)
     rate = system.drives.moving[i, 0] - speed
     dragged = row.c * rate
-    force = row.k * (system.drives.moved[i, 0] - moved) + dragged
+    force = row.k * (system.drives.moved[i, 0] - (moved - row.reach)) + dragged
     books.driven[i] += 0.5 * h * (row.pulled + force) * system.drives.moving[i, 0]
     books.dampers[len(system.dampers) + i] += 0.5 * h * (row.dragged + dragged) * rate
     row.pulled, row.dragged = force, dragged
-    add_force(body, plus(at, change), scaled(force, way))
+    if row.body >= 0:
+        body, at = system.bodies[row.body], components(row.at, way)
+        add_force(body, plus(at, rotation_change(body, at)), scaled(force, way))
+        return
+    acceleration = scaled(force / mass_of(system.bodies), way)
+    for b in range(len(system.bodies)):
+        increase(system.bodies[b].force, scaled(system.bodies[b].mass, acceleration))
+
+
+@inlined
+def mass_of(bodies: Rows) -> float:
+    """Mass of all bodies [kg]."""
+    mass = 0.0
+    for b in range(len(bodies)):
+        mass += bodies[b].mass
+    return mass
+
+
+@inlined
+def driven_place(row: Row, bodies: Rows, way: Vector) -> tuple[float, float]:
+    """Displacement along a way [m] and velocity [m/s] of what an actuator drives: its point, or the centroid of all."""
+    if row.body >= 0:
+        body, at = bodies[row.body], components(row.at, way)
+        change = rotation_change(body, at)
+        speed = plus(components(body.velocity, way), spun(spin_components(body.spin, way), plus(at, change)))
+        return dot(way, plus(components(body.place, way), change)), dot(way, speed)
+    moved, speeds, mass = 0.0, 0.0, mass_of(bodies)
+    for b in range(len(bodies)):
+        moved += bodies[b].mass * dot(way, components(bodies[b].place, way))
+        speeds += bodies[b].mass * dot(way, components(bodies[b].velocity, way))
+    return moved / mass, speeds / mass
 
 
 @inlined

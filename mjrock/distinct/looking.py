@@ -19,16 +19,18 @@ from .solids import Poses
 from .system import System
 from .turning import rotation_change, take_inverse_inertia, take_turn
 
-LOOK, SOONEST = 5e-3, 5e-4
-"""Longest and shortest time between two looks [s]."""
-FALL = 0.5 * GRAVITY * LOOK**2
-"""What a block falls by from one look to the next [m]."""
+LOOK = 0.03
+"""Longest time between two looks, over the time in which a block falls by half its size [-]: 5 ms for one of 0.27 m,
+which is half the diagonal of a block of 0.5 x 0.25 m. So a model is looked at as often as what it is a model of."""
+SOONEST = 0.1
+"""Shortest time between two looks over the longest one [-]."""
 PASSED = 0.02
 """Way that a pair may make between two looks, over the size of the smaller block [-]."""
 SURE = 2.0
 """Way within which places are kept until the next look at a block, over that which speeds alone make [-]."""
-EARLY = 0.5 * LOOK
-"""Time up to which places serve on at a look without being kept for it [s]. So blocks are looked at together."""
+EARLY = 0.5
+"""Time up to which places serve on at a look without being kept for it, over the longest between two looks [-]. So
+blocks are looked at together."""
 NEAR = 1e-3
 """Distance at which blocks are near each other, and way up to which no block is looked at, over their size [-]. Blocks
 without a common joint that are so near at rest touch at edges or corners, and are looked at later, from `PASSED` on."""
@@ -70,12 +72,12 @@ class Seen(NamedTuple):
     stale: Flags
 
     @classmethod
-    def nothing(cls, start: Poses) -> Seen:
-        """Of blocks that stand where they start."""
+    def nothing(cls, start: Poses, look: float) -> Seen:
+        """Of blocks that stand where they start, with the longest time between looks [s]."""
         count, still = len(start.moved), deepcopy(start)
         flags, speeds = np.zeros((2, count), dtype=bool), np.zeros((2, count))
         motion = Motion(still, np.zeros_like(still.moved), speeds[0])
-        return cls(flags[0], motion, np.zeros(count, dtype=np.int64), np.full(count, LOOK), speeds[1], flags[1])
+        return cls(flags[0], motion, np.zeros(count, dtype=np.int64), np.full(count, look), speeds[1], flags[1])
 
 
 class Reach(NamedTuple):
@@ -85,11 +87,13 @@ class Reach(NamedTuple):
         start: where they stood.
         limits: how far each may be from there before it is looked at [m], shape (blocks,).
         stay: by how much each may move while a find of it stays valid [m], shape (blocks,).
+        look: longest time between two looks [s].
     """
 
     start: Poses
     limits: Array
     stay: Array
+    look: float
 
 
 class Wear(NamedTuple):
@@ -164,6 +168,17 @@ def keep(seen: Motion, motion: Motion, block: int) -> None:
     seen.about[block] = motion.about[block]
 
 
+def longest_time(sizes: Array) -> float:
+    """The longest time between two looks at blocks of some sizes [s]: that of the smallest one."""
+    return LOOK * math.sqrt(float(sizes.min()) / GRAVITY)
+
+
+@inlined
+def fallen(look: float) -> float:
+    """What a block falls by in the longest time between two looks [m]."""
+    return 0.5 * GRAVITY * look**2
+
+
 @compiled
 def watch(motion: Motion, sizes: Array, reach: Reach, seen: Seen, left: Flags, since: float) -> bool:
     """Bring up to date which blocks are looked at, and name those whose places serve no longer.
@@ -181,20 +196,20 @@ def watch(motion: Motion, sizes: Array, reach: Reach, seen: Seen, left: Flags, s
     Returns:
         Whether those of a block do not.
     """
-    some = False
+    some, look = False, reach.look
     for block in range(len(sizes)):
-        speed, size, watched, due = speed_of(motion, block), sizes[block], seen.watched[block], LOOK
+        speed, size, watched, due = speed_of(motion, block), sizes[block], seen.watched[block], look
         if watched:
             due = max(seen.due[block] - since, 0.0)
-        seen.ahead[block] = LOOK * speed
+        seen.ahead[block] = look * speed
         way = far(motion.poses, reach.start, block, size) + seen.ahead[block]
         seen.watched[block] = watched or left[block] or way > reach.limits[block]
         stale = left[block] or seen.watched[block] != watched
         if watched and not stale:
             moved = far(motion.poses, seen.motion.poses, block, size) > reach.stay[block]
-            kept = SURE * (speed_of(seen.motion, block) * due + FALL + NEAR * size)
-            stale = (moved and due < EARLY) or speed * due > kept
-        seen.due[block] = due if due >= EARLY else LOOK
+            kept = SURE * (speed_of(seen.motion, block) * due + fallen(look) + NEAR * size)
+            stale = (moved and due < EARLY * look) or speed * due > kept
+        seen.due[block] = due if due >= EARLY * look else look
         if stale:
             seen.moves[block] += 1
             keep(seen.motion, motion, block)
@@ -214,7 +229,7 @@ def closing(motion: Motion, one: int, other: int) -> float:
 
 
 @compiled
-def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags) -> None:
+def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags, look: float) -> None:
     """Write for how long places serve that have been found.
 
     Those of a pair serve until either block is looked at again: the faster one, if its places were found.
@@ -224,11 +239,12 @@ def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags) ->
         motion, sizes: of the blocks.
         seen: which blocks were looked at.
         soon: room for whether each place may touch by then, shape (n,).
+        look: longest time between two looks [s].
     """
     due, stale = seen.due, seen.stale
     for block in range(len(due)):
         if stale[block]:
-            due[block] = LOOK
+            due[block] = look
     for turn in range(2):
         for i in range(len(found.gap)):
             one, other = found.face[i], found.other[i]
@@ -237,10 +253,10 @@ def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags) ->
                 serve = max(PASSED * size, 0.5 * found.gap[i]) / max(speed, 1e-9)
                 first = stale[one] and (not stale[other] or speed_of(motion, one) >= speed_of(motion, other))
                 block = one if first else other
-                due[block] = min(due[block], max(serve, SOONEST))
+                due[block] = min(due[block], max(serve, SOONEST * look))
             else:
                 until = min(due[one], due[other])
-                soon[i] = found.gap[i] < SURE * (speed * until + 2 * FALL + NEAR * size)
+                soon[i] = found.gap[i] < SURE * (speed * until + 2 * fallen(look) + NEAR * size)
 
 
 @compiled
@@ -280,8 +296,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
 
 @compiled
 def held(system: System, which: Integers, depth: Array) -> float:
-    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]. What shear
-    springs lose, friction takes."""
+    """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]."""
     return held_by_lines(system, which, depth, system.axes)
 
 

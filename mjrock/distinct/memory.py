@@ -13,7 +13,7 @@ import numpy as np
 from ..geometry.vectors import Vector
 from ..quantities import Array
 from ..result.response import State
-from .assembly import copied
+from .assembly import copied, guided_as
 from .encounters import Met
 from .links import support_place
 from .loop import Clock, accelerated
@@ -109,7 +109,9 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried.lines["support"][: len(system.lines)] = system.lines["support"]
     carried.ties["support"], carried.dampers["support"] = system.ties["support"], system.dampers["support"]
     carried.lines["widest"] = carried.bonds["age"] = 0.0
+    guided_as(carried.bodies, system.bodies)
     carry_drives(memory, system)
-    return system._replace(
+    carried = system._replace(
         bodies=carried.bodies, lines=carried.lines, bonds=carried.bonds, ties=carried.ties, dampers=carried.dampers
     )
+    return carried.with_ways()

@@ -10,9 +10,10 @@ import numpy as np
 from ..geometry.hull import area_vector
 from ..problem.masonry.case import MasonryCase
 from ..quantities import Array
-from .encounters import Encounters
+from .encounters import STABLE, Encounters
 from .pair_law import pair_number
 from .setup import Setup
+from .softening import unsoftened
 from .solids import Poses, Solids
 from .system import System
 from .turning import set_rotations
@@ -27,7 +28,7 @@ DOUBTED = 0.01
 """Share of a block from which on its overlap is warned of [-]."""
 
 
-def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> float:
+def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array, h: float) -> float:
     """The largest share of a block that lies inside another at samples of a run [-], at most 200 of them.
 
     All pairs are looked at, whether their joint is intact or not. Where no block has come near another one that it has
@@ -38,9 +39,10 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
         case: its case.
         pose: at the samples, shape (samples, n, nq).
         t: times of the samples [s], shape (samples,).
+        h: length of a step [s].
 
     Warns:
-        UserWarning: of 1 % more than at the start, with the names of the two blocks, and when.
+        UserWarning: of 1 % more than at the start, with the names of the two blocks, when, and what keeps them apart.
     """
     encounters = setup.encounters
     if encounters is None or not encounters.met.seen.watched.any():
@@ -66,10 +68,25 @@ def checked_overlap(setup: Setup, case: MasonryCase, pose: Array, t: Array) -> f
         if share > worst:
             names = case.masonry.names
             worst, said = share, f"{names[a]} and {names[b]} lie inside each other by {share:.1%} of the smaller one"
-            said += f" at {t[i]:.4g} s: stiffer joints keep blocks apart"
+            left = float(encounters.met.softest[[a, b]].max())
+            shorter = STABLE * unsoftened(left, h / STABLE, encounters.law.slowest)
+            said += f" at {t[i]:.4g} s: {what_keeps_apart(share, left, shorter)}"
     if worst > DOUBTED + at_start:
         warnings.warn(said, stacklevel=3)
     return worst
+
+
+def what_keeps_apart(share: float, left: float, shorter: float) -> str:
+    """What brings the share of a block that lies inside another down to the one that is doubted, in words.
+
+    It falls at least as the root of the stiffness, of which the step has left a part, and a shorter one [s] leaves all.
+    """
+    stiffer = left * (share / DOUBTED) ** 2
+    joints = f"joints {stiffer:.2g} times as stiff"
+    if left == 1:
+        return f"{joints} keep blocks apart"
+    said = f"this step leaves their contact {left:.0%} of its stiffness; timestep = {shorter:.2g} s"
+    return f"{said} and {joints} keep blocks apart" if stiffer > 1 else f"{said} keeps blocks apart"
 
 
 def _posed(encounters: Encounters, system: System, pose: Array, t: float, case: MasonryCase) -> Poses:

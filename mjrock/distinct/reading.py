@@ -128,9 +128,8 @@ def kept_forces(run: Run, kept: Integers) -> Forces | None:
     pulled = dict(zip((*links.sprung.names, *links.damped.names), -samples.pulled.T, strict=True))
     damage = None
     if isinstance(run.case, MasonryCase) and len(run.followed.system.bonds):
-        lines = np.bincount(run.scene.contacts.joint, minlength=samples.damage.shape[1])
         dry = [bond is None for bond in run.case.masonry.bonds]
-        damage = np.where(dry, np.nan, samples.damage / lines)
+        damage = np.where(dry, np.nan, samples.damage)
     loads = samples.pose, samples.loads, samples.held
     gathered = Gathered(run.t[kept], *loads, pulled, samples.actuators, samples.guided, damage)
     return forces_of(run.case, JointFrames.of(run.case), gathered)
@@ -172,7 +171,8 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     work, left, there = looks["ground"] + looks["driven"], looks["ends"].sum(axis=1), run.above_rest(looks)
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
-    scale = max(given, kinetic, run.rounding / ENERGY_GAIN)
+    elastic = float(looks["elastic"].max())  # and masonry that is wedged, or pushed by supports
+    scale = max(given, kinetic, elastic, run.rounding / ENERGY_GAIN)
     try:
         require_no_gain(run.looked, there - work + left, scale)
     except StepError as gain:

@@ -137,6 +137,7 @@ def _way(d: int, s: int) -> Fields:
         *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
         *_number("stiffness", "shared"),  # impulse that stops a slip of 1 m/s along the way, and along the other [kg]
         *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
+        *_number("drift"),  # slip that turning bodies gain from the pose to the middle of the step [m/s]
     ]
 
 
@@ -146,7 +147,7 @@ def _bond(s: int) -> Fields:
         *_number("residual", "falls"),  # friction without bond, and what a whole bond adds to it [-]
         *_number("tension", "cohesion", "bears"),  # strengths of the line [N], what it bears infinite where not crushed
         *_number("torn", "worn", "crumbled"),  # rates of its loss by opening, slip and crushing [1/m], see `bond_law`
-        *_number("left"),  # what is left of the bond: 1 - D [-]
+        *_number("left", "share"),  # what is left of the bond, 1 - D, and the line's part of the area of the joint [-]
         *_number("peak", "hardens"),  # what it bears at its peak [N], and the plastic closing there, zero for none [m]
         *_number("drawn", "crack", "crushed"),  # largest gap, opening of the crack and plastic closing so far [m]
         *_number("secant"),  # stiffness that holds both ways [N/m]
@@ -189,6 +190,28 @@ def joined(*tables: Rows) -> Rows:
 def chosen(table: Rows, which: Integers | Flags) -> Rows:
     """Some of the rows. numpy takes bytes faster than columns."""
     return as_bytes(table)[which].reshape(-1).view(table.dtype).view(np.recarray)
+
+
+ENDLESS = ("k_s", "margin", "reach", "strength", "ultimate", "broken", "bears")
+"""Numbers that may be infinite: of a line that sticks rigidly, a face without an end, what never gives way."""
+
+
+def unsound(table: Rows) -> Integers:
+    """Numbers of the rows with a number that is not finite, or is none where it may be infinite."""
+    finite, endless = _words(table.dtype)
+    words = as_bytes(table).view(float)
+    sound = np.isfinite(words[:, finite]).all(axis=1) & ~np.isnan(words[:, endless]).any(axis=1)
+    return np.flatnonzero(~sound)
+
+
+@lru_cache
+def _words(kind: np.dtype[np.void]) -> tuple[Flags, Flags]:
+    """Which words of a row are numbers that must be finite, and which may be infinite. The others are integers."""
+    finite, endless = np.zeros((2, kind.itemsize // 8), dtype=bool)
+    for name, (of, at, *_) in (kind.fields or {}).items():
+        if of.base == np.float64:
+            (endless if name in ENDLESS else finite)[at // 8 : (at + of.itemsize) // 8] = True
+    return finite, endless
 
 
 def as_bytes(table: Rows) -> NDArray[np.uint8]:

@@ -8,6 +8,7 @@ a power of a matrix bounds its highest eigenvalue.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -198,3 +199,17 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
     room = Room(traces, shares, np.empty(len(bodies)), stiffness, powers, share)
     soften(sides, along, across, bodies, room, tuple(range(d)))
     return np.asarray(share[sides.bodies].min(axis=0))
+
+
+def unsoftened(share: float, step: float, slow: float) -> float:
+    """The step with which a place keeps all of its law that a longer one leaves a share of [s].
+
+    What counts of a place goes as the square of the step for its spring, and as the step for its dashpot.
+
+    Args:
+        share: of its law that the longer step leaves [-].
+        step: the longer one that is to be stable [s].
+        slow: its dashpot over its spring [s].
+    """
+    damped = 2 * slow / step
+    return 0.5 * step * (math.sqrt(damped**2 + 4 * (1 + damped) * share) - damped)

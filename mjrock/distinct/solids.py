@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import SPACE
-from ..geometry.hull import prism, unlike_ways
+from ..geometry.hull import prism
 from ..geometry.vectors import Vector, increase, put, vector
 from ..problem.masonry.compound import AnyBlock, Compound
 from ..problem.masonry.polygon import Polygon
@@ -41,6 +41,7 @@ class Solids(NamedTuple):
         first: where those of each face begin, and where those of the last end, shape (faces + 1,).
         inside: which faces lie inside the block that they are a part of, where nothing meets them, shape (faces,).
         owner: number of the block that each solid is a part of, shape (solids,).
+        extent: length of the outline of each face [m], of prisms of the plane without their length, shape (faces,).
     """
 
     corners: Array
@@ -53,16 +54,24 @@ class Solids(NamedTuple):
     first: Integers
     inside: Flags
     owner: Integers
+    extent: Array
 
     @classmethod
     def about(
-        cls, blocks: Sequence[Solid | Polyhedron], centroids: Array, inside: Sequence[Flags], owner: Integers
+        cls,
+        blocks: Sequence[Solid | Polyhedron],
+        centroids: Array,
+        inside: Sequence[Flags],
+        owner: Integers,
+        axes: tuple[int, ...] = SPACE.axes,
     ) -> Solids:
-        """Solids about the centroids of their blocks [m], shape (solids, 3)."""
+        """Solids about the centroids of their blocks [m], shape (solids, 3). Outlines are measured along the axes."""
         corner = _begins(block.corners for block in blocks)
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
+        corners = np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)])
+        around = [np.diff(corners[[*outline, outline[0]]][:, axes], axis=0) for outline in outlines]
         return cls(
-            np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)]),
+            corners,
             corner,
             np.concatenate([block.normals for block in blocks]),
             _begins(block.normals for block in blocks),
@@ -72,6 +81,7 @@ class Solids(NamedTuple):
             _begins(outlines),
             np.concatenate(inside),
             owner,
+            np.array([np.linalg.norm(ways, axis=1).sum() for ways in around]),
         )
 
     def moved(self, place: Array, change: Array) -> Solids:
@@ -137,16 +147,18 @@ def solids_of(blocks: Sequence[AnyBlock], half: float) -> list[Solid | Polyhedro
 
 
 def inside_of(block: AnyBlock) -> list[Flags]:
-    """Which faces of each solid of a block lie inside it, a prism's two ends before its sides."""
-    ends = np.zeros(0 if block.in_space else 2, dtype=bool)
+    """Which faces of each solid of a block lie inside it, a prism's two ends before its sides. Nothing meets the ends,
+    as nothing meets a face inside."""
+    ends = np.ones(0 if block.in_space else 2, dtype=bool)
     flags = block.surface.inside if isinstance(block, Compound) else [np.zeros(len(block.sides), dtype=bool)]
     return [np.append(ends, some) for some in flags]
 
 
 def solid_of(block: Polygon, half: float) -> Solid:
-    """A block of the plane as a prism from y = -half to half. (`Polyhedron.prism` searches its corners for a hull.)"""
+    """A block of the plane as a prism from y = -half to half. (`Polyhedron.prism` searches its corners for a hull.)
+
+    It has no edges that cross others: those along y meet faces as their corners do."""
     across, normals = np.array([(0.0, -1.0, 0.0), (0.0, 1.0, 0.0)]), np.zeros((len(block.corners), 3))
     normals[:, ::2] = block.normals
     corners, faces = prism(block.corners, 2 * half)
-    edges = np.concatenate([across[1:], unlike_ways(normals[:, ::-1] * (1.0, 1.0, -1.0))])
-    return Solid(corners, faces, np.concatenate([across, normals]), edges, 2 * half * block.area)
+    return Solid(corners, faces, np.concatenate([across, normals]), np.empty((0, 3)), 2 * half * block.area)

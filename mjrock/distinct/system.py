@@ -58,6 +58,13 @@ class System(NamedTuple):
     supports: Supports
     drives: Supports
 
+    def with_ways(self) -> System:
+        """The system with room for the ways of all its lines, if one of them sticks rigidly."""
+        needed = (len(self.axes) - 1) * len(self.lines)
+        if len(self.ways) >= needed or not np.isinf(self.lines["k_s"]).any():
+            return self
+        return self._replace(ways=rows(self.ways.dtype, needed))
+
 
 class Books(NamedTuple):
     """Work since the start [J].
@@ -72,7 +79,7 @@ class Books(NamedTuple):
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
         active, touched: room for the numbers of the lines that stick rigidly, and of those that met or left their face
             in the last step, shape (m,) each.
-        struck: what their springs did for that in this step [N s], likewise.
+        struck, asked: what their springs did for that in this step, and what they still ask for [N s], likewise.
     """
 
     dashpots: Array
@@ -86,6 +93,7 @@ class Books(NamedTuple):
     active: Integers
     touched: Integers
     struck: Array
+    asked: Array
 
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
@@ -94,16 +102,16 @@ class Books(NamedTuple):
         sizes = groups, ties, ties, len(system.dampers) + driven, driven, 2, 3
         dashpots, yielding, broken, dampers, actuators, ends, bonds = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
-        totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
+        totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros((2, len(active)))
         work = dashpots, yielding, broken, dampers, actuators, ends, bonds
-        return cls(*work, totals, active, touched, struck)
+        return cls(*work, totals, active, touched, *struck)
 
     def with_room(self, lines: int) -> Books:
         """The books with room for so many lines."""
         if lines <= len(self.active):
             return self
         active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
-        return self._replace(active=active, touched=touched, struck=np.zeros(lines))
+        return self._replace(active=active, touched=touched, struck=np.zeros(lines), asked=np.zeros(lines))
 
     @property
     def size(self) -> int:
@@ -123,7 +131,7 @@ class Samples(NamedTuple):
         loads, held: forces of joints and of fixed blocks, see `result.forces.Gathered`, shapes (samples, joints, nv)
             and (samples, blocks, d).
         pulled: force of each tie and then of each damper, negative where it pulls [N], shape (samples, links).
-        damage: what the lines of each joint have lost of their bond, summed [-], shape (samples, joints).
+        damage: share of its bond that each joint has lost, the mean over its area [-], shape (samples, joints).
         guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
             (samples, actuators, nv). All five have no columns where no forces are kept.
     """

@@ -26,6 +26,8 @@ EVERYWHERE = 1e6
 """Distance within which every contact is closed [m]."""
 KEPT = 16
 """Scenes whose compiled models are kept for the next run."""
+TEXT_STEP = 1e-3
+"""Step of the text that is compiled [s]."""
 
 
 def _noted(text: str) -> None:
@@ -57,7 +59,7 @@ class Engine:
         Raises:
             SimulationError: if MuJoCo weighs a body otherwise, or numbers the contacts otherwise.
         """
-        return cls.of(mujoco.MjModel.from_xml_string(scene_mjcf(scene, 1e-3)), scene)
+        return cls.of(mujoco.MjModel.from_xml_string(scene_mjcf(scene, TEXT_STEP)), scene)
 
     @classmethod
     def of(cls, model: mujoco.MjModel, scene: Scene) -> Engine:
@@ -159,11 +161,13 @@ def engine_of(scene: Scene) -> Iterator[Engine]:
     """An engine for a scene, taken from those of earlier runs where one is idle. It is kept for the next run.
 
     Runs of one wall under many motions share the text, the compilation and the data. Two threads never share an engine.
+    Each run finds it with the step and the rows of the text of its scene, whatever ran before.
     """
     try:
         engine = _idle[scene.key].pop()
     except (KeyError, IndexError):
         engine = Engine.compile(scene)
+    engine.follow(TEXT_STEP, pair_rows(scene, TEXT_STEP))
     yield engine
     _idle.setdefault(scene.key, deque(maxlen=4)).append(engine)  # one whose run has failed is not kept
     while len(_idle) > KEPT:

@@ -50,8 +50,9 @@ class EngineRun:
         broken: the step from which each tie no longer acts, see `mjrock.scene.structure.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         count: how many steps come before the wall cannot come back, or before the first block falls.
-        scale: energy of the release, of the springs at rest, or at most where they start empty, and of what the ground
-            put in or took [J].
+        scale: energy of the release, of the springs at rest, or at most where they start as drawn, and of what the
+            ground put in or took [J].
+        gain: energy that has appeared from nowhere after the first block fell, or None.
     """
 
     case: Case | MasonryCase
@@ -65,6 +66,7 @@ class EngineRun:
     reading: Reading
     count: int
     scale: float
+    gain: StepError | None
 
     @classmethod
     def judged(
@@ -73,7 +75,7 @@ class EngineRun:
         """The run of these steps.
 
         Raises:
-            StepError: if energy appears from nowhere.
+            StepError: if energy appears from nowhere before a wall cannot come back, or before the first block falls.
         """
         broken, nq, nv = breaks(scene.ties, steps.pose, scene.freedom), scene.freedom.nq, scene.freedom.nv
         stored, taken = scene.accounts(steps.pose, steps.velocity, broken)
@@ -87,11 +89,15 @@ class EngineRun:
             assert contacts is not None
             reading = wall_reading(case, contacts, steps.t, motion, released=course.released)
             marks, count = marks_of_wall(reading, case, steps)
-        work = ground_work(scene, course, steps)[:count]
-        elastic = float(scene.rest_energies[2]) or float(stored[:count, 2].max())  # as drawn springs hold none
-        scale = max(float(energy[0]), 0.0) + float(np.abs(work).sum()) + elastic
+        work = ground_work(scene, course, steps)
+        drawn = isinstance(case, MasonryCase) and not case.settled  # its springs hold nothing at the start
+        elastic = float(stored[:count, 2].max()) if drawn else float(scene.rest_energies[2])
+        scale = max(float(energy[0]), 0.0) + float(np.abs(work[:count]).sum()) + elastic
         require_no_gain(steps.windows.t[marks], balance(scene, steps, work, marks), scale)
-        return cls(case, contacts, scene, course, steps, energy, taken, broken, reading, count, scale)
+        gain = None
+        if isinstance(case, MasonryCase):
+            gain = gain_of_falling(scene, steps, work, count, scale + float(stored[:, 0].max()))
+        return cls(case, contacts, scene, course, steps, energy, taken, broken, reading, count, scale, gain)
 
     def response(
         self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: dict[str, Any]
@@ -159,6 +165,23 @@ def marks_of_masonry(reading: Reading, steps: Steps) -> tuple[Integers, int]:
     assert reading.joints is not None
     count = int(np.searchsorted(steps.t, next(iter(reading.joints.fallen.values()), np.inf)))
     return np.linspace(0, count - 1, min(count, MARKS)).astype(int), count
+
+
+def gain_of_falling(scene: Scene, steps: Steps, work: Array, count: int, scale: float) -> StepError | None:
+    """Energy that has appeared from nowhere in masonry after its first block fell, or None.
+
+    Args:
+        scene, steps, work: as of `balance`.
+        count: how many steps come before that.
+        scale: the energy there was, with that of the fall [J].
+    """
+    marks = np.linspace(count, len(steps.t) - 1, min(len(steps.t) - count, MARKS)).astype(int)
+    if len(marks):
+        try:
+            require_no_gain(steps.windows.t[marks], balance(scene, steps, work, marks), scale)
+        except StepError as gain:
+            return gain
+    return None
 
 
 def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:

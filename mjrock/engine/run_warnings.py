@@ -28,6 +28,9 @@ WORTH_SAYING = 0.02
 OPEN = 0.05
 """Energy that the ledger may have too much before that is warned of, over the energy of the release and of the
 ground motion [-]."""
+UNPAID = 0.01
+"""Energy of masonry without an account that is warned of, over the largest part of the ledger [-]."""
+ENDLESS = "faces have no end in MuJoCo, where a block that has left one may meet it again; solve_explicit follows it"
 LIFTED = 0.02
 """Share of the normal force that the rows of sliding contacts may add to it before that is warned of [-]."""
 SLID = 0.01
@@ -107,3 +110,13 @@ def warn_of_gain(response: Response, run: EngineRun, case: Case, advice: str) ->
     if response.ledger is not None:
         unpaid = float(response.ledger.residual[case.returns_from(response.theta)].max(initial=0.0))
         warn_if_open(unpaid, run.scale, OPEN, "the energy there was", lambda share: advice)
+
+
+def warn_of_masonry(response: Response, run: EngineRun, advice: str) -> None:
+    """Warn of energy that has appeared from nowhere after blocks of masonry fell, and of a ledger of masonry that does
+    not close, with advice."""
+    if run.gain is not None:
+        warnings.warn(f"{run.gain} by t = {run.gain.t:.4g} s, after blocks fell: {ENDLESS}", stacklevel=3)
+    elif response.ledger is not None:
+        unpaid, said = float(np.abs(response.ledger.residual).max()), ENDLESS if response.fallen else advice
+        warn_if_open(unpaid, response.ledger.largest, UNPAID, "its largest part", lambda share: said)

@@ -27,6 +27,8 @@ TINTS = (
     (0.83, 0.53, 0.40, 1.0),
 )
 """Colours of the blocks of masonry in space, of which MuJoCo draws no edges."""
+PLATE = 4.0
+"""How far the plate of a face reaches from the middle of its joint, over the largest extent of the bodies [-]."""
 LEAST_MOMENT = 1e-14
 """Smallest principal moment of a tensor of inertia that MuJoCo takes [kg m2]."""
 
@@ -166,7 +168,7 @@ def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[st
 
 
 def _plate(scene: Scene, i: int) -> dict[str, object]:
-    """The face of a body as a plate that is wider than any slip and thicker than any penetration. MuJoCo pushes a point
+    """The face of a body as a plate that is wider than blocks and thicker than any penetration. MuJoCo pushes a point
     out of the nearest side of it, so that it is as wide out of the plane too, where blocks may be short.
 
     It is so thick that its middle lies outside the body. MuJoCo takes a geom within 1e-6 m of the origin of its body to
@@ -174,7 +176,7 @@ def _plate(scene: Scene, i: int) -> dict[str, object]:
     """
     extent, deep, normal = scene.bodies.extent, 2 * scene.bodies.extent, scene.contacts.normal[i]
     at = in_space(scene.contacts.face_at[i] - (deep + scene.radius) * normal)
-    return {"size": (4 * extent, 4 * extent, deep), "pos": at, "zaxis": in_space(normal)}
+    return {"size": (PLATE * extent, PLATE * extent, deep), "pos": at, "zaxis": in_space(normal)}
 
 
 def meshes(scene: Scene) -> Iterator[str]:

@@ -10,7 +10,7 @@ from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
 from ..problem.wall.case import Case
-from ..problem.wall.plausible import warn_of_low_stop
+from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import keep, require_flag, require_kind, require_size, require_within
 from ..result.ending import Outcome
 from ..result.forces import required_room
@@ -28,7 +28,15 @@ from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
 from .run import EngineRun, explained, sound_timestep
-from .run_warnings import require_still, warn_if_coarse, warn_if_lifted, warn_if_sheared, warn_if_slid, warn_of_gain
+from .run_warnings import (
+    require_still,
+    warn_if_coarse,
+    warn_if_lifted,
+    warn_if_sheared,
+    warn_if_slid,
+    warn_of_gain,
+    warn_of_masonry,
+)
 from .stepping import fitted_steps, fixed_steps
 
 Asked = tuple[Case | MasonryCase, Contacts | None]
@@ -173,8 +181,9 @@ def simulate(
 
     Warns:
         UserWarning: if a fixed step is too long to resolve the contacts, if explicit steps would follow masonry of more
-            than eight blocks in a fraction of the time, or if a tie without an `ultimate` was drawn out by more than a
-            bar or an anchor follows.
+            than eight blocks in a fraction of the time, if energy appears from nowhere after blocks of masonry fell, if
+            a ledger does not close, or if a tie without an `ultimate` was drawn out by more than a bar or an anchor
+            follows.
 
     Examples:
         >>> answer = mr.simulate(case, contacts)
@@ -188,8 +197,11 @@ def simulate(
     if isinstance(case, MasonryCase):
         require_still(case)
         warn_if_sheared(case.masonry)
-    elif contacts is not None and contacts.base.friction is None:
-        warn_of_low_stop(case)
+    else:
+        if contacts is not None and contacts.base.friction is None:
+            warn_of_low_stop(case)
+        if start is None:
+            warn_if_still(case, forces=forces)
     if options.timestep is not None:
         require_unbreakable(case)
     if forces:
@@ -215,6 +227,8 @@ def simulate(
         if contacts.base.friction is None:
             warn_if_slid(run, case.block.half_base)
         warn_of_gain(response, run, case, options.remedy)
+    else:
+        warn_of_masonry(response, run, options.remedy)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())

@@ -14,8 +14,12 @@ import mujoco
 import numpy as np
 from tqdm import tqdm
 
-from ..geometry.frames import frames_of
+from ..compiled import compiled
+from ..geometry.frames import frames_of, take_frames
+from ..geometry.kinematics import Places, meeting
+from ..geometry.vectors import dot
 from ..method import METHOD, Method
+from ..quantities import Array
 from ..result.ledger import StepError
 from ..scene.course import Course
 from ..scene.scene import Scene
@@ -25,6 +29,7 @@ from .pace import Pace
 from .progress import Progress, StepClock
 from .record import Record, StepKinds, Steps
 from .setting import Setting
+from .shapes import PLATE
 from .sliding import Sliding
 from .sticking import Joints
 
@@ -32,7 +37,7 @@ from .sticking import Joints
 def fitted_steps(
     engine: Engine, scene: Scene, course: Course, accuracy: float, *, coulomb: bool = True, method: Method = METHOD
 ) -> Steps:
-    """Steps that fit the motion, until the duration of the course or until a body lies on its face.
+    """Steps that fit the motion, until the duration of the course, or a body lies on its face or has left another.
 
     The engine is at the start, see `Engine.place`. With `coulomb` contacts that slide obey Coulomb's law.
 
@@ -53,7 +58,7 @@ def fitted_steps(
         clock = StepClock(*values)
         return n, clock.t, clock.ended
 
-    record = _recorded(engine, course.duration, advance)
+    record = on_plates(_recorded(engine, course.duration, advance), scene)
     kind = (record.h * pace.frequency >= method.smooth).astype(np.int64)
     return Steps(record, StepKinds(pace.beta, pace.ringing, kind, released_on), clock.touches, method, places.freedom)
 
@@ -68,7 +73,7 @@ def fixed_steps(
     coulomb: bool = False,
     method: Method = METHOD,
 ) -> Steps:
-    """Steps of one length, until the duration of the course or until a body lies on its face.
+    """Steps of one length, until the duration of the course, or a body lies on its face or has left another.
 
     The engine is at the release, with the step and the rows of that length. With `coulomb` contacts that slide obey
     Coulomb's law; without it they have the rows of the model text.
@@ -88,7 +93,7 @@ def fixed_steps(
         done += n
         return n, done * timestep, ended
 
-    record, contacts = _recorded(engine, course.duration, advance), len(scene.contacts.k)
+    record, contacts = on_plates(_recorded(engine, course.duration, advance), scene), len(scene.contacts.k)
     kind = np.zeros(len(record.t), dtype=np.int64)
     kinds = StepKinds(np.full((2, contacts), newmark_beta), np.zeros((2, contacts)), kind, released_on)
     return Steps(record, kinds, method=method, freedom=setting.points.places.freedom)
@@ -107,3 +112,25 @@ def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple
             if warned or not (np.isfinite(engine.memory.pose).all() and np.isfinite(engine.memory.velocity).all()):
                 raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
     return Record.joined(chunks)
+
+
+def on_plates(record: Record, scene: Scene) -> Record:
+    """The steps before a point has passed the end of the plate that stands for a face of a body, and lies lower than
+    it. The engine has no contact there, and no law of contacts holds."""
+    places, reach = scene.places, PLATE * scene.bodies.extent
+    if not (places.face_body >= 0).any():
+        return record
+    count = _on_plates(places, reach, record.pose, scene.freedom.frames(len(scene.bodies.names)))
+    return record if count == len(record.t) else record.first(max(count, 1))
+
+
+@compiled
+def _on_plates(places: Places, reach: float, pose: Array, frames: Array) -> int:
+    for n in range(len(pose)):
+        take_frames(pose[n], frames, places.axes)
+        for i in range(len(places.body)):
+            if places.face_body[i] >= 0:
+                meets = meeting(places, i, frames)
+                if meets.gap < 0 and dot(meets.across, meets.across) - meets.gap**2 > reach**2:
+                    return n
+    return len(pose)

@@ -102,6 +102,20 @@ def shares(polygon: Array, point: Array) -> Array:
     return normed
 
 
+def exact_shares(count: int) -> Array:
+    """Shares of places that stand evenly on a length, from end to end, for integrals over it, shape (count,).
+
+    Length, middle and second moment are exact, and all shares are positive: those of the trapezoidal rule, of which
+    each end has given 1 / (12 (count - 2)) to the place beside it. Three are Simpson's 1/6, 4/6, 1/6, which is
+    Lobatto's rule of three, and four his 1/8, 3/8, 3/8, 1/8. The count is at least 3.
+    """
+    shares = np.full(count, 1 / (count - 1))
+    shares[[0, -1]] /= 2
+    given = 1 / (12 * (count - 2))
+    np.add.at(shares, [0, 1, -2, -1], [-given, given, given, -given])
+    return shares
+
+
 def spread(polygon: Array, points: int) -> tuple[Array, Array]:
     """Points that stand for the area of a convex polygon: where [m], shape (p, 2), and how much of it [m2], shape (p,).
 
@@ -113,28 +127,45 @@ def spread(polygon: Array, points: int) -> tuple[Array, Array]:
     """
     if points == 2:
         return polygon, area(polygon) * shares(polygon, centroid(polygon))
-    if len(polygon) == 4:
-        quads, divisions = [polygon], points - 1
-    else:
-        middle, halves = centroid(polygon), 0.5 * (polygon + np.roll(polygon, -1, axis=0))
-        quads = [np.array([polygon[i], halves[i], middle, halves[i - 1]]) for i in range(len(polygon))]
-        divisions = points // 2
+    quads, divisions = ([polygon], points - 1) if len(polygon) == 4 else (_quarters(polygon), points // 2)
     places, areas = [], []
-    steps = np.linspace(0.0, 1.0, divisions + 1)
-    for a, b, c, d in quads:
-        s, t = np.meshgrid(steps, steps, indexing="ij")
-        grid = (
-            ((1 - s) * (1 - t))[..., None] * a
-            + (s * (1 - t))[..., None] * b
-            + (s * t)[..., None] * c
-            + ((1 - s) * t)[..., None] * d
-        )
+    for quad in quads:
+        grid = _grid(quad, divisions)[0]
         for i in range(divisions):
             for j in range(divisions):
                 cell = np.array([grid[i, j], grid[i + 1, j], grid[i + 1, j + 1], grid[i, j + 1]])
                 places.append(cell)
                 areas.append(area(cell) * shares(cell, centroid(cell)))
     return _gathered(np.concatenate(places), np.concatenate(areas))
+
+
+def sectioned(polygon: Array, points: int) -> tuple[Array, Array]:
+    """The same points with areas that have the second moments of the polygon too, all positive.
+
+    The rule of `exact_shares` both ways, times the area that a quadrilateral has about each place, is exact there. The
+    quadrilaterals of other polygons have three points a side at least. `points` is at least 3.
+    """
+    quads, divisions = ([polygon], points - 1) if len(polygon) == 4 else (_quarters(polygon), max(points // 2, 2))
+    both = np.multiply.outer(*[exact_shares(divisions + 1)] * 2)
+    grids = [_grid(quad, divisions) for quad in quads]
+    places = np.concatenate([grid.reshape(-1, 2) for grid, _ in grids])
+    return _gathered(places, np.concatenate([(both * about).ravel() for _, about in grids]))
+
+
+def _quarters(polygon: Array) -> list[Array]:
+    """Quadrilaterals of a polygon: one per corner, between it, the middles of its edges and the centroid."""
+    middle, halves = centroid(polygon), 0.5 * (polygon + np.roll(polygon, -1, axis=0))
+    return [np.array([polygon[i], halves[i], middle, halves[i - 1]]) for i in range(len(polygon))]
+
+
+def _grid(quad: Array, divisions: int) -> tuple[Array, Array]:
+    """Corners of the cells of a quadrilateral [m], shape (divisions + 1, divisions + 1, 2), and the area about each of
+    them, over its share of a unit square [m2]."""
+    a, b, c, d = quad
+    steps = np.linspace(0.0, 1.0, divisions + 1)
+    s, t = (each[..., None] for each in np.meshgrid(steps, steps, indexing="ij"))
+    places = ((1 - s) * (1 - t)) * a + (s * (1 - t)) * b + (s * t) * c + ((1 - s) * t) * d
+    return places, cross((1 - t) * (b - a) + t * (c - d), (1 - s) * (d - a) + s * (c - b))
 
 
 def _gathered(places: Array, areas: Array) -> tuple[Array, Array]:

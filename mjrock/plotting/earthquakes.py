@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -18,7 +19,7 @@ from ..problem.ground.record_sets import RecordSet
 from ..problem.ground.spectrum import response_spectrum
 from ..quantities import GRAVITY
 from ..study.fragility import Fragility
-from .arguments import finite_row, kind, listed, mapping, picture, row, table
+from .arguments import equal_rows, finite_row, kind, listed, mapping, picture, row, table
 from .style import STYLES, folded, legend_below
 
 MODES = {"stands": "#f3f1ea", "overturns after impacts": "#f0a35e", "overturns without impact": "#12406b"}
@@ -108,29 +109,48 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
 
 @picture()
 def fragility(
-    ax: Axes, fit: Fragility, levels: ArrayLike, shares: ArrayLike, solver: str, marker: str = "o", unit: str = "g"
+    ax: Axes,
+    fit: Fragility,
+    levels: ArrayLike | None = None,
+    shares: ArrayLike | None = None,
+    solver: str | None = None,
+    marker: str = "o",
+    unit: str = "g",
 ) -> Axes:
     """A fragility curve with its 90 % band, and the share overturned at each level; `ax.legend()` shows the labels.
 
     Args:
         ax: where to draw.
-        fit: the curve.
-        levels: peak ground accelerations, in the unit of the fit, shape (n,).
+        fit: the curve, of `fit_fragility` or `fit_capacities`.
+        levels: intensities that were run, in the unit of the fit, shape (n,); None draws the curve alone.
         shares: share of the runs that overturned at each, shape (n,).
         solver: name of the curve; those of `STYLES` have their own colours, any other the next one.
         marker: of the shares, as matplotlib names it.
         unit: of the accelerations, for axis and label.
+
+    Raises:
+        ValueError: for levels and shares of different lengths, or one without the other.
     """
-    style = STYLES.get(solver, {})
-    colour = style.get("color", f"C{len(ax.lines) // 2}")
-    points = np.asarray(levels, dtype=float)
-    x = np.linspace(0.02 * points.max(), points.max(), 300)
+    if (levels is None) != (shares is None):
+        raise ValueError("levels and shares go together: give both, or neither")
+    style = STYLES.get(solver or "", {})
+    colour = style.get("color", f"C{len(ax.collections)}")  # a band for each curve before
+    name = f"{folded(style.get('label', solver))}: " if solver else ""
+    label = f"{name}{fit.median:.2f} {unit}, {fit.dispersion:.2f}"
+    top = max(2 * fit.median, fit.tried[1] if math.isfinite(fit.tried[1]) else 0.0)
+    points = found = np.empty(0)
+    if levels is not None and shares is not None:
+        points, found = equal_rows(levels=levels, shares=shares)
+        top = float(points.max())
+    x = np.linspace(0.02 * top, top, 300)
     low, high = fit.band(x)
+    right = ax.get_xlim()[1] if ax.collections else 0.0
     ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
-    ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8)
-    label = f"{folded(style.get('label', solver))}: {fit.median:.2f} {unit}, {fit.dispersion:.2f}"
-    ax.plot(points, shares, marker=marker, linestyle="", color=colour, markersize=5, label=label)
-    ax.set_xlim(0, max(1.02 * points.max(), ax.get_xlim()[1] if len(ax.lines) > 2 else 0.0))
+    curve = None if points.size else label
+    ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8, label=curve)
+    if points.size:
+        ax.plot(points, found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
+    ax.set_xlim(0, max(1.02 * top, right))
     ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
     return ax
 

@@ -114,7 +114,8 @@ class Acting:
     def placed(self, frame: int) -> tuple[Array, Array]:
         """Where the force of each joint acts in a frame [m], and the force over the scale, shape (j, d) each."""
         middle, axes = self.joints(frame)
-        off = np.nan_to_num(self.forces.eccentricity[self.sample[frame]]).reshape(len(middle), -1)
+        off = self.forces.eccentricity[self.sample[frame]].reshape(len(middle), -1)
+        off = np.where(self.size[frame][:, None] > 0, off, 0.0)
         place = middle + (off[..., None] * axes[:, 1:]).sum(axis=1)
         return place, (self.along[frame][..., None] * axes).sum(axis=1) / self.scale
 

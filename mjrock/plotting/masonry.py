@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.support import Support
-from ..quantities import Array, require_array, require_kind, require_within
+from ..quantities import Array, require_array, require_flag, require_kind, require_within
 from ..result.response import Response
 from ..result.samples import sample_at
 from .arguments import anything, picture
@@ -30,7 +30,7 @@ def moved(corners: Array, centroid: Array, pose: Array) -> Array:
     return np.asarray((corners - centroid) @ np.array([[c, -s], [s, c]]) + centroid + pose[:2])
 
 
-@picture(limits=anything)
+@picture(limits=anything, joints=require_flag)
 def blocks(
     ax: Axes,
     masonry: Masonry | Response,

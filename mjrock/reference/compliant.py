@@ -18,7 +18,7 @@ from tqdm import tqdm
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
-from ..problem.wall.plausible import warn_of_low_stop
+from ..problem.wall.plausible import warn_if_still, warn_of_low_stop
 from ..quantities import ON_ITS_FACE, Array, require_kind, require_size, require_within
 from ..result.motion import SampledMotion
 from ..result.reading import wall_reading
@@ -68,6 +68,7 @@ def solve_compliant(
     wall = case.wall
     contacts.require_fit(case.block, side_stop=case.one_sided)
     warn_of_low_stop(case)
+    warn_if_still(case)
     watch = Stopwatch()
     system = Wall(case, contacts)
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)

@@ -116,7 +116,7 @@ def of_results(responses: Sequence[Response], names: Sequence[str]) -> TableRows
         top = "-" if over == float("inf") else f"{1e3 * over * response.case.wall.alpha * height:.0f} mm"
         peak = "overturned" if over == float("inf") else f"{over:.3f}"
         share = "-" if over == float("inf") else f"{response.peak_over_overturning:.3f}"
-        rows.append((name, response.outcome.value, peak, share, top, str(len(response.impacts)), _settings(response)))
+        rows.append((name, response.outcome.value, peak, share, top, str(len(response.impacts))))
     return rows
 
 
@@ -128,15 +128,23 @@ def of_masonry_results(responses: Sequence[Response], names: Sequence[str]) -> T
         said = named(fell) if fell else "none"
         moved = f"{response.peak.max():.3g} rad", f"{1e3 * response.opening.max():.3g} mm"
         slid = f"{1e3 * response.sliding.max():.3g} mm"
-        rows.append((name, response.outcome.value, said, *moved, slid, f"{response.solver}, {_settings(response)}"))
+        rows.append((name, response.outcome.value, said, *moved, slid))
     return rows
 
 
-def _settings(response: Response) -> str:
-    """How a response was solved."""
+def settings(responses: Sequence[Response]) -> tuple[str, list[str]]:
+    """How the responses were solved: what all of them share, and what else each of them has."""
+    own = [_settings(response) for response in responses]
+    shared = [part for part in own[0] if all(part in parts for parts in own)]
+    return ", ".join(shared), [", ".join(part for part in parts if part not in shared) for parts in own]
+
+
+def _settings(response: Response) -> list[str]:
+    """How a response was solved, in parts."""
     known = ("accuracy", "timestep", "newmark_beta", "rtol", "atol", "steps")
     values = ((name, response.stats.get(name)) for name in known)
-    return ", ".join(f"{name} {value:.3g}" if name != "steps" else f"{value} steps" for name, value in values if value)
+    said = [f"{name} {value:.3g}" if name != "steps" else f"{value} steps" for name, value in values if value]
+    return [response.solver, *said]
 
 
 def of_ties(responses: Sequence[Response], names: Sequence[str]) -> TableRows:

@@ -180,13 +180,18 @@ def section(name: str, pieces: object) -> list[str]:
 
 def results(responses: Sequence[Response], names: Sequence[str]) -> str:
     """The tables of results, of ties, of forces that were kept, and the messages."""
+    columns: tuple[str, ...]
     if isinstance(responses[0].case, Case):
         columns = "response", "outcome", "peak/alpha", "peak/overturning_rotation", "top moves by", "impacts"
         rows = content.of_results(responses, names)
     else:
         columns = "response", "outcome", "fallen", "largest rotation", "opening", "sliding"
         rows = content.of_masonry_results(responses, names)
-    made = table((*columns, "solved with"), rows)
+    shared, own = content.settings(responses)
+    made = f"<p>Solved with {html.escape(shared)}.</p>" if shared else ""
+    if any(own):
+        columns, rows = (*columns, "solved with"), [(*row, said) for row, said in zip(rows, own, strict=True)]
+    made += table(columns, rows)
     ties = content.of_ties(responses, names)
     if ties:
         of_tie = "response", "tie", "largest force", "drawn out by", "energy taken", "broke at"

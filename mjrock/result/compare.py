@@ -43,10 +43,11 @@ class Comparison:
 
     def __repr__(self) -> str:
         pair = self.restitution[0] if len(self.restitution) else (math.nan, math.nan)
+        said = ["none" if math.isnan(value) else f"{value:.4g}" for value in pair]
         which = "impact 1 under ground motion" if self.reference.case.shaken else "rebound 1"
         return (
-            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {pair[1]:.4g} for "
-            f"{pair[0]:.4g}, RMS of theta/alpha {self.rms:.3g}>"
+            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {said[1]} for "
+            f"{said[0]}, RMS of theta/alpha {self.rms:.3g}>"
         )
 
     @property

@@ -57,8 +57,11 @@ def masonry_ending(fallen: Mapping[str, float], quiet: bool, t_end: float, *, ev
     """How a run ended, and the same in words; `everywhere` says whether blocks meet wherever they are."""
     if fallen:
         left_out = "" if everywhere else "; contacts other than those of the joints at rest are not in the model"
-        first = f"{len(fallen)} blocks fell, the first at {next(iter(fallen.values())):.4g} s: {named(list(fallen))}."
-        return Outcome.OVERTURNED, f"{first} The motion was followed for {t_end:.4g} s{left_out}."
+        (name, first), *others = fallen.items()
+        fell = f"1 block fell, at {first:.4g} s: {name}."
+        if others:
+            fell = f"{len(fallen)} blocks fell, the first at {first:.4g} s: {named(list(fallen))}."
+        return Outcome.OVERTURNED, f"{fell} The motion was followed for {t_end:.4g} s{left_out}."
     if quiet:
         return Outcome.AT_REST, f"The masonry is at rest at the end of the run ({t_end:.4g} s)."
     return Outcome.TIME_ENDED, f"The masonry still moves at the end of the run ({t_end:.4g} s)."

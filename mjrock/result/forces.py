@@ -110,7 +110,9 @@ class Forces:
         normal: normal force, positive where it presses [N], shape (n, joints).
         shear: force along the joint [N], shape (n, joints), and in space along its two axes, (n, joints, 2).
         eccentricity: distance from the middle of the joint to where the resultant passes through its plane, along the
-            joint [m], of the shape of `shear`; NaN where nothing presses.
+            joint [m], of the shape of `shear`, also where a bond pulls; NaN without a normal force.
+        moment: of the forces about the middle of the joint, positive with theta [N m], shape (n, joints), in space
+            about the normal and the two axes, (n, joints, 3).
         links: what each tie, damper or other link pulls with, negative where it pushes [N], shape (n,), by its name.
         reactions: forces on the masonry by each fixed block, moved or not, along x and z and in space x, y and z [N],
             shape (n, 2) or (n, 3), by its name: of all its contacts, whether of joints or found where blocks are, and
@@ -126,6 +128,7 @@ class Forces:
     normal: Array
     shear: Array
     eccentricity: Array
+    moment: Array
     links: Mapping[str, Array]
     reactions: Mapping[str, Array]
     guides: Mapping[str, Array]
@@ -156,10 +159,13 @@ class Forces:
             columns |= {f"moment{a} of the guide of {name} [N m]": held[:, 1 + i] for i, a in enumerate(about)}
         for i, name in enumerate(self.joints):
             columns[f"normal force of {name} [N]"] = self.normal[:, i]
+            labels = ("",) if d == 2 else (" 1", " 2")
             for what, values, unit in (("shear", self.shear, "N"), ("eccentricity", self.eccentricity, "m")):
                 along = values[:, i].reshape(len(values), -1).T
-                labels = ("",) if d == 2 else (" 1", " 2")
                 columns |= {f"{what}{k} of {name} [{unit}]": row for k, row in zip(labels, along, strict=True)}
+            turning = self.moment[:, i].reshape(len(self.moment), -1).T
+            about = ("moment",) if d == 2 else ("torsion", *(f"moment{k}" for k in labels))
+            columns |= {f"{what} of {name} [N m]": row for what, row in zip(about, turning, strict=True)}
         return columns | {f"pull of {name} [N]": pulled for name, pulled in self.links.items()}
 
     def __repr__(self) -> str:
@@ -200,13 +206,13 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     along = np.matmul(axes, force[..., None])[..., 0]
     normal, shear = along[..., 0], along[..., 1:]
     if d == 2:
-        about = about[..., 0] - (middle[..., 1] * force[..., 0] - middle[..., 0] * force[..., 1])
-        arm = -about[..., None]
+        moment = about[..., 0] - (middle[..., 1] * force[..., 0] - middle[..., 0] * force[..., 1])
+        bends = -moment[..., None]
     else:
-        about = np.matmul(axes, (about - np.cross(middle, force))[..., None])[..., 0]
-        arm = np.stack([-about[..., 2], about[..., 1]], axis=-1)
-    presses = (normal > 0)[..., None]
-    eccentricity = np.where(presses, arm, np.nan) / np.where(presses, normal[..., None], 1.0)
+        moment = np.matmul(axes, (about - np.cross(middle, force))[..., None])[..., 0]
+        bends = np.stack([-moment[..., 2], moment[..., 1]], axis=-1)
+    acts = (normal != 0)[..., None]
+    eccentricity = np.where(acts, bends, np.nan) / np.where(acts, normal[..., None], 1.0)
     reactions = {name: gathered.held[:, i].copy() for i, name in enumerate(frames.blocks)}
     guides = guides_of(case, gathered)
     add_links(case, gathered, reactions)
@@ -215,7 +221,8 @@ def forces_of(case: Case | MasonryCase, frames: JointFrames, gathered: Gathered)
     if d == 2:
         shear, eccentricity = shear[..., 0], eccentricity[..., 0]
     damage = np.full(normal.shape, np.nan) if gathered.damage is None else gathered.damage
-    return Forces(frames, normal.copy(), shear.copy(), eccentricity, dict(gathered.pulled), reactions, guides, damage)
+    along_faces = normal.copy(), shear.copy(), eccentricity, moment
+    return Forces(frames, *along_faces, dict(gathered.pulled), reactions, guides, damage)
 
 
 def guides_of(case: Case | MasonryCase, gathered: Gathered) -> dict[str, Array]:
@@ -225,6 +232,8 @@ def guides_of(case: Case | MasonryCase, gathered: Gathered) -> dict[str, Array]:
         return guides
     d = 3 if case.masonry.in_space else 2
     for i, actuator in enumerate(case.actuators.values()):
+        if actuator.block is None:
+            continue
         name, upwards = case.masonry.names[actuator.block], -gathered.guided[:, i, d - 1]
         if actuator.guide.rising or (actuator.guide.turning and name not in guides):
             upwards = upwards if actuator.guide.rising else np.zeros_like(upwards)
@@ -257,6 +266,6 @@ def required_room(case: Case | MasonryCase, samples: float) -> tuple[int, int, i
     frames = JointFrames.of(case)
     d, driven = frames.middle.shape[1], 0 if isinstance(case, Case) else len(case.actuators)
     counts = len(frames.names), len(frames.blocks), len(case.links), driven
-    numbers = samples * (counts[0] * (2 * d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))
+    numbers = samples * (counts[0] * 4 * (d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))
     require_size("the forces of this answer", numbers, "raise output_step, or leave the forces out")
     return counts

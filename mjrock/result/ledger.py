@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..quantities import Array
+from ..quantities import Array, require_reals, shown
 
 ENERGY_GAIN = 1e-3
 """Most energy that may appear from nowhere, over the energy there was [-]."""
@@ -68,7 +69,7 @@ class Ledger:
         elastic: in the springs of the contacts.
         dashpots: work that the dashpots have taken since the release, by group of contacts: "base" and "side" of a
             wall.
-        friction: work that friction has taken since the release.
+        friction: work that friction has taken since the release. It gives none back beyond the error of the steps.
         ground: work that the ground motion has put in, as seen from the base, and with it that of supports that are
             moved.
         actuators: work that each actuator has put in since the release, by its name: its force times the way of its
@@ -77,8 +78,10 @@ class Ledger:
         broken: elastic energy that ties have lost by breaking since the release, by tie; only those that may break.
         ends: energy that contacts of masonry have lost at the ends of faces since the release, those of "joints" and
             of "encounters". A contact that passes the end of its face leaves what its spring held, and its force
-            turns from the normal of one face to that of the other. Negative where energy was gained.
-        bonds: what bonds of mortared joints have taken since the release, in "tension", "slip" and "crushing".
+            turns from the normal of one face to that of the other. Contacts that are found anew may hold more along
+            their faces than those before them. Negative where energy was gained.
+        bonds: what bonds of mortared joints have taken since the release, in "tension", "slip" and "crushing"; in slip
+            no more than the force along the joint has done.
     """
 
     t: Array
@@ -138,15 +141,22 @@ class Ledger:
         taken = {f"taken by {name} [J]": account for name, account in self.taken.items()}
         return held | taken | {f"put in by {name} [J]": account for name, account in self.put_in.items()}
 
-    def at(self, t: Array) -> Ledger:
-        """The ledger at other times, interpolated."""
+    def at(self, t: ArrayLike) -> Ledger:
+        """The ledger at other times [s], of any shape, interpolated.
+
+        Raises:
+            TypeError, ValueError: unless the times are finite real numbers.
+        """
+        times = require_reals("t", t, "times in s")
+        if not np.isfinite(times).all():
+            raise ValueError(f"t = {shown(t)} holds a value that is not finite; it takes times in s")
 
         def then(part: Any) -> Any:
             if isinstance(part, Mapping):
                 return {name: then(account) for name, account in part.items()}
-            return np.interp(t, self.t, part)
+            return np.interp(times, self.t, part)
 
-        return Ledger(**{name: then(part) for name, part in vars(self).items()} | {"t": t})
+        return Ledger(**{name: then(part) for name, part in vars(self).items()} | {"t": times})
 
     def __repr__(self) -> str:
         taken, put_in = (

@@ -85,16 +85,17 @@ def masonry_reading(
     have no end."""
     masonry, pose = case.masonry, motion.pose.reshape(len(t), -1)
     up = scene.freedom.translations - 1
-    joints = joint_motion(masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel(), pose)
+    joints = joint_motion(case, scene, t, pose)
     drop = scene.at_rest[:, up] - motion.pose[:, :, up]
     below = drop - sunk_ground(masonry, case.supports, t)
     fallen = fallen_blocks(masonry, t, joints.parted, tilts(pose, scene.freedom), below)
     quiet, opening = is_quiet(scene, float(motion.energy[-1]), motion.velocity[-1]), joints.opening.copy()
     if beside is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
-        told = told_of_overhang(_past_edges(case, scene, pose, joints, fallen))
+        told = told_of_overhang(_past_edges(case, scene, t, pose, joints, fallen))
     else:
-        quiet = quiet or (beside.left and _lies_still(scene, t, motion))
+        elsewhere = beside.left or bool(case.supports) or bool(case.actuators)  # energy at rest is another one there
+        quiet = quiet or (elsewhere and _lies_still(scene, t, motion))
         gone = below_everything(masonry, case.supports, t, drop)
         told = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
         np.maximum.at(opening, scene.contacts.joint, beside.widest)
@@ -126,12 +127,11 @@ def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
 
 
 def _past_edges(
-    case: MasonryCase, scene: Scene, pose: Array, joints: JointRecord, fallen: dict[str, float]
+    case: MasonryCase, scene: Scene, t: Array, pose: Array, joints: JointRecord, fallen: dict[str, float]
 ) -> dict[str, float]:
     """How far the weight of each block that has not fallen has passed the edge of what it stands on [m]."""
-    masonry, places, joint, start = case.masonry, scene.places, scene.contacts.joint, scene.at_rest.ravel()
-    centroids = laden(masonry, case.effects)[1]
-    past = past_support(masonry, centroids, joints, lambda some: slips(masonry, places, joint, start, pose[some]))
+    centroids = laden(case.masonry, case.effects)[1]
+    past = past_support(case.masonry, centroids, joints, lambda some: slips(case, scene, t[some], pose[some]))
     return {name: far for name, far in past.items() if name not in fallen}
 
 

@@ -9,12 +9,14 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import ON_ITS_FACE, require_array, require_within, shown
+from ..quantities import GRAVITY, ON_ITS_FACE, require_array, require_within, shown
 from .response import State
 
 PARTS = ("pose", "velocity")
 UNIT = 1e-6
 """Largest difference of the length of a quaternion from one [-]."""
+HELD = 1e-3
+"""Largest speed that the guide of an actuator takes from a block at a start, over sqrt(g size) [-]."""
 
 
 def required_start(start: object, case: Case | MasonryCase) -> State:
@@ -22,7 +24,8 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
 
     Raises:
         TypeError: if it is no pose and velocity.
-        ValueError: for another shape, a value out of range, or ties that yield among the effects.
+        ValueError: for another shape, a value out of range, ties that yield among the effects, or a block that moves as
+            its guide does not allow. A guide takes less than a thousandth of sqrt(g size) from it.
     """
     if any(link.law.yields for link in case.links.values()):
         raise ValueError("start does not say what ties have yielded; follow a case with ties that yield in one run")
@@ -42,6 +45,11 @@ def required_start(start: object, case: Case | MasonryCase) -> State:
         size = np.linalg.norm(pose[:, 3:], axis=1)
         for length in size[np.abs(size - 1) > UNIT].tolist():
             require_within("start, length of a quaternion", length, 1 - UNIT, 1 + UNIT)
+    guiding = [one for one in case.actuators.values() if any(one.guide)] if isinstance(case, MasonryCase) else []
+    if isinstance(case, MasonryCase) and guiding:
+        smallest = min(case.masonry.blocks[one.block].size for one in guiding)
+        case.require_guided("start, velocity", velocity, HELD * math.sqrt(GRAVITY * smallest))
+        velocity = np.where(case.guided, 0.0, velocity)
     return pose, velocity
 
 

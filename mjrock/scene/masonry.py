@@ -13,7 +13,7 @@ from ..problem.masonry.effects import applied, laden, placed
 from ..problem.masonry.lines import Lines, free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.polyhedron import Polyhedron
-from ..problem.masonry.statics import falling, friction_lacking, slippery
+from ..problem.masonry.statics import falling, friction_lacking, nudged, slippery
 from ..problem.masonry.tilt import motions_of_tilt
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import links_of
@@ -67,7 +67,7 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
         pose = scene.at_rest
     except UnsettledError as error:
         require_carried(masonry, effects)
-        raise unsettled(masonry, scene, error.pose) from None
+        raise unsettled(masonry, effects, error.pose) from None
     if any(masonry.bonds):
         require_held(masonry, scene, pose)
 
@@ -102,31 +102,61 @@ def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under the weight{remedy}")
 
 
-def unsettled(masonry: Masonry, scene: Scene, pose: Array) -> ValueError:
+def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> ValueError:
     """What is said of masonry that stands as rigid blocks, but of which no pose of rest was found.
 
     Args:
-        masonry, scene: the masonry.
+        masonry, effects: the masonry.
         pose: of its free blocks at the end of the search, shape (free, nq).
     """
+    scene = standing_masonry(masonry, effects)
     slide, joints = slippery(masonry)
     if slide:
         return ValueError(
             f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
             f"joints that need friction, of any coefficient above 0: {named(joints)}"
         )
-    moved = np.linalg.norm(pose[:, : 3 if masonry.in_space else 2], axis=1)
-    gone = [masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= GONE * moved.max()]
+    gone = named(gone_in(masonry, pose))
     if stands_on_stiff_joints(scene):
         return ValueError(
-            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {named(gone)} would fall; "
+            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {gone} would fall; "
             "raise k_n"
         )
+    if at_limit := nudged(masonry, applied(masonry, effects)):
+        names, friction = at_limit
+        return ValueError(
+            f"the masonry cannot stand: rigid blocks would at their limit alone, and {named(names)} would "
+            f"{'slide' if friction else 'tip'}, however large k_n is; give the blocks "
+            f"{'more friction' if friction else 'more to stand on'}, or a support or a tie"
+        )
     return ValueError(
-        f"the masonry cannot stand: {named(gone)} would slide down, however large k_n is. Friction would hold them if "
+        f"the masonry cannot stand: {gone} would slide down, however large k_n is. Friction would hold them if "
         "their joints were pressed together, as by wedges, but the weight alone does not press them enough; give the "
         "joints more friction, or the blocks a support or a tie"
     )
+
+
+def gone_in(masonry: Masonry, pose: Array) -> tuple[str, ...]:
+    """Names of the blocks that have gone at the end of a search for the pose of rest, shape (free, nq)."""
+    moved = np.linalg.norm(pose[:, : 3 if masonry.in_space else 2], axis=1)
+    return tuple(masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= GONE * moved.max())
+
+
+def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...]:
+    """Names of blocks of rigid masonry that stand only by wedging, though `falling` lets them; none of what comes to
+    rest.
+
+    Friction would hold them if their joints were pressed together, but from joints without load the weight does not
+    press them enough, on joints of any stiffness.
+    """
+    scene = standing_masonry(masonry, effects)
+    try:
+        _ = scene.at_rest
+    except UnsettledError as error:
+        if slippery(masonry)[0] or stands_on_stiff_joints(scene) or nudged(masonry, applied(masonry, effects)):
+            return ()
+        return gone_in(masonry, error.pose)
+    return ()
 
 
 def stands_on_stiff_joints(scene: Scene) -> bool:

@@ -35,6 +35,8 @@ def require_case(case: Case | MasonryCase, contacts: Contacts | None) -> None:
     if isinstance(case, Contacts) and isinstance(contacts, Case):
         raise TypeError("case and contacts are swapped: the case comes first")
     require_kind("case", case, Case, MasonryCase)
+    if contacts is None:
+        raise TypeError("contacts = None: a wall needs its interfaces; take Contacts.from_law(wall, e, k_base, k_side)")
     require_kind("contacts", contacts, Contacts)
 
 

@@ -231,11 +231,11 @@ class MasonryAnalysis(Analysis):
 def save_history(response: Response, path: Path) -> None:
     """Write t [s], theta and omega [rad, rad/s], or pose and velocity of masonry, and energy [J] to an .npz file.
 
-    Where the run has kept forces, normal, shear and eccentricity follow, and the reaction of each fixed block.
+    Where the run has kept forces, normal, shear, eccentricity and moment follow, and the reaction of each fixed block.
     """
     names = ("theta", "omega") if response.joints is None else ("pose", "velocity")
     arrays = {name: getattr(response, name) for name in ("t", *names, "energy")}
     if response.kept_forces is not None:
-        arrays |= {name: getattr(response.forces, name) for name in ("normal", "shear", "eccentricity")}
+        arrays |= {name: getattr(response.forces, name) for name in ("normal", "shear", "eccentricity", "moment")}
         arrays |= {f"reaction of {name}": force for name, force in response.reactions.items()}
     write_arrays(path, **arrays)

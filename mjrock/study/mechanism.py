@@ -134,11 +134,13 @@ class MechanismCheck:
         rows += [(f"{tie} yields at d [m]", f"{d:.4f}", "") for tie, d in self.yielding.items()]
         rows += [(f"{tie} breaks at d [m]", f"{d:.4f}", "") for tie, d in self.breaking.items()]
         for name, state in self.states.items():
+            gone = [tie for tie, d in self.breaking.items() if d <= state.capacity]
+            broken = f"without {', '.join(gone)}, broken" if gone else ""
             rows += [
                 (f"d_{name} = {SHARE[name]:.1f} d_0 [m]", f"{state.capacity:.4f}", "C8.7.1.2.1.6"),
                 (f"T_{name} [s]", f"{state.period:.3f}", "C8.7.1.10" if name == "SLV" else "C8.7.1.11"),
                 (f"demand, xi = {DAMPING[name]:.0%} [m]", f"{state.demand:.4f}", "C8.7.1.2.1.8"),
-                (f"capacity over demand {name}", f"{state.ratio:.2f}", ""),
+                (f"capacity over demand {name}", f"{state.ratio:.2f}", broken),
             ]
         widths = [max(len(row[i]) for row in rows) for i in range(2)]
         return "\n".join(f"{what:<{widths[0]}}  {value:>{widths[1]}}  {where}".rstrip() for what, value, where in rows)
@@ -178,7 +180,7 @@ def mechanism_check(
         TypeError, ValueError: for a value outside its range, or a wall whose curve does not end, as its ties hold it.
 
     Warns:
-        Implausible: for ties that never break and raise d_SLC above d_0 of the wall without them.
+        Implausible: for ties that still hold at d_SLC and raise it above d_0 of the wall without them.
 
     Examples:
         >>> check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=1.0, soil="A"))
@@ -202,7 +204,8 @@ def mechanism_check(
     a = curve.multiplier * GRAVITY / (participation * factor)
     d_0 = float(d[-1])
     alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
-    _warn_of_ties(case, SHARE["SLC"] * d_0, alone)
+    yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
+    _warn_of_ties(case, SHARE["SLC"] * d_0, alone, breaking)
     states = {}
     for name, share in SHARE.items():
         capacity = share * d_0
@@ -211,18 +214,21 @@ def mechanism_check(
     alpha_0, tied = float(curve.multiplier[0]), None
     if case.pulls:
         tied = alpha_0 + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
-    yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
     return MechanismCheck(alpha_0, tied, participation, factor, d, a, d_0, states, peak, yielding, breaking)
 
 
-def _warn_of_ties(case: Case, capacity: float, alone: float) -> None:
-    """Warn of ties that never break, where they raise d_SLC above the displacement `alone` at which the curve of the
-    wall without them ends [m]."""
-    endless = [name for name, tie in case.springs.items() if tie.law.ultimate == math.inf]
-    if endless and capacity > alone:
+def _warn_of_ties(case: Case, capacity: float, alone: float, breaking: Mapping[str, float]) -> None:
+    """Warn of ties that still hold at d_SLC, where they raise it above the displacement `alone` at which the curve of
+    the wall without them ends [m]. `breaking` has the displacement at which ties break [m]."""
+    holding = [
+        f"{name} (ultimate = {f'{tie.law.ultimate:g} m' if tie.law.ultimate < math.inf else None})"
+        for name, tie in case.springs.items()
+        if breaking.get(name, math.inf) > capacity
+    ]
+    if holding and capacity > alone:
         warnings.warn(
             f"d_SLC = {capacity:.3g} m is more than {alone:.3g} m, at which the curve of the wall without ties ends: "
-            f"{', '.join(endless)} would hold at any displacement; say by `ultimate` how far a tie can be drawn out",
+            f"{', '.join(holding)} would still hold there; say by `ultimate` how far a tie can be drawn out [m]",
             Implausible,
             stacklevel=3,
         )

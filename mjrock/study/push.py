@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from ..distinct.explicit import solve_explicit
-from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.actuator import LARGEST, Actuator
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.effects import laden
@@ -25,29 +24,34 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.wall.effect import Effect
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_row, require_within, shown
 from ..result.response import Response
+from ..result.start import required_start
+from .limit_analysis import horizontal
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
 """Pieces of a push, points of the curve in each, and samples of a point."""
 TRIES = 5
-"""How often a piece is made again at half the rate."""
+"""How often a piece is made at most, each time at half the rate."""
+HELPS = 0.75
+"""Inertia of a piece over that at twice the rate, above which a lower rate is no help [-]."""
 FIRST = 0.02
 """Time of the first piece and of the shortest one [s]."""
 QUIET = 0.25
 """Share of the inertia allowed below which the next piece takes half the time [-]."""
-LONGEST = 0.5
-"""Longest step of the motion that is a force that grows [s]."""
-RISE = 0.002
-"""Growth of the multiplier in a piece [-]."""
-BEYOND = 1.02
-"""Multiplier over what is borne from which it does not grow any more [-]."""
-PART = 0.05
-"""Largest motion in a piece, over the displacement at which the push ends, beyond which a piece is cut [-]."""
+RISE, LEAST = 0.03, 0.001
+"""Growth of the multiplier beyond all before it in a piece, over the largest, and its least value [-]. A piece in which
+it grows twice as much is cut into halves."""
+CUTS = 3
+"""How often a piece is cut."""
+STIFF = 1e4
+"""Stiffness of what drives all blocks, over their weight divided by the height of the masonry [-]."""
 HIGHEST = 2.5
 """Largest multiplier of a push [-]."""
 DAMPED = 0.5
-"""Damping ratio of the block on an actuator that has no damping of its own [-]."""
+"""Damping ratio of what is driven on an actuator that has no damping of its own [-]."""
 STRIKING = 0.05
 """Force of inertia over what is borne beyond which a point is part of a blow [-]."""
+OFF = 0.02
+"""Difference of the work under a curve and the energy gained that is warned of, over the largest energy [-]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,10 +63,14 @@ class Push:
             direction of the force [m], shape (n,).
         force: what the masonry bears: force of the actuator, or horizontal force over the weight of the free blocks,
             each less inertia and damping of the motion [N] or [-], shape (n,).
-        inertia: forces of inertia and of the damping of the motion along the direction, likewise, shape (n,).
+        inertia: forces of inertia and of the damping of the motion, likewise, shape (n,): under an actuator the rate of
+            the momentum along it, under a direction the growth of the kinetic energy over the displacement.
         ended: why it stopped, in words.
         answer: the last piece of the motion, whose `end` carries on.
         unit: of the force, "N" or "-".
+        energy: potential and elastic energy that the masonry has gained, and what friction, dashpots, bonds and ties
+            have taken, since the push began [J], shape (n,). The work under the curve equals it where the motion is
+            slow.
     """
 
     displacement: Array
@@ -71,29 +79,26 @@ class Push:
     ended: str
     answer: Response = field(repr=False)
     unit: str = "N"
+    energy: Array = field(kw_only=True)
 
     @property
     def peak(self) -> float:
-        """The largest force either way [N] or multiplier [-], of points whose force of inertia is below 5 % of it.
+        """The largest force either way [N] or multiplier [-], of points whose force of inertia is up to 5 % of it.
 
-        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry. Under
-        a force that grows nothing holds them back, so that no point after the first blow counts.
+        Blocks that have given way strike each other, and what they bear in a blow is no strength of the masonry.
         """
         return float(np.abs(self.force[self._peak_at]))
 
     @property
     def inertia_share(self) -> float:
-        """Root mean square of the forces of inertia up to the peak, over the peak [-]."""
-        return float(np.sqrt(np.mean(self.inertia[: self._peak_at + 1] ** 2)) / self.peak)
+        """Root mean square of the forces of inertia over the whole curve, over the peak [-]."""
+        return float(np.sqrt(np.mean(self.inertia**2)) / self.peak)
 
     @property
     def _peak_at(self) -> int:
         """The point of the peak."""
-        borne, inertia = np.abs(self.force), np.abs(self.inertia)
-        slow = inertia <= STRIKING * borne
-        if self.unit == "-":
-            slow &= np.cumsum(inertia > STRIKING * borne.max()) == 0
-        return int(np.where(slow, borne, -1.0).argmax())
+        borne, inertia = np.abs(self.force) if self.unit == "N" else self.force, np.abs(self.inertia)
+        return int(np.where(inertia <= STRIKING * borne, borne, -1.0).argmax())
 
     def __repr__(self) -> str:
         return (
@@ -104,9 +109,10 @@ class Push:
 
 def push(
     masonry: Masonry,
-    driver: Actuator | float,
+    driver: Actuator | float | ArrayLike,
     to: float | ArrayLike,
     *,
+    angle: float | None = None,
     effects: Sequence[Effect] | Effect = (),
     inertia: float = 0.01,
     mass_damping: float = 0.0,
@@ -116,102 +122,75 @@ def push(
 ) -> Push:
     """Force and displacement of masonry that is pushed slowly, with the branch on which the force falls.
 
-    An actuator is driven to displacements one after the other, to and fro for a cyclic test. A direction, 1 or -1 along
-    x, is that of a horizontal force on every block in proportion to its weight, which grows until it is no longer
-    borne; then the blocks move on, and the curve has what they bear as they move.
+    An actuator is driven to displacements one after the other, to and fro for a cyclic test. A direction is that of a
+    horizontal force on every block in proportion to its weight. The force is the one that lets the common centroid of
+    the blocks move slowly along the direction, so that its work is what the masonry gains and what is taken in it. It
+    ends before `to` where nothing is borne any more and the masonry would go on by itself.
 
     Args:
         masonry: the masonry.
-        driver: the actuator, whose own history plays no part, or 1 or -1.
+        driver: the actuator, whose own history plays no part, or the direction: 1 along x, -1 against it, or in space a
+            vector in plan, shape (2,), of any length.
         to: displacement at which to stop [m], or those at which to turn back and to stop; for a direction one number.
+        angle: of the direction in plan, from x towards y [rad], in space; it takes the place of `driver`.
         effects: further effects, such as a `Load` that stays.
         inertia: forces of inertia and of the damping of the motion that are allowed in a piece, root mean square over
             the largest force so far [-], 1e-4 to 0.5. Where blocks give way at once they are larger at any rate.
         mass_damping, local_damping: of the motion, see `solve_explicit`.
         falls_to: share of the largest force so far at which to stop [-], 0 to 1; 0 goes on to the displacement, as a
             cyclic push has to.
-        start: the `end` of the answer of an earlier push.
+        start: the `end` of the answer of an earlier push with the same driver.
 
     Returns:
         The `Push`: displacement [m] and force [N] or multiplier [-], their `peak`, and the `answer` at the end.
 
     Raises:
         TypeError, ValueError: for a value outside its range, or masonry that does not stand.
+
+    Warns:
+        UserWarning: where the motion was not slow: where the work under the curve is not the energy that was gained, or
+            the forces of inertia are above 5 % of the peak.
     """
     require_kind("masonry", masonry, Masonry)
     allowed = require_within("inertia", inertia, 1e-4, 0.5)
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
     turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
-    given = tuple(effects) if isinstance(effects, Sequence) else (effects,)
+    given = _required(masonry, effects, start)
     options = {"mass_damping": mass_damping, "local_damping": local_damping}
+    if isinstance(driver, Actuator) and angle is None:
+        jack = _damped(driver, _driven_mass(driver, masonry, given))
+        return _pushed(Driven(masonry, given, options, start, jack, turns), allowed, falls_to)
     if isinstance(driver, Actuator):
-        load: Load = Driven(masonry, given, options, start, _damped(driver, masonry), turns)
-    elif driver in (1, -1) and len(turns) == 1 and turns[0] > 0:
-        load = Forced(masonry, given, options, start, float(driver), float(turns[0]))
-    else:
-        raise ValueError(
-            f"driver = {shown(driver)} with to = {shown(to)}: it is an Actuator, or 1 or -1 with one displacement "
-            "above 0"
-        )
-    return _pushed(load, allowed, falls_to)
+        raise ValueError(f"angle = {shown(angle)} is for a direction; an Actuator has one of its own")
+    actuator = _of_all(masonry, given, horizontal(masonry, driver, angle, "driver"))
+    if len(turns) != 1 or turns[0] <= 0:
+        raise ValueError(f"to = {shown(to)}: a direction goes with one displacement above 0, an Actuator with others")
+    return _pushed(Forced(masonry, given, options, start, actuator, float(turns[0])), allowed, falls_to)
+
+
+def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> tuple[Effect, ...]:
+    """The effects with the numbers of their blocks, where they and a start are what steps take."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Implausible)
+        case = MasonryCase(masonry, 1.0, effects=effects)  # type: ignore[arg-type]
+    if start is not None:
+        required_start(start, case)
+    return case.effects
 
 
 class Piece(NamedTuple):
-    """A piece of a push: its points, what was borne, its answer, and the level of the load at its end."""
+    """A piece of a push: its points, its answer, and at its end how far the actuator has gone, how far its spring is
+    pressed, and what was gained."""
 
     displacement: Array
     force: Array
     inertia: Array
+    energy: Array
     answer: Response
     level: float
-
-
-@dataclass
-class Load:
-    """A load that grows slowly.
-
-    Args:
-        masonry, effects, options, start: see `push`.
-    """
-
-    masonry: Masonry
-    effects: tuple[Effect, ...]
-    options: dict[str, Any]
-    start: Any
-    level: float = field(default=0.0, init=False)
-    unit = "N"
-
-    def piece(self, duration: float) -> Piece:
-        """The next piece, in so much time [s]."""
-        raise NotImplementedError
-
-    def accept(self, piece: Piece) -> None:
-        """Go on from the end of a piece."""
-        self.start, self.level = piece.answer.end, piece.level
-
-    @property
-    def may_slow(self) -> bool:
-        """Whether a longer time makes a piece quieter."""
-        return True
-
-    def done(self, piece: Piece) -> str:
-        """Why it ends after a piece, or nothing."""
-        raise NotImplementedError
-
-    def _answer(self, duration: float, *driven: Effect, motion: GroundMotion | None = None) -> Response:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Implausible)  # the motion is that of a piece
-            case = MasonryCase(self.masonry, duration, motion=motion, effects=(*self.effects, *driven))
-            warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
-            return solve_explicit(case, output_step=duration / (POINTS * SAMPLES), start=self.start, **self.options)
-
-    def _inertia(self, answer: Response, way: Array) -> Array:
-        """Force of inertia and of the damping of the motion along a direction, in the mean of each point [N]."""
-        mass = laden(self.masonry, self.effects)[0][list(self.masonry.free)]
-        momentum = (answer.velocity[:, :, : len(way)] @ way) @ mass
-        grown = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
-        return np.asarray(grown + self.options["mass_damping"] * means(momentum))
+    stretch: float
+    gained: float
 
 
 def means(values: Array) -> Array:
@@ -221,15 +200,100 @@ def means(values: Array) -> Array:
 
 
 @dataclass
+class Load:
+    """An actuator that goes on slowly.
+
+    Args:
+        masonry, effects, options, start: see `push`.
+        actuator: its own history plays no part.
+    """
+
+    masonry: Masonry
+    effects: tuple[Effect, ...]
+    options: dict[str, Any]
+    start: Any
+    actuator: Actuator
+    level: float = field(default=0.0, init=False)
+    gained: float = field(default=0.0, init=False)
+    largest: float = field(default=0.0, init=False)
+    unit, weight = "N", 1.0
+
+    def path(self, duration: float) -> tuple[Array, Array]:
+        """Where the actuator goes next: times [s] and displacements from where it is [m], of the same shape."""
+        raise NotImplementedError
+
+    def piece(self, duration: float) -> Piece:
+        """The actuator goes on, in about so much time [s]."""
+        t, path = self.path(duration)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Implausible)  # the motion is that of a piece
+            driven = replace(self.actuator, displacement=(t, path))
+            case = MasonryCase(self.masonry, t[-1], effects=(*self.effects, driven))
+            warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
+            warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
+            spacing = t[-1] / (POINTS * SAMPLES)
+            answer = solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
+        *_, force = answer.actuators.values()  # effects may have others
+        gone = np.interp(answer.t, t, path)
+        stretch, inertia = self.stretched(answer, force, gone), self.inertia(answer, gone)
+        place, gained = self.level + gone - stretch, self._gained(answer, stretch)
+        end = self.level + gone[-1], stretch[-1], gained[-1]
+        return Piece(means(place), means(force) - inertia, inertia, means(gained), answer, *map(float, end))
+
+    def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
+        """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""
+        return force / self.actuator.stiffness
+
+    def inertia(self, answer: Response, gone: Array) -> Array:
+        """Force of inertia and of the damping of the motion along the direction, in the mean of each point [N]."""
+        raise NotImplementedError
+
+    def _gained(self, answer: Response, stretch: Array) -> Array:
+        """What the masonry has gained and what was taken in it at the samples of a piece, see `Push.energy` [J].
+
+        The spring and the dashpot of the actuator have no part in it, nor has the damping that is not in the curve.
+        """
+        ledger, driving = answer.ledger, list(answer.actuators)[-1]
+        assert ledger is not None
+        others = sum((work for name, work in ledger.put_in.items() if name != driving), np.zeros(len(answer.t)))
+        own = ledger.dashpots[driving] + 0.5 * self.actuator.stiffness * stretch**2
+        total = sum(ledger.taken.values(), ledger.potential + ledger.elastic) - others - own - self._slowed(answer)
+        return np.asarray(self.gained + total - total[0])
+
+    def _slowed(self, answer: Response) -> Array:
+        """What damping in proportion to mass has taken at the samples of a piece [J]."""
+        assert answer.ledger is not None
+        power = 2 * self.options["mass_damping"] * answer.ledger.kinetic
+        return np.append(0.0, np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(answer.t)))
+
+    def accept(self, piece: Piece) -> None:
+        """Go on from the end of a piece."""
+        self.start, self.level, self.gained = piece.answer.end, piece.level, piece.gained
+        self.largest = max(self.largest, float(np.abs(piece.force).max()))
+
+    def share(self, piece: Piece) -> float:
+        """Root mean square of the inertia in a piece, over the largest force so far [-]."""
+        most = max(self.largest, float(np.abs(piece.force).max()))
+        return float(np.sqrt(np.mean(piece.inertia**2))) / most
+
+    def next_time(self, duration: float, share: float, allowed: float) -> float:
+        """Time of the next piece [s], from that of the last and its inertia, over the largest force, and what is
+        allowed [-]."""
+        return max(0.5 * duration, FIRST) if share < QUIET * allowed else duration
+
+    def done(self, piece: Piece) -> str:
+        """Why it ends after a piece, or nothing."""
+        raise NotImplementedError
+
+
+@dataclass
 class Driven(Load):
     """An actuator that goes from one displacement to the next.
 
     Args:
-        actuator: its own history plays no part.
         turns: the displacements [m], shape (n,).
     """
 
-    actuator: Actuator
     turns: Array
 
     def __post_init__(self) -> None:
@@ -242,16 +306,16 @@ class Driven(Load):
         begun = legs[0][0] * 2.0 ** np.arange(-4, 0)  # the joints close
         self.levels = list(np.concatenate([begun, *legs]))
 
-    def piece(self, duration: float) -> Piece:
-        """The actuator goes on to its next level."""
-        goal = float(self.levels[0])
-        driven = replace(self.actuator, displacement=((0.0, duration), (0.0, goal - self.level)))
-        answer = self._answer(duration, driven)
-        *_, force = answer.actuators.values()  # effects may have others
-        pushed = means(force)
-        place = self.level + means(answer.t) / duration * (goal - self.level) - pushed / self.actuator.stiffness
-        inertia = self._inertia(answer, driven.way)
-        return Piece(place, pushed - inertia, inertia, answer, goal)
+    def path(self, duration: float) -> tuple[Array, Array]:
+        """To the next displacement."""
+        return np.array([0.0, duration]), np.array([0.0, self.levels[0] - self.level])
+
+    def inertia(self, answer: Response, gone: Array) -> Array:
+        """The rate of momentum along the direction, with the part of it that is damped away."""
+        mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
+        momentum = (answer.velocity[:, :, : len(way)] @ way) @ mass
+        grown = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
+        return np.asarray(grown + self.options["mass_damping"] * means(momentum))
 
     def accept(self, piece: Piece) -> None:
         """Go on to the level after that."""
@@ -265,91 +329,159 @@ class Driven(Load):
 
 @dataclass
 class Forced(Load):
-    """A horizontal force on every block in proportion to its weight.
+    """A horizontal force on every block in proportion to its weight, which drives their common centroid.
 
     Args:
-        side: 1 along x, -1 against it.
         to: displacement of the centroid at which it ends [m].
     """
 
-    side: float
     to: float
     unit = "-"
 
     def __post_init__(self) -> None:
-        self.held, self.cut, self.moved = False, False, 0.0
+        self.weight = weight_of(self.masonry, self.effects)
+        self.least = min(LEAST * self.weight / self.actuator.stiffness, self.to / PIECES)
+        self.mass, way = laden(self.masonry, self.effects)[0][list(self.masonry.free)], self.actuator.way
+        going = 0.0 if self.start is None else float(self.mass @ (self.start[1][:, : len(way)] @ way) / self.mass.sum())
+        self.speed, self.stretch = max(going, 0.0), math.nan
+        self.step = max(self.least, self.speed * FIRST)
 
     @property
-    def may_slow(self) -> bool:
-        """Until the blocks move on by themselves."""
-        return not self.held
+    def rise(self) -> float:
+        """Growth of the multiplier in a piece [-]."""
+        return max(RISE * self.largest, LEAST)
+
+    def path(self, duration: float) -> tuple[Array, Array]:
+        """Further by a step, from the speed that there is to that of a step in so much time, evenly."""
+        speed = self.step / duration
+        t = np.linspace(0.0, 2 * self.step / (self.speed + speed), POINTS * SAMPLES + 1)
+        return t, (self.speed + 0.5 * (speed - self.speed) * t / t[-1]) * t
 
     def piece(self, duration: float) -> Piece:
-        """The force grows by RISE, or stays once it is no longer borne. A piece in which the blocks move far is cut."""
-        rise = 0.0 if self.held else RISE
-        piece, self.cut = self._grown(duration, rise), False
-        while piece is None or (self._gives_way(piece) and duration > FIRST):
-            duration, rise, self.cut = 0.5 * duration, 0.5 * rise, True
-            piece = self._grown(duration, rise)
+        """The piece with multipliers in place of forces, cut where they grow by too much."""
+        piece = self.in_weights(super().piece(duration))
+        for _ in range(CUTS):
+            if self.strikes(piece) or self.grown(piece) <= 2 * self.rise or self.step <= self.least:
+                break
+            self.step = max(0.5 * self.step, self.least)
+            piece = self.in_weights(super().piece(duration))
         return piece
 
-    def _gives_way(self, piece: Piece) -> bool:
-        return abs(float(piece.displacement[-1]) - self.moved) > PART * self.to
+    def in_weights(self, piece: Piece) -> Piece:
+        """A piece with multipliers in place of forces."""
+        return piece._replace(force=piece.force / self.weight, inertia=piece.inertia / self.weight)
 
-    def _grown(self, duration: float, rise: float) -> Piece | None:
-        """A piece in which the force grows so far, or None where blocks have fallen before its end."""
-        level = self.level + rise
-        count = math.ceil(duration / LONGEST)
-        ramp = np.append(np.linspace(self.level, level, count + 1), level)
-        answer = self._answer(duration, motion=GroundMotion(-self.side * GRAVITY * ramp, duration / count))
-        if len(answer.t) <= POINTS * SAMPLES:
-            return None
-        mass = laden(self.masonry, self.effects)[0][list(self.masonry.free)]
-        way = self.side * np.eye(3 if self.masonry.in_space else 2)[0]
-        inertia = self._inertia(answer, way) / (GRAVITY * mass.sum())
-        borne = np.interp(means(answer.t), [0.0, duration], [self.level, level]) - inertia
-        moved = (answer.pose[:, :, : len(way)] @ way) @ mass / mass.sum()
-        return Piece(means(moved), borne, inertia, answer, level)
+    def strikes(self, piece: Piece) -> bool:
+        """Whether a piece is part of a blow."""
+        return self.share(piece) > STRIKING
+
+    def grown(self, piece: Piece) -> float:
+        """By how much the multiplier gets above all before [-]."""
+        return float(piece.force.max()) - self.largest
+
+    def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
+        """From how far the centroid has moved. One that carries on counts from where the blocks are."""
+        way = self.actuator.way
+        moved = (answer.pose[:, :, : len(way)] @ way) @ self.mass / self.mass.sum()
+        if math.isnan(self.stretch):
+            self.stretch = float(force[0]) / self.actuator.stiffness
+            if self.start is not None:
+                self.level, self.largest = float(moved[0]) + self.stretch, float(force[0]) / self.weight
+        return np.asarray(self.stretch + gone - (moved - moved[0]))
+
+    def inertia(self, answer: Response, gone: Array) -> Array:
+        """The growth of the kinetic energy, with what was damped away, over the displacement of what drives."""
+        assert answer.ledger is not None
+        kinetic = answer.ledger.kinetic + self._slowed(answer)
+        return np.asarray(np.diff(kinetic[::SAMPLES]) / np.diff(gone[::SAMPLES]))
 
     def accept(self, piece: Piece) -> None:
-        """Go on, with the force as it is where it was not borne or the blocks gave way."""
+        """Go on from the end of a piece, with the step in which the multiplier would grow as it is to."""
+        share = 2.0 if self.strikes(piece) else self.rise / max(self.grown(piece), 1e-9)
+        self.speed = 2 * self.step / piece.answer.t[-1] - self.speed
+        self.step = min(max(self.step * min(max(share, 0.5), 2.0), self.least), self.to / PIECES)
         super().accept(piece)
-        self.moved = float(piece.displacement[-1])
-        self.held = self.cut or piece.level > BEYOND * float(piece.force.mean())
+        self.stretch = piece.stretch
+
+    def next_time(self, duration: float, share: float, allowed: float) -> float:
+        """The speed of the centroid grows no faster than the force of inertia that is allowed, half as fast in
+        energy: blocks that turn have more of it."""
+        gained = GRAVITY * allowed * self.largest * self.step if share < QUIET * allowed else 0.0
+        return max(self.step / math.sqrt(self.speed**2 + gained), FIRST)
 
     def done(self, piece: Piece) -> str:
-        """Where the centroid has moved, or nothing gives way."""
+        """Where the centroid has moved, nothing gives way, or nothing is borne any more."""
         if piece.displacement[-1] > self.to:
             return f"moved by {1e3 * self.to:.4g} mm"
-        return f"nothing gives way to {HIGHEST:g}" if piece.level >= HIGHEST else ""
+        if self.strikes(piece):
+            return ""
+        if piece.force[-1] < 0 and self.largest > LEAST:
+            return f"goes on by itself from {1e3 * piece.displacement[-1]:.4g} mm"
+        return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""
 
 
 def _pushed(load: Load, allowed: float, falls_to: float) -> Push:
     """The pieces of a push until one ends it."""
-    points, ended, duration, largest = [], "", FIRST, 0.0
+    points, ended, duration = list[tuple[Array, ...]](), "", FIRST
     with tqdm(desc="push", delay=3, disable=None, leave=False) as bar:
         while not ended:
-            for attempt in range(TRIES):
-                piece = load.piece(duration)
-                share = float(np.sqrt(np.mean(piece.inertia**2))) / max(largest, float(np.abs(piece.force).max()))
-                if share <= allowed or not load.may_slow or attempt == TRIES - 1:
+            piece, share = load.piece(duration), math.inf
+            for _ in range(TRIES - 1):
+                before, share = share, load.share(piece)
+                if share <= allowed or share > HELPS * before:
                     break
                 duration *= 2
+                piece = load.piece(duration)
+            share = load.share(piece)
             load.accept(piece)
-            if share < QUIET * allowed or not load.may_slow:
-                duration = max(0.5 * duration, FIRST) if load.may_slow else FIRST
-            points.append(piece[:3])
-            largest = max(largest, float(np.abs(piece.force).max()))
-            fallen = float(np.abs(piece.force).max()) < falls_to * largest
+            duration = load.next_time(duration, share, allowed)
+            points.append(piece[:4])
+            fallen = float(np.abs(piece.force).max()) < falls_to * load.largest
             ended = load.done(piece) or (f"fell to {falls_to:.0%} of its peak" if fallen else "")
             bar.update()
-    displacement, force, inertia = (np.concatenate(part) for part in zip(*points, strict=True))
-    return Push(displacement, force, inertia, ended, piece.answer, load.unit)
+    displacement, force, inertia, energy = (np.concatenate(part) for part in zip(*points, strict=True))
+    push = Push(displacement, force, inertia, ended, piece.answer, load.unit, energy=energy)
+    warn_if_fast(push, load.weight)
+    return push
 
 
-def _damped(actuator: Actuator, masonry: Masonry) -> Actuator:
-    """An actuator that damps the swing of its block on it."""
+def warn_if_fast(push: Push, weight: float) -> None:
+    """Warn where a push was not slow. The weight [N] is 1 for forces."""
+    steps = 0.5 * (push.force[1:] + push.force[:-1]) * np.diff(push.displacement)
+    beside = np.cumsum(weight * steps) - (push.energy[1:] - push.energy[0])
+    off = float(np.abs(beside).max() / np.ptp(push.energy)) if np.ptp(push.energy) > 0 else 0.0
+    if off > OFF or push.inertia_share > STRIKING:
+        at = 1e3 * push.displacement[np.abs(push.inertia).argmax()]
+        warnings.warn(
+            f"the push was not slow: forces of inertia are {push.inertia_share:.1%} of the peak, most at {at:.4g} mm, "
+            f"and the work under the curve is up to {off:.1%} beside the energy gained. Blocks that fall or strike "
+            "each other take part in no slow push: end it before they do, or lower inertia",
+            stacklevel=3,
+        )
+
+
+def weight_of(masonry: Masonry, effects: tuple[Effect, ...]) -> float:
+    """Weight of the free blocks and of the masses added to them [N]."""
+    return GRAVITY * float(laden(masonry, effects)[0][list(masonry.free)].sum())
+
+
+def _of_all(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Actuator:
+    """What drives all blocks along a unit vector."""
+    heights = np.concatenate([part.corners[:, -1] for i in masonry.free for part in masonry.blocks[i].parts])
+    weight = weight_of(masonry, effects)
+    return _damped(Actuator(None, None, way, None, STIFF * weight / float(np.ptp(heights))), weight / GRAVITY)
+
+
+def _driven_mass(actuator: Actuator, masonry: Masonry, effects: tuple[Effect, ...]) -> float:
+    """Mass of what an actuator drives [kg]."""
+    if actuator.block is None:
+        return weight_of(masonry, effects) / GRAVITY
+    block = masonry.names.index(actuator.block) if isinstance(actuator.block, str) else actuator.block
+    return masonry.blocks[block].mass
+
+
+def _damped(actuator: Actuator, mass: float) -> Actuator:
+    """An actuator that damps the swing of a mass on it."""
     if actuator.damping > 0:
         return actuator
-    block = masonry.names.index(actuator.block) if isinstance(actuator.block, str) else actuator.block
-    return replace(actuator, damping=2 * DAMPED * math.sqrt(actuator.stiffness * masonry.blocks[block].mass))
+    return replace(actuator, damping=2 * DAMPED * math.sqrt(actuator.stiffness * mass))

@@ -13,6 +13,7 @@ import numpy as np
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
+from ..problem.wall.plausible import warn_if_still
 from ..problem.wall.ties_on_wall import lost, stored
 from ..quantities import GRAVITY, Array, Implausible, require_kind, require_size, require_within
 from ..result.ending import Outcome, describe
@@ -75,6 +76,7 @@ def solve_analytical(
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warnings.warn(unlike, Implausible, stacklevel=2)
+    warn_if_still(case)
     watch = Stopwatch()
     motion = _rocking(case, e, rtol, rest)
     outcome = _outcome(case, motion)

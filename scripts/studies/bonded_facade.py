@@ -27,7 +27,7 @@ from mjrock import plotting
 from scripts.shared import cli
 from scripts.studies.facade_in_space import CAMERA, DEPTH, HEIGHT, LENGTH, SEEN, UNIT, WINDOWS, motions
 
-JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 2}
+JOINTS: dict[str, Any] = {"k_n": 3e9, "k_s": 3e9, "friction": 0.6, "xi": 0.01, "points": 3}
 BONDS = {
     "dry": None,
     "poor lime": mr.Bond(0.05e6, 0.07e6, 5.0, 50.0),

@@ -1,9 +1,10 @@
 """How often the intervals and bands of a fragility curve hold the truth, in simulated studies of few and many records.
 
 The capacity of a wall under a record is lognormal. Runs at several intensities in both polarities follow from it, as a
-campaign has them, and `fit_fragility` draws records. `fit_capacities` takes the capacities themselves. Counted is the
-share of the studies whose 90 % interval holds the median, the dispersion, and the probability at half, once and one and
-a half times the true median.
+campaign has them, and `fit_fragility` draws records. The intensities are many, or eight that are 1.39 times apart.
+`fit_capacities` takes the capacities themselves. Counted is the share of the studies whose 90 % interval holds the
+median, the dispersion, and the probability at three quarters, once and one and a quarter times the true median. A study
+is left out if a single intensity parts what fell.
 """
 
 from __future__ import annotations
@@ -20,26 +21,28 @@ from scripts.shared import cli
 
 MEDIAN, BETWEEN, WITHIN = 0.8, 0.25, 0.08
 """Median [g], and dispersion between the records and between the polarities of a record [-]."""
-LEVELS = np.linspace(0.3, 1.5, 13)
+LEVELS = {"13 intensities": np.linspace(0.3, 1.5, 13), "8 intensities": MEDIAN * np.geomspace(0.3, 3.0, 8)}
 TRUE = math.hypot(BETWEEN, WITHIN)
 AT = MEDIAN * np.array([0.75, 1.0, 1.25])
 HEADER = ["records", "from", "studies", "median", "dispersion", *(f"P at {x:.2f} g" for x in AT), "no curve"]
 
 
-def study(records: int, seed: int) -> tuple[mr.Fragility | None, mr.Fragility]:
-    """The fits of one simulated study: to its runs, or None where they have no curve, and to its capacities."""
+def study(records: int, seed: int) -> dict[str, mr.Fragility | None]:
+    """The fits of one simulated study: to its runs at some intensities, or None without a curve, and to capacities."""
     rng = np.random.default_rng(seed)
     middle = math.log(MEDIAN) + BETWEEN * rng.normal(size=(records, 1))
     capacity = np.exp(middle + WITHIN * rng.normal(size=(records, 2))).ravel()
     groups = np.repeat(np.arange(records), 2)
-    direct = mr.fit_capacities(capacity, groups, resamples=400)
-    x, group = np.tile(LEVELS, 2 * records), np.repeat(groups, len(LEVELS))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            return mr.fit_fragility(x, x > np.repeat(capacity, len(LEVELS)), group, resamples=400), direct
-        except ValueError:
-            return None, direct
+    fits: dict[str, mr.Fragility | None] = {}
+    for name, levels in LEVELS.items():
+        x, group = np.tile(levels, 2 * records), np.repeat(groups, len(levels))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                fits[name] = mr.fit_fragility(x, x > np.repeat(capacity, len(levels)), group, resamples=400)
+            except ValueError:
+                fits[name] = None
+    return fits | {"capacities": mr.fit_capacities(capacity, groups, resamples=400)}
 
 
 def holds(fit: mr.Fragility) -> list[bool]:
@@ -54,8 +57,8 @@ def coverage(records: int, studies: int) -> list[list[object]]:
     """Rows of the table for a number of records."""
     rows: list[list[object]] = []
     fits = [study(records, seed) for seed in range(studies)]
-    for name, own in zip(("runs", "capacities"), zip(*fits, strict=True), strict=True):
-        kept = [fit for fit in own if fit is not None]
+    for name in fits[0]:
+        kept = [fit for own in fits if (fit := own[name]) is not None]
         shares = np.mean([holds(fit) for fit in kept], axis=0)
         without = np.mean([fit.without_curve / 400 for fit in kept])
         rows.append([records, name, len(kept), *(f"{share:.3f}" for share in shares), f"{without:.4f}"])
@@ -66,7 +69,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Simulate the studies, and print how often the intervals hold the truth."""
     args = cli.parser(__doc__, "fragility_coverage").parse_args(argv)
     out = cli.folder(args.out)
-    sizes = {6: 20} if args.quick else {6: 400, 12: 300, 40: 200}
+    sizes = {5: 20} if args.quick else {5: 400, 8: 400, 20: 300, 40: 200}
     text = cli.table(HEADER, [row for records, studies in sizes.items() for row in coverage(records, studies)])
     cli.report(out / "fragility_coverage", text)
 

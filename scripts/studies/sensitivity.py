@@ -39,7 +39,7 @@ def build(
 
 def capacity(**settings: Any) -> mr.Capacity:
     """The intensity that overturns the wall."""
-    return mr.Capacity(build(**settings), tolerance=0.01)
+    return mr.Capacity(build(**settings), tolerance=0.01, below=0)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

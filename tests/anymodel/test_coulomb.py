@@ -105,6 +105,9 @@ def test_forces_of_the_user_remain():
         friction.release(data)
         assert data.qfrc_applied.tolist() == [12.0, 0, 0, 0, 0, 0]
         assert (model.pair_dim[0], friction.sliding) == (3, ())
+    for call in (friction, friction.release):
+        with pytest.raises(TypeError, match="data = 3 of type int is not a MjData"):
+            call(3)
     assert speeds[0] == speeds[1] == pytest.approx(0.3 * (6 - MU * G), rel=0.01)
 
 

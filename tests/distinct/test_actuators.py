@@ -111,6 +111,45 @@ def test_a_wall_under_a_beam_that_does_not_rise_bears_more_than_its_weight_gives
     assert tops["translation"] > 3 * both
 
 
+@pytest.mark.parametrize("in_space", [False, True])
+def test_an_actuator_of_all_blocks_drives_their_centroid(in_space):
+    """Two panels, one of them laden, slide together: the force is friction on both, shared out by their mass."""
+    d = 3 if in_space else 2
+    base, one = panel(0.2, in_space=in_space).blocks
+    if in_space:
+        other = mr.Polyhedron.box((2 * B, 1.0, 2 * H), (1.0, 0.0, H), name="other")
+    else:
+        other = mr.Polygon([(x + 1.0, z) for x, z in one.vertices], density=2000.0, name="other")
+    masonry = mr.Masonry([base, one, other], k_n=1e10, friction=0.2, xi=0.1)
+    weight = mr.GRAVITY * one.mass
+    added = mr.AddedMass(500.0, block=1, at=(0.0, 0.0, 0.5)) if in_space else mr.AddedMass(500.0, 0.5, block=1)
+    whole = mr.Actuator(None, None, np.eye(d)[0], ([0.0, 0.4], [0.0, 0.02]), 1e8, 8e5)
+    answer = mr.solve_explicit(
+        mr.MasonryCase(masonry, 0.4, effects=(added, whole)), output_step=1e-3, ledger=True, forces=True
+    )
+    total = 2 * weight + 500.0 * mr.GRAVITY
+    force = answer.actuators["actuator_0"]
+    assert np.median(force[200:]) == pytest.approx(0.2 * total, rel=2e-3)
+    np.testing.assert_allclose(answer.forces.reactions["anchors"][:, 0], force)
+    assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
+    shares = np.array([weight + 500.0 * mr.GRAVITY, weight]) / total
+    moved = answer.pose[:, :, 0] @ shares
+    dragged = answer.ledger.dashpots["actuator_0"][-1]
+    work = np.trapezoid(force, moved) + 0.5 * force[-1] ** 2 / 1e8 + dragged
+    assert answer.ledger.actuators["actuator_0"][-1] == pytest.approx(work, rel=0.005)
+    assert moved[-1] == pytest.approx(0.02 - force[-1] / 1e8, rel=0.005)
+
+
+def test_a_step_knows_the_stiffness_of_an_actuator_of_all_blocks():
+    """One block swings on it as on an actuator at its centroid."""
+    rest = 1, ([0.0], [0.0]), 1e12
+    cases = [
+        mr.MasonryCase(panel(0.3), 0.01, effects=mr.Actuator(*at, *rest)) for at in ((None, None), ("panel", (0, H)))
+    ]
+    whole, single = (mr.solve_explicit(case).stats["stable_timestep"] for case in cases)
+    assert whole == pytest.approx(single, rel=1e-9)
+
+
 def test_a_run_in_two_parts_is_the_run_in_one():
     masonry, whole = panel(0.3, k_s=2e9), ([0.0, 1.0], [0.0, 0.02])
     _, force = pushed(masonry, actuator(-B, 0.1, whole), duration=1.0, timestep=2e-4)
@@ -171,6 +210,7 @@ HISTORY = ([0.0, 1.0], [0.0, 0.1])
         ({"block": "base"}, "this block is fixed"),
         ({"block": 7}, "outside the valid range"),
         ({"direction": (0.0, 1.0), "guided": "translation"}, "the valid ones are horizontal"),
+        ({"block": None, "at": None, "direction": (1.0, 0.0, 0.0)}, "all blocks of this masonry take 2 numbers"),
     ],
 )
 def test_what_is_wrong_is_named(changed, said):
@@ -237,3 +277,54 @@ def test_without_a_guide_there_is_none():
     driven = actuator(-B, 0.1, ([0.0, 0.1], [0.0, 0.01]))
     answer, _ = pushed(panel(0.3), driven, duration=0.1, forces=True)
     assert answer.forces.guides == {}
+
+
+def held(guided, in_space):
+    """An actuator that rests at the top of the panel, on a soft spring."""
+    at = (0.0, 0.0, 2 * H) if in_space else (0.0, 2 * H)
+    return mr.Actuator("panel", at, 1, None, 1e6, 1e3, guided=guided)
+
+
+MAY = {
+    ("upright", False): ("x and z", [0, 1]),
+    ("translation", False): ("x", [0]),
+    ("upright", True): ("x and y and z", [0, 1, 2]),
+    ("translation", True): ("x and y", [0, 1]),
+}
+"""Along which axes a guided block may move, in the plane and in space, and which of its velocities these are."""
+
+
+@pytest.mark.parametrize(("guided", "in_space"), MAY)
+def test_a_start_that_the_guide_does_not_allow_is_refused(guided, in_space):
+    masonry, jack = panel(0.5, in_space=in_space), held(guided, in_space)
+    said, free = MAY[guided, in_space]
+    pose = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).pose[-1]
+    for velocity in 0.2 * np.eye(6 if in_space else 3)[:, None]:
+        if velocity[0, free].any():
+            answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.05, effects=jack, velocity=velocity), ledger=True)
+            assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
+            continue
+        refused = rf"velocity of panel = \[.*: its actuator guides it, which lets it move along {said} alone"
+        with pytest.raises(ValueError, match=f"^{refused}"):
+            mr.MasonryCase(masonry, 0.05, effects=jack, velocity=velocity)
+        with pytest.raises(ValueError, match=f"^start, {refused}"):
+            mr.solve_explicit(mr.MasonryCase(masonry, 0.05, effects=jack), start=(pose, velocity))
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_a_run_that_carries_on_has_the_guides_of_its_own_case(in_space):
+    """Not those of the run before, whose steps it knows; what little speed that run has left is taken."""
+    masonry = panel(0.5, in_space=in_space)
+    shaken = mr.GroundMotion.sine(6.0, 0.4, 1)
+
+    def rocked(effects, start=None):
+        case = mr.MasonryCase(masonry, 0.3, motion=shaken, effects=effects)
+        return mr.solve_explicit(case, start=start, output_step=0.01)
+
+    for effects in ((), held("upright", in_space)):
+        still = mr.solve_explicit(mr.MasonryCase(masonry, 0.02, effects=effects)).end
+        assert still.memory is not None
+        assert np.abs(rocked(held("upright", in_space), still).tilt).max() < 1e-6
+        free, alone = rocked((), still), rocked(())
+        assert alone.tilt.max() > 0.01
+        np.testing.assert_allclose(free.tilt, alone.tilt, atol=1e-4)

@@ -65,7 +65,8 @@ def test_bonded_blocks_hang_at_rest_on_their_bonds():
 
 
 def test_what_needs_more_than_its_strength_at_rest_is_refused_by_name():
-    with pytest.raises(ValueError, match=r"at rest the bonds of wall\|b0, .* would need 1.34 times their strength"):
+    """M / W of the section at the wall, 1506.8 N m / 0.003 m3, over a tension of 0.25 MPa."""
+    with pytest.raises(ValueError, match=r"at rest the bonds of wall\|b0, .* would need 2.01 times their strength"):
         mr.solve_explicit(mr.MasonryCase(cantilever(8), 0.1))
     with pytest.raises(ValueError, match="b0 would fall under the weight"):
         mr.solve_explicit(mr.MasonryCase(cantilever(1, None), 0.1))
@@ -74,13 +75,13 @@ def test_what_needs_more_than_its_strength_at_rest_is_refused_by_name():
 def test_limit_analysis_holds_tension_and_cohesion():
     """A column whose bed joint holds its tension over all of its width."""
     bond = mr.Bond(0.01e6, 0.05e6, 10.0, 50.0)
-    one = column(bond, 1, points=2)
+    one = column(bond, 1)
     weight, width = 0.4**3 * 2000 * mr.GRAVITY, 0.4
     pull = bond.tension * 0.4 * width
     dry = mr.collapse_multiplier(column(None, 1, points=2)).multiplier
     assert dry == pytest.approx(0.7)
     sliding = 0.7 + bond.cohesion * 0.4 * width / weight
-    turning = 0.5 * width * (weight + pull) / (weight * 0.2)  # half of the pull acts at either end
+    turning = 0.5 * width * (weight + pull) / (weight * 0.2)  # the middle of the pull is that of the width
     found = mr.collapse_multiplier(one)
     assert found.multiplier == pytest.approx(min(sliding, turning), rel=1e-6)
     with pytest.raises(ValueError, match="collapse_multiplier without dilatancy takes joints that push only"):
@@ -92,8 +93,11 @@ def test_bonds_without_strength_are_dry_bit_for_bit():
     assert np.array_equal(dry.pose, none.pose)
 
 
+@pytest.mark.filterwarnings("ignore:tension = .* is it in MPa:mjrock.Implausible")
 def test_bonds_of_next_to_no_strength_move_as_dry_ones():
-    dry, weak = (shaken(column(bond)) for bond in (None, mr.Bond(1.0, 1.0, 1e-6, 1e-6)))
+    """Dry joints whose lines share the area in the same way are those that could be crushed alone, and are not."""
+    uncrushed = mr.Bond(0.0, 0.0, 1.0, 1.0, 1e12, 1e15)
+    dry, weak = (shaken(column(bond)) for bond in (uncrushed, mr.Bond(1.0, 1.0, 1e-6, 1e-6)))
     assert weak.pose == pytest.approx(dry.pose, abs=0.01 * np.abs(dry.pose).max())
     assert weak.pose[:150] == pytest.approx(dry.pose[:150], abs=1e-4 * np.abs(dry.pose).max())
 
@@ -146,7 +150,8 @@ def test_the_ledger_of_masonry_that_cracks_closes_and_names_what_bonds_took(spac
     assert np.abs(answer.ledger.residual).max() < 1e-3 * answer.ledger.largest
     took = answer.ledger.bonds
     assert list(took) == ["tension", "slip", "crushing"]
-    assert took["tension"][-1] == pytest.approx(2.0 * 0.16 * len(answer.cracked), rel=0.35)
+    lost = 0.16 * answer.forces.damage[-1].sum()  # area; lines that pull still would give a part of their energy back
+    assert took["tension"][-1] / 2.0 + took["slip"][-1] / 10.0 == pytest.approx(lost, rel=0.1)
     assert (np.diff(answer.forces.damage, axis=0) >= -1e-12).all()
     times = list(answer.cracked.values())
     assert times == sorted(times)
@@ -207,7 +212,7 @@ def test_a_bond_out_of_range_is_refused(numbers, message):
 def test_units_in_halves_have_the_mass_of_whole_ones_and_a_bond_within():
     """A wall of 1.0 m in units of 0.4 m: two whole units and a piece of 0.2 m, which stays whole, in a course."""
     within, between = mr.Bond(1e6, 1.4e6, 50.0, 500.0), mr.Bond(0.1e6, 0.14e6, 10.0, 100.0)
-    options = {"k_n": 1e10, "k_s": 1e10, "bond": between}
+    options = {"k_n": 1e10, "k_s": 1e10, "points": 3, "bond": between}
     whole, halved = (mr.Masonry.running_bond(1.0, 0.4, (0.4, 0.2), halves=one, **options) for one in (None, within))
     assert sum(block.mass for block in halved.blocks) == pytest.approx(sum(block.mass for block in whole.blocks))
     assert len(halved.free) - len(whole.free) == 4
@@ -261,7 +266,7 @@ def test_units_whose_bonds_are_strong_and_stiff_vibrate_as_one_block(in_space):
         def stiffness(joint):
             return 2.5e7 if "ground" in joint.name else 1e14
 
-        masonry = mr.Masonry(blocks, k_n=stiffness, k_s=stiffness, friction=0.6, xi=0, bond=HUGE, points=2)
+        masonry = mr.Masonry(blocks, k_n=stiffness, k_s=stiffness, friction=0.6, xi=0, bond=HUGE, points=3)
         step = {"timestep": 8e-6} if len(heights) == 2 else {}
         for way, accel, modes in (("motion", 1e-3, 2), ("vertical", 1e-2, 1)):
             case = mr.MasonryCase(masonry, 0.4, **{way: mr.GroundMotion([accel] * 2, 0.4)})

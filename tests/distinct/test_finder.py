@@ -1,6 +1,7 @@
 """Where blocks meet, one function at a time, and how it is decided whether they meet as faces or as edges."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -56,8 +57,13 @@ def test_how_far_a_block_is_outside_of_a_face_and_reaches():
     assert finder.outside(solids, face_of(solids, 0, (0, 0, 1)), 1) == pytest.approx(0.25)
     assert finder.outside(solids, face_of(solids, 1, (0, 0, -1)), 0) == pytest.approx(0.25)
     assert finder.outside(solids, face_of(solids, 0, (1, 0, 0)), 1) == pytest.approx(-1.6)
-    assert finder.extent(solids, face_of(solids, 0, (0, 0, 1))) == pytest.approx(10.0)
-    assert finder.extent(solids, face_of(solids, 1, (0, 1, 0))) == pytest.approx(2.8)
+    assert solids.extent[face_of(solids, 0, (0, 0, 1))] == pytest.approx(10.0)
+    assert solids.extent[face_of(solids, 1, (0, 1, 0))] == pytest.approx(2.8)
+    assert finder.height(solids, face_of(solids, 0, (1, 0, 0)), (1.5, 9.0, 9.0)) == pytest.approx(0.2)
+    assert finder.height(solids, face_of(solids, 1, (0, 0, -1)), (1.5, 9.0, 0.15)) == pytest.approx(0.1)
+    assert finder.lies_in(solids, 0, (1.2, 0.0, -0.1))
+    assert not finder.lies_in(solids, 0, (1.4, 0.0, -0.1))
+    assert not finder.lies_in(solids, 1, (0.2, 0.1, 0.2))
 
 
 def test_the_face_that_another_block_is_farthest_outside_of():
@@ -147,14 +153,13 @@ def test_the_first_of_edges_that_reach_as_far_is_taken():
 
 def test_the_deepest_of_places_counts():
     table = np.zeros((6, 11))
-    table[:, 8] = [-9.0, -0.1, -0.3, -0.2, -8.0, -7.0]
-    assert finder.deepest(table, 1, 4) == -0.3
-    assert finder.deepest(table, 1, 6) == -8.0
-    assert finder.deepest(table, 2, 2) == finder.deepest(table, 4, 7) == -math.inf
+    table[:, 8] = [-9.0, -0.1, -0.3, -0.3, -8.0, 7.0]
+    assert [finder.deepest(table, *ends) for ends in ((1, 4), (1, 6), (5, 6), (2, 2))] == [2, 4, 5, -1]
 
 
 def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
-    """Of those of either block that the other one is outside of by more than some number, which do not lie inside."""
+    """Of those of either block that the other one is outside of by more than some number, which do not lie inside. The
+    first one stays unless another is less deep by three tenths."""
     solids = solids_about(LOWER, UPPER, inside=[(1, 5)])
     depth = {0: -0.5, 2: -0.1, 3: -0.02, 7: -0.3, 8: -0.01, 11: -0.001}
     out = {2: -0.4, 3: -0.9, 7: -0.5, 8: -0.6, 11: 0.0}
@@ -162,12 +167,17 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
 
     def clip(_, face, blocks, table, count, room):
         asked.append((face, blocks))
+        if depth[face] is None:
+            return count
+        table[count] = 0.0
         table[count, 8] = depth[face]
         return count + 1
 
     monkeypatch.setattr(finder, "clip", clip)
     monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
-    table = np.zeros((3, 11))
+    monkeypatch.setattr(finder, "lies_in", lambda _, block, at: True)
+    monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
+    table, heights = np.zeros((3, 11)), {}
     for least, expected, more in (
         (-0.3, (0, (0, 1), -0.5), []),
         (-0.45, (2, (0, 1), -0.1), [(2, (0, 1))]),
@@ -183,12 +193,40 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
     asked.clear()  # from a face of the other block
     assert finder.shallowest(solids, 7, (1, 0), -0.45, table, 1, None) == (2, (0, 1), -0.1)
     assert asked == [(7, (1, 0)), (2, (0, 1))]
+    for deep, taken in ((-0.36, 0), (-0.34, 2)):
+        depth[2] = deep
+        assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (taken, (0, 1), depth[taken])
+    depth[2] = -0.1
+    for above, taken in ((-0.09, 2), (-0.11, 0)):  # the deepest place of the first face lies so deep below this one
+        heights[2] = above
+        assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == taken
+    monkeypatch.setattr(finder, "lies_in", lambda _, block, at: block != 1)  # that place is not common to both
+    assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == 2
+    for gap, taken in ((-0.001, 2), (0.0, 0), (0.001, 0)):  # places that are open
+        depth[2] = gap
+        assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == taken
+    depth[0], depth[2] = None, 0.001
+    assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (2, (0, 1), 0.001)
+    depth[2] = None
+    assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (0, (0, 1), -math.inf)
 
 
-def decided(monkeypatch, apart, *, reach=0.01, outlines=(6.0, 4.0), faces=(0, 6), gap=-0.2, cosine=-1.0, across=-1.0):
+def decided(
+    monkeypatch,
+    apart,
+    *,
+    reach=0.01,
+    outlines=(6.0, 4.0),
+    faces=(0, 6),
+    gap=-0.2,
+    cosine=-1.0,
+    across=-1.0,
+    rows=11,
+    clipped=1,
+):
     """How two blocks meet whose faces and edges are so far apart: as edges or along which face, and how deep another
     face may lie that comes into question."""
-    sought = []
+    sought, met = [], []
 
     def shallowest(_, face, blocks, least, *rest):
         sought.append(least)
@@ -197,16 +235,18 @@ def decided(monkeypatch, apart, *, reach=0.01, outlines=(6.0, 4.0), faces=(0, 6)
     normals = {faces[0]: (1.0, 0.0, 0.0), faces[1]: (1.0, 0.0, 0.0), 99: (cosine, math.sqrt(1 - cosine**2), 0.0)}
     for name, what in {
         "face_between": lambda _, block, other, far: (faces[block], apart[block]),
-        "extent": lambda _, face: outlines[faces.index(face)],
         "shallowest": shallowest,
         "face_towards": lambda _, block, way: 99 if way[0] < 0 else None,
         "normal_of": lambda _, face: normals[face],
         "across_edges": lambda _, a, b: ((0.0, 0.0, 1.0), across),
         "meet_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
-        "clip": lambda _, face, blocks, table, count, room: ("faces", face, blocks),
+        "clip": lambda _, face, blocks, table, count, room: met.append(("faces", face, blocks)) or count + clipped,
+        "pass_by": lambda _, face, blocks, gap, table, count: met.append(("passes", face, blocks, gap)) or count + 1,
     }.items():
         monkeypatch.setattr(finder, name, what)
-    return finder.find_pair(None, reach, (0, 1), None, 7, None), *sought
+    solids = SimpleNamespace(extent=dict(zip(faces, outlines, strict=True)))
+    count = finder.find_pair(solids, reach, (0, 1), range(rows), 7, range(4))
+    return met[-1] if met else count, *sought
 
 
 def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
@@ -218,6 +258,31 @@ def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
     assert decided(monkeypatch, (0.001, -math.inf), faces=(0, -1)) == (7,)  # all of its faces lie inside
     assert decided(monkeypatch, (-math.inf, 0.001), faces=(-1, 0)) == (7,)
     assert decided(monkeypatch, (0.001, 0.005), faces=(6, 0)) == (("faces", 0, (1, 0)),)
+
+
+@pytest.mark.parametrize("gap", [0.005, -0.1])
+def test_blocks_that_are_near_and_do_not_lie_over_each_other_pass_by(monkeypatch, gap):
+    assert decided(monkeypatch, (gap, -0.3), clipped=0)[0] == ("passes", 0, (0, 1), gap)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_two_corners_that_come_together_are_found_without_a_share(in_space):
+    """Squares that stand on their corners side by side, of which no side lies over one of the other."""
+    turn = np.array([[1.0, -1.0], [1.0, 1.0]]) / math.sqrt(2)
+    blocks = [mr.Polygon(np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) @ turn.T + at) for at in ((0, 0), (1.45, 0.0))]
+    blocks = [mr.Polyhedron.prism(block) for block in blocks] if in_space else blocks
+    pairs, places = found(blocks, reach=0.02)
+    assert pairs == [(0, 1)]
+    np.testing.assert_array_equal((places.share, places.area), np.zeros((2, 1)))
+    np.testing.assert_allclose(
+        places.gap, (1.45 - math.sqrt(2)) / math.sqrt(2), rtol=1e-9
+    )  # along the normal of a side
+
+
+def test_without_room_for_the_most_places_of_a_pair_none_is_written(monkeypatch):
+    for apart in ((0.005, 0.001), (-0.1, -0.3)):
+        assert decided(monkeypatch, apart, rows=10) == (11,)
+        assert decided(monkeypatch, apart, rows=11)[0] == ("faces", 0, (0, 1))
 
 
 def test_of_faces_that_are_as_far_apart_the_larger_one_is_taken(monkeypatch):
@@ -357,6 +422,32 @@ def test_blocks_of_the_plane_meet_at_one_end_of_their_prisms(size):
     np.testing.assert_allclose(places.normal, np.tile(turn @ [0.0, 1.0], (2, 1)), atol=1e-9)
     ends = [after(x, -0.002) for x in (0.7, 1.7)]
     np.testing.assert_allclose(places.place[places.place[:, 0].argsort()], ends, atol=1e-9)
+
+
+@pytest.mark.parametrize("beside", [0.01, 0.1, 10.0])
+def test_places_in_the_plane_do_not_depend_on_the_size_of_other_blocks(beside):
+    """A polygon of 12 sides stands on a corner of a long ground, and a square lies far away."""
+    around = 2 * math.pi / 12 * np.arange(12)
+    wheel = mr.Polygon(0.3 * np.column_stack([np.sin(around), -np.cos(around)]))
+    given = [box(-5, 60, -1, 0, fixed=True), wheel]
+    shift = [(0.0, 0.0), (0.0, 0.299)]
+    _, alone = found(given, shift)
+    _, places = found([*given, box(30, 30 + beside, 0.5, 0.5 + beside)], [*shift, (0.0, 0.0)])
+    for name in Found._fields:
+        np.testing.assert_allclose(getattr(places, name), getattr(alone, name), rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(places.gap.min(), -0.001, rtol=1e-9)
+    np.testing.assert_allclose(places.place[places.gap.argmin()], [0.0, -0.0005], atol=1e-12)
+    np.testing.assert_allclose(places.normal, [[0.0, 1.0]] * 2, atol=1e-12)
+
+
+def test_a_corner_of_the_plane_of_any_angle_meets_a_face():
+    """A needle stands on its point, 1 mm deep, whose sides are steep to the ground."""
+    needle = mr.Polygon([(0.0, 0.0), (0.02, 0.3), (-0.02, 0.3)])
+    _, places = found([box(-5, 60, -1, 0, fixed=True), needle], [(0.0, 0.0), (0.0, -0.001)])
+    assert len(places.gap) == 2
+    deep = places.gap.argmin()
+    np.testing.assert_allclose((places.gap[deep], places.share[deep]), (-0.001, 0.5), rtol=1e-9)
+    np.testing.assert_allclose(np.abs(places.normal), [[0.0, 1.0]] * 2, atol=1e-12)
 
 
 @pytest.mark.parametrize("prism", [False, True])

@@ -7,12 +7,15 @@ import mjrock as mr
 from scripts.checks import arching, mortar, tilting_table
 
 
+@pytest.mark.parametrize("points", [3, mortar.POINTS])
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if "12" in name else name for name in mortar.CASES]
 )
-def test_a_mortared_wall_cracks_where_the_closed_form_says(name):
+def test_a_mortared_wall_cracks_where_the_closed_form_says(name, points, monkeypatch):
+    """On three lines as on more. The samples are 0.2 % of the acceleration apart."""
+    monkeypatch.setattr(mortar, "POINTS", points)
     wall, expected = mortar.CASES[name]()
-    assert mortar.first_crack(wall, expected) == pytest.approx(expected, rel=0.01)
+    assert mortar.first_crack(wall, expected) == pytest.approx(expected, rel=0.003)
 
 
 @pytest.mark.slow

@@ -86,7 +86,7 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     whole, samples = held(d, bonds=3)
     for p in (0, 1):
         whole.bonds[p].k, whole.bonds[p].push, whole.bonds[p].dragged = 0.5, -30.0 - p, along(d, 0.5)
-    whole.bonds["left"] = [0.75, 0.5, 0.25]
+    whole.bonds["left"], whole.bonds["share"] = [0.75, 0.5, 0.25], [1.0, 0.5, 0.25]
     line = whole.lines[1]
     line.push = line.depth = 0.0
     whole.lines["group"][2] = 0
@@ -95,7 +95,7 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     np.testing.assert_allclose(samples.loads[0, 1, :d], one, rtol=1e-10)
     np.testing.assert_allclose(samples.loads[0, 0, :d], dry - other, rtol=1e-10)
     np.testing.assert_allclose(samples.held[0], [dry, other], rtol=1e-10)
-    np.testing.assert_allclose(samples.damage[0], [0.5 + 0.75, 0.25])
+    np.testing.assert_allclose(samples.damage[0], [0.5 * 0.5 + 0.25 * 0.75, 0.25])
 
 
 @BOTH

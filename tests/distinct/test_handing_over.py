@@ -103,22 +103,38 @@ def test_a_line_is_where_its_place_was_found(d, face, other, slack):
     np.testing.assert_allclose(place.at, expected, rtol=1e-11)
 
 
+def with_points(table, both, d):
+    """Lines with their points, of two blocks whose numbers have some sum."""
+    lines = Lines.unwritten(table, np.zeros(len(table)))
+    for line, at in zip(table, lines.at, strict=True):
+        at[:] = handover.place_of(line, both, blocks(d), system(d).axes).at
+    return lines
+
+
+def lines_of(table, slack, depth):
+    """Lines of which it is known how deep they press."""
+    lines = Lines.unwritten(table, np.array(slack, dtype=float))
+    lines.depth[:] = depth
+    return lines
+
+
 @BOTH
 def test_the_nearest_of_some_lines_is_found(d):
     numbers, axes = blocks(d), system(d).axes
     table, places = rows(kinds(d).line, 4), found(d, 1, 2, count=4)
     for i in range(4):
         handover.write_line(table[i], i, 0.0, places, numbers, axes)
-    where = [np.array(handover.place_of(line, 3, numbers, axes).at) for line in table]
+    lines = with_points(table, 3, d)
+    where = lines.at
     aim = where[1] + 0.004
-    j, off = handover.nearest(table, (0, 4), tuple(aim), 3, numbers, axes)
+    j, off = handover.nearest(lines, (0, 4), tuple(aim))
     assert (j, off) == (1, pytest.approx(0.004 * math.sqrt(d), rel=1e-9))
-    j, off = handover.nearest(table, (2, 4), tuple(aim), 3, numbers, axes)
+    j, off = handover.nearest(lines, (2, 4), tuple(aim))
     assert (j, off) == (2, pytest.approx(np.linalg.norm(where[2] - aim)))
-    assert handover.nearest(table, (3, 3), tuple(aim), 3, numbers, axes) == (-1, math.inf)
-    table[2] = table[1]
-    assert handover.nearest(table, (0, 4), tuple(aim), 3, numbers, axes)[0] == 1
-    assert handover.nearest(table, (0, 4), tuple(aim + 1e6), 3, numbers, axes)[0] == 3
+    assert handover.nearest(lines, (3, 3), tuple(aim)) == (-1, math.inf)
+    lines.at[2] = lines.at[1]
+    assert handover.nearest(lines, (0, 4), tuple(aim))[0] == 1
+    assert handover.nearest(lines, (0, 4), tuple(aim + 1e6))[0] == 3
 
 
 def gone_at(d, shift=0.0, normal=None, slack=0.0, blocks_of=(1, 2)):
@@ -128,7 +144,9 @@ def gone_at(d, shift=0.0, normal=None, slack=0.0, blocks_of=(1, 2)):
     if normal is not None:
         place.normal[0] = normal
     handover.write_line(table[0], 0, 0.0, place, blocks(d), system(d).axes)
-    return Lines(table, np.array([slack]), np.array([0.003]))
+    lines = with_points(table, sum(blocks_of), d)
+    lines.slack[:], lines.depth[:] = slack, 0.003
+    return lines
 
 
 def presses(d, gone, new=None, ends=(0, 1)):
@@ -148,11 +166,11 @@ def test_what_presses_is_the_overlap_less_the_slack_of_the_line_that_was_there(d
 
 @BOTH
 def test_a_line_was_there_within_a_fifth_of_the_smaller_block_and_with_a_like_normal(d):
-    """The point of the line is half an overlap off the place, across the shift."""
-    bound = math.sqrt((0.2 * 0.5) ** 2 - 0.002**2)
-    along = 0.002 * NORMAL[d][0]
-    assert presses(d, gone_at(d, bound + along - 1e-6)) > 0
-    assert presses(d, gone_at(d, bound + along + 1e-3)) == 0
+    """Along the face, whatever the overlap: the point of the line is half of it off the place along the normal."""
+    bound = 0.2 * 0.5 / math.sqrt(1 - NORMAL[d][0] ** 2)
+    assert presses(d, gone_at(d, bound - 1e-6)) > 0
+    assert presses(d, gone_at(d, bound + 1e-6)) == 0
+    assert presses(d, gone_at(d), found(d, 1, 2, gap=-0.4)) == pytest.approx(0.4)
     across = np.array([0.8, -0.6]) if d == 2 else np.array([-0.8, 0.0, 0.6])
     for cosine, there in ((0.71, True), (0.69, False)):
         normal = cosine * NORMAL[d] + math.sqrt(1 - cosine**2) * across
@@ -162,9 +180,9 @@ def test_a_line_was_there_within_a_fifth_of_the_smaller_block_and_with_a_like_no
         assert bool(presses(d, gone_at(d, normal=normal), swapped) > 0) is there
 
 
-@pytest.mark.parametrize(("off", "there"), [(0.0999, True), (0.2 * 0.5, False)])
+@pytest.mark.parametrize(("off", "there"), [(0.0999, True), (0.2 * 0.5, True), (math.hypot(0.1, 0.002) + 1e-9, False)])
 def test_at_a_fifth_of_the_smaller_block_no_line_was_there(off, there, monkeypatch):
-    monkeypatch.setattr(handover, "nearest", lambda *given: (0, off))
+    monkeypatch.setattr(handover, "square_between", lambda *given: off**2)
     assert bool(presses(2, gone_at(2)) > 0) is there
 
 
@@ -183,8 +201,8 @@ def test_normals_of_a_pair_are_compared_out_of_the_same_block(d):
 
 def pressing(k, depth, gaps, had_k, had_depth):
     kind = kinds(2).line
-    new = Lines(rows(kind, len(k), k=k), np.zeros(len(k)), np.array(depth, dtype=float))
-    gone = Lines(rows(kind, len(had_k), k=had_k), np.zeros(len(had_k)), np.array(had_depth, dtype=float))
+    new = lines_of(rows(kind, len(k), k=k), np.zeros(len(k)), depth)
+    gone = lines_of(rows(kind, len(had_k), k=had_k), np.zeros(len(had_k)), had_depth)
     places = found(2, 1, 2, count=len(k))._replace(gap=np.array(gaps, dtype=float))
     handover.press(new, (1, len(k)), places, gone, (1, len(had_k)))
     return new.depth
@@ -276,9 +294,10 @@ def test_places_that_are_as_near_share_what_a_line_has(d):
         place = found(d, 1, 2)
         place.place[0, 0] += shift
         handover.write_line(whole.lines[number], 0, 0.0, place, blocks(d), whole.axes)
-    handover.give_to_nearest(gone, whole.lines, (1, 4), 3, blocks(d), whole.axes)
+    lines = with_points(whole.lines, 3, d)
+    handover.give_to_nearest(gone, lines, (1, 4), 3, blocks(d), whole.axes)
     np.testing.assert_allclose(whole.lines["push"], [5.0, 2.5, 2.5, 0.0])
-    handover.give_to_nearest(gone, whole.lines, (2, 4), 3, blocks(d), whole.axes)
+    handover.give_to_nearest(gone, lines, (2, 4), 3, blocks(d), whole.axes)
     np.testing.assert_allclose(whole.lines["push"], [5.0, 2.5, 7.5, 0.0])
 
 
@@ -303,9 +322,9 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
         handover.write_line(old[i], i, 0.0, two, numbers, axes)
     handover.write_line(old[2], 1, 0.0, two, numbers, axes)
     old["push"], old["dragged"], old["grip"] = [30.0, 0.0, 0.0], [[1.0], [2.0], [4.0]], 1.0 if k_s == math.inf else 1e-5
-    gone = Lines(old, np.zeros(3), np.array([0.003, 0.002, 0.0]))
+    gone = lines_of(old, np.zeros(3), [0.003, 0.002, 0.0])
     old["depth"] = [0.003, 0.002, 0.0]
-    new = Lines(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), np.zeros(3))
+    new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
     pairs = Pairs.belonging(np.array([5, 5, 1]), np.array([5, 5, 5]))
     handover.hand_over(new, places, gone, pairs, numbers, axes)
     np.testing.assert_allclose(new.depth, [0.0025, 0.0025, 0.0], rtol=1e-9)  # the sum of what pressed before
@@ -321,7 +340,7 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
     else:
         np.testing.assert_allclose(grips, [1e-5 * math.sqrt(1 if d == 2 else 3)] * 2 + [0.0], rtol=1e-9)
         old["grip"] = 1.0  # more than the face holds
-        new = Lines(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), np.zeros(3))
+        new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
         handover.hand_over(new, places, gone, pairs, numbers, axes)
         held = 0.5 * 1e4 * 0.0025 / k_s
         np.testing.assert_allclose(np.linalg.norm(new.rows["grip"], axis=1), [held, held, 0.0], rtol=1e-9)
@@ -334,8 +353,8 @@ def test_friction_turns_from_the_face_of_one_block_to_that_of_the_other():
     handover.write_line(old[0], 0, 0.0, found(3, 1, 2), numbers, axes)
     old["push"], old["depth"], old["grip"] = 30.0, 0.003, [[0.4, 0.1, -0.2]]
     places.normal[0] *= -1
-    new = Lines(rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), np.zeros(1), np.zeros(1))
+    new = lines_of(rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), np.zeros(1), 0.0)
     pairs = Pairs.belonging(np.array([5]), np.array([5]))
-    handover.hand_over(new, places, Lines(old, np.zeros(1), np.array([0.003])), pairs, numbers, axes)
+    handover.hand_over(new, places, lines_of(old, np.zeros(1), 0.003), pairs, numbers, axes)
     before, after = turn(3, 1) @ old["grip"][0], turn(3, 2) @ new.rows["grip"][0]
     np.testing.assert_allclose(after, -before, rtol=1e-12)

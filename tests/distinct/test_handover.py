@@ -13,10 +13,11 @@ from mjrock.distinct.rows import kinds, rows
 
 @pytest.mark.parametrize("guided", ["translation", "upright", None])
 def test_a_beam_that_slides_keeps_its_normal_force_where_its_joints_are_handed_over(guided):
-    """The beam leaves its joints at a slip of 10 mm, with its weight on it: only a guided one could lose it."""
+    """The beam leaves its joints at a slip of 10 mm, with its weight on it: only a guided one could lose it. It is
+    longer than the units below it together, so that it lies over as much of them on its way."""
     units = [box(x, x + 0.2, 0.0, 0.15) for x in (-0.4, -0.2, 0.0, 0.2)]
     masonry = mr.Masonry(
-        [GROUND, *units, box(-0.4, 0.4, 0.15, 0.3, name="beam")], k_n=1e9, k_s=1e9, friction=0.6, xi=0.05
+        [GROUND, *units, box(-0.45, 0.45, 0.15, 0.3, name="beam")], k_n=1e9, k_s=1e9, friction=0.6, xi=0.05
     )
     jack = mr.Actuator("beam", (-0.4, 0.2), (1.0, 0.0), ([0.0, 1.0], [0.0, 0.02]), 1e7, 2e4, guided=guided)
     answer = mr.solve_explicit(mr.MasonryCase(masonry, 1.0, effects=(jack,)), output_step=0.01, forces=True)
@@ -49,8 +50,8 @@ def test_what_presses_follows_the_lines_before_it_and_gains_no_energy():
         np.array([0]), np.array([1]), np.zeros((1, 2)), np.zeros((1, 2)), np.array([-1.0]), np.ones(1), np.ones(1)
     )
     for stiffness, depth in ((2.0, 0.5), (1.0, 1.0), (0.81, 1 / 0.9)):
-        gone = Lines(rows(kind, 1, k=1.0), np.zeros(1), np.array([0.5]))
-        new = Lines(rows(kind, 1, k=stiffness), np.zeros(1), np.array([0.5]))
+        gone, new = (Lines.unwritten(rows(kind, 1, k=k), np.zeros(1)) for k in (1.0, stiffness))
+        gone.depth[:] = new.depth[:] = 0.5
         press(new, (0, 1), found, gone, (0, 1))
         assert new.depth[0] == pytest.approx(0.5 * depth)
         assert stiffness * new.depth[0] ** 2 <= 0.25 * (1 + 1e-12)

@@ -14,6 +14,8 @@ from mjrock.distinct.looking import Motion, Reach, Seen, Wear
 from mjrock.distinct.solids import Poses
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
+LOOK = 5e-3
+"""Longest time between two looks [s]."""
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
 ALONG = {2: np.array([0.8, -0.6]), 3: np.array([-0.8, 0.0, 0.6])}
 AT = {2: np.array([0.2, -0.5]), 3: np.array([0.2, 0.3, -0.5])}
@@ -135,11 +137,19 @@ def watched(d, motion, limits=(9.0, 9.0), stay=(0.25, 0.5999), left=(), seen=(),
     known.about[:] = speed
     flags, each = np.isin(np.arange(2), seen), np.full((2, 2), due)
     sight = Seen(flags, known, np.array([3, 5]), each[0], each[1], np.array([False, True]))
-    reach, gone = Reach(start, np.array(limits), np.array(stay)), np.isin(np.arange(2), left)
+    reach, gone = Reach(start, np.array(limits), np.array(stay), LOOK), np.isin(np.arange(2), left)
     some = looking.watch(motion, np.array([0.5, 0.8]), reach, sight, gone, since)
     assert bool(some) is bool(sight.stale.any())
     np.testing.assert_array_equal(sight.moves, np.array([3, 5]) + sight.stale)
     return sight.stale.tolist(), sight
+
+
+def test_the_time_between_looks_is_that_of_the_smallest_block():
+    """Of 0.5 x 0.25 m it is 5 ms, and goes with the root of the size, as times of a model do."""
+    size = 0.5 * math.hypot(0.5, 0.25)
+    assert looking.longest_time(np.array([9.0, size, 1.0])) == pytest.approx(LOOK, rel=0.02)
+    assert looking.longest_time(4 * np.array([size])) == 2 * looking.longest_time(np.array([size]))
+    assert looking.fallen(0.1) == pytest.approx(0.04905)
 
 
 @BOTH
@@ -147,14 +157,14 @@ def test_how_far_blocks_may_go_until_the_next_look_is_what_their_speeds_make(d):
     motion = still(d, 2)
     motion.velocity[1], motion.about[:] = 2.0, [0.5, 0.25]
     _, seen = watched(d, motion)
-    np.testing.assert_allclose(seen.ahead, looking.LOOK * np.array([0.5, 2 * math.sqrt(d) + 0.25]), rtol=1e-14)
+    np.testing.assert_allclose(seen.ahead, LOOK * np.array([0.5, 2 * math.sqrt(d) + 0.25]), rtol=1e-14)
 
 
 @BOTH
 def test_a_block_is_looked_at_once_it_may_pass_its_limit(d):
     """By the way that it has gone and that it may go. At the limit it is not."""
     motion = still(d, 2)
-    motion.poses.moved[1, 0], motion.about[1], motion.velocity[1, -1] = 0.25, 0.375 / looking.LOOK, 0.125 / looking.LOOK
+    motion.poses.moved[1, 0], motion.about[1], motion.velocity[1, -1] = 0.25, 0.375 / LOOK, 0.125 / LOOK
     motion.poses.change[0, 0, 1] = 0.125
     for limit, is_watched in ((0.75, False), (0.7499, True)):
         stale, seen = watched(d, motion, [1.0, limit], [9.0, 9.0])
@@ -181,7 +191,7 @@ def test_places_of_a_block_that_has_moved_serve_their_time(d, seen):
     for since, due, serves in ((1e-3, 5e-3, True), (2.4e-3, 5e-3, True), (2.6e-3, 5e-3, False), (0.0, 1e-3, False)):
         stale, sight = watched(d, motion, seen=seen, since=since, due=due)
         assert stale == [False, not serves and 1 in seen]
-        left = [due - since if serves else looking.LOOK, looking.LOOK]
+        left = [due - since if serves else LOOK, LOOK]
         np.testing.assert_allclose(sight.due, [left[0 if i in seen else 1] for i in range(2)], rtol=1e-12)
         np.testing.assert_array_equal(sight.motion.poses.moved[:, 0], [0.0, 0.5 * stale[1]])
         np.testing.assert_array_equal(sight.motion.poses.change[:, 0, 1], [0.0, 0.125 * stale[1]])
@@ -212,8 +222,8 @@ def waited(found, motion, sizes, stale=(0, 1, 2), due=9.0):
     """For how long the places of blocks serve, and which may touch by then."""
     count = len(sizes)
     due, soon = np.full(count, due), np.zeros(len(found.gap), dtype=bool)
-    seen = Seen.nothing(motion.poses)._replace(due=due, stale=np.isin(np.arange(count), stale))
-    looking.wait(found, motion, sizes, seen, soon)
+    seen = Seen.nothing(motion.poses, LOOK)._replace(due=due, stale=np.isin(np.arange(count), stale))
+    looking.wait(found, motion, sizes, seen, soon, LOOK)
     return due, soon.tolist()
 
 
@@ -242,7 +252,7 @@ def test_places_serve_until_a_pair_has_gone_too_far(d):
 def test_places_do_not_serve_too_long_or_too_short():
     motion, sizes = still(2, 2), np.array([0.5, 0.8])
     for found in (found_places(2, [], []), found_places(2, [[0, 1]], [0.0])):
-        assert waited(found, motion, sizes)[0].tolist() == [looking.LOOK] * 2
+        assert waited(found, motion, sizes)[0].tolist() == [LOOK] * 2
     motion.about[0] = 1e3
     due, _ = waited(found_places(2, [[0, 1]], [0.0]), motion, sizes)
     assert due.tolist() == [5e-4, 5e-3]

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct.overlap import common_volume
+from mjrock.distinct.overlap import common_volume, what_keeps_apart
 from mjrock.distinct.solids import Solids
 
 
@@ -58,3 +59,57 @@ def test_slightly_turned_blocks_that_overlap_by_some_hundredths_of_a_millimetre(
     lower = mr.Polyhedron(BOX.corners - (0.0, 0.0, 0.2))
     solids = solids_about([lower, tilted], np.zeros((2, 3)))
     assert common_volume(solids, 0, 1) == pytest.approx(0.5 * 0.4 * 1e-4 * 0.2, rel=1e-3)
+
+
+def test_blocks_are_held_against_a_support_where_it_is():
+    """Of two supports one sinks by 5 m at once. What stood on it falls into the air, and overlaps nothing."""
+    still, sinks = box(-2, 0, -1, 0, fixed=True, name="still"), box(1, 3, -1, 0, fixed=True, name="sinks")
+    masonry = mr.Masonry((still, sinks, box(1.5, 2, 0, 1), box(-1, -0.5, 0, 1)), k_n=1e8, xi=0.3)
+    supports = {"still": ([0.0, 1.0], [0.0] * 2, [0.0] * 2), "sinks": ([0.0, 0.01], [0.0] * 2, [0.0, -5.0])}
+    answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.25, supports=supports), output_step=0.01)
+    assert answer.pose[-1, 0, 1] < -0.25
+    assert answer.stats["overlap"] < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("share", "left", "said"),
+    [
+        (0.03, 1.0, "joints 9 times as stiff keep blocks apart"),
+        (0.03, 0.5, "this step leaves their contact 50% of its stiffness; timestep = 1e-05 s and joints 4.5 times as "),
+        (0.03, 0.1, "this step leaves their contact 10% of its stiffness; timestep = 1e-05 s keeps blocks apart"),
+    ],
+)
+def test_what_keeps_blocks_apart_names_the_step_where_that_is_the_cause(share, left, said):
+    """The overlap of a block that is stopped falls as the root of the stiffness, and is to fall to 1 %."""
+    assert what_keeps_apart(share, left, 1e-5).startswith(said)
+
+
+def lands(**options):
+    """A light box that is thrown onto a heavy one, neither of which has a joint."""
+    solid = mr.Polyhedron.box
+    blocks = [
+        solid((9.0, 1.0, 1.0), (0.0, 0.0, -0.5), fixed=True, name="ground"),
+        solid((0.2, 0.2, 0.2), (3.0, 0.0, 0.1)),
+        solid((1.0, 1.0, 1.0), (0.0, 0.0, 0.5 + 1e-3), name="heavy"),
+        solid((0.05, 0.05, 0.05), (0.1, 0.0, 1.05), name="light"),
+    ]
+    masonry = mr.Masonry(blocks, k_n=options.pop("k_n", 1e10), friction=0.5, xi=0.0)
+    velocity = [[0.0] * 6, [0.0] * 6, [0.0, 0.0, -3.0, 0.0, 0.0, 0.0]]
+    return mr.solve_explicit(mr.MasonryCase(masonry, 0.03, velocity=velocity, settled=False), **options)
+
+
+def test_a_light_block_that_sinks_into_another_is_told_by_the_step_or_the_joints():
+    """With the default step it keeps its stiffness, and with what each warning names the overlap is below 1 %."""
+    free = lands(output_step=2e-4)
+    assert free.stats["overlap"] < 0.01
+    with pytest.warns(UserWarning, match=r"heavy and light lie .*: this step leaves their contact") as told:
+        coarse = lands(timestep=0.8 * free.stats["stable_timestep"], output_step=4e-4)
+    named = float(str(told[0].message).split("timestep = ")[1].split(" s")[0])
+    assert free.stats["timestep"] < named < coarse.stats["timestep"]
+    assert coarse.stats["overlap"] > 0.01 > lands(timestep=named, output_step=2e-4).stats["overlap"]
+    with pytest.warns(
+        UserWarning, match=r"heavy and light .* s: joints [\d.]+ times as stiff keep blocks apart"
+    ) as told:
+        soft = lands(k_n=5e8, output_step=2e-4)
+    stiffer = float(str(told[0].message).split("joints ")[1].split(" times")[0])
+    assert soft.stats["overlap"] > 0.01 > lands(k_n=1.02 * stiffer * 5e8, output_step=2e-4).stats["overlap"]

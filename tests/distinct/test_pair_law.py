@@ -13,13 +13,25 @@ ENDS = [(0, 1), (1, 2), (1, 2)]
 RESIDUAL = np.array([0.9, 0.5, 0.3])
 
 
-def masonry(in_space=False):
-    """Four blocks: 0 below 1, and 1 below 2 by two joints. The last one has no joint."""
-    joints = [
-        SimpleNamespace(below=low, above=high, width=width, area=2 * width)
-        for (low, high), width in zip(ENDS, WIDTHS, strict=True)
+def block(*sides, fixed=False, length=1.0, in_space=False):
+    """With sides of some lengths, in space with square faces of these areas."""
+    corners = [
+        [(0, 0, 0), (a**0.5, 0, 0), (a**0.5, a**0.5, 0), (0, a**0.5, 0)] if in_space else [(1, 2), (1, 2 + a)]
+        for a in sides
     ]
-    return SimpleNamespace(blocks=range(4), joints=joints, in_space=in_space, residual_friction=RESIDUAL)
+    of = [SimpleNamespace(corners=np.array(each, dtype=float)) for each in corners]
+    return SimpleNamespace(fixed=fixed, length=length, in_space=in_space, sides=of)
+
+
+def masonry(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
+    """Blocks with joints 2 m long, as soft as each other but where something else is known."""
+    joints = [
+        SimpleNamespace(below=low, above=high, width=width, area=2 * width, length=2.0)
+        for (low, high), width in zip(ends, widths, strict=True)
+    ]
+    same = {name: np.ones(len(ends)) for name in ("joint_stiffness", "joint_shear", "retardation")}
+    given = {"joints": joints, "in_space": blocks[0].in_space, "residual_friction": residual, "polygons": blocks}
+    return SimpleNamespace(blocks=blocks, **given, **same | {name: np.array(each) for name, each in known.items()})
 
 
 JOINT = np.array([0, 0, 1, 1, 2])
@@ -31,16 +43,18 @@ def lines():
     return table
 
 
-def law(in_space=False):
-    return pair_law.PairLaw.of_joints(masonry(in_space), lines(), JOINT)
+def law(in_space=False, fixed=()):
+    """Four blocks: 0 below 1, and 1 below 2 by two joints. The last one has no joint, and large faces."""
+    blocks = [block(7.0, 9.0, in_space=in_space, fixed=i in fixed) for i in range(4)]
+    return pair_law.PairLaw.of_joints(masonry(blocks), lines(), JOINT)
 
 
 def expected(k, share=1.0):
     return {"k": share * k, "c": 0.1 * share * k, "k_s": 0.4 * share * k, "c_s": 0.02 * share * k}
 
 
-def places(pair, share=1.0, area=1e9, in_space=False):
-    one = law(in_space).of_places(np.array([pair]), np.array([share]), np.array([area]), 4)
+def places(pair, share=1.0, area=1e9, in_space=False, fixed=()):
+    one = law(in_space, fixed).of_places(np.array([pair]), np.array([share]), np.array([area]), 4)
     return {name: float(value[0]) for name, value in one.items()}
 
 
@@ -66,35 +80,92 @@ def test_least_shares_of_pairs():
     np.testing.assert_array_equal(least, [0.4, 0.9, 0.4, 1.0, 1.0])
 
 
-def test_a_pair_that_had_joints_keeps_their_law():
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize(
+    ("over", "kept"), [(1e-3, 0.01), (0.025, 0.25), (0.2, 0.25), (0.5, 0.5), (1.0, 1.0), (1.5, 1.5)]
+)
+def test_a_pair_that_had_joints_keeps_their_law_per_area(in_space, over, kept):
     """Two joints add up, with the least friction; that of a joint without its bond is the residual one."""
-    assert places(1) == pytest.approx(expected(3.0) | {"friction": 0.6})
-    assert places(4 + 2) == pytest.approx(expected(15.0) | {"friction": 0.3})
-    assert places(4 + 2, share=0.25) == pytest.approx(expected(15.0, 0.25) | {"friction": 0.3})
+    scale = 2.0 if in_space else 1.0
+    one, two = places(1, 1.0, over * scale * 0.2, in_space), places(4 + 2, 1.0, over * scale * 0.9, in_space)
+    assert one == pytest.approx(expected(3.0, kept) | {"friction": 0.6})
+    assert two == pytest.approx(expected(15.0, kept) | {"friction": 0.3})
+    assert places(4 + 2, 0.25, 0.9) == pytest.approx(expected(15.0, 0.25) | {"friction": 0.3})
+    assert places(4 + 2, 0.25, 0.0) == pytest.approx(expected(15.0, 0.25) | {"friction": 0.3})  # edges
 
 
 def test_a_pair_that_had_none_takes_the_softer_block():
     """The stiffest joint of a block, or half of all its joints where that is more; the least friction of both."""
     assert places(2) == pytest.approx(expected(3.0) | {"friction": 0.3})
-    assert places(4 + 3)["k"] == pytest.approx(9.0)  # the block without a joint is not the softer one
+    assert places(4 + 3)["k"] == pytest.approx(9.0)  # the block without a joint has large faces, and is not the softer
     assert places(3)["k"] == pytest.approx(3.0)
 
 
+def test_a_fixed_block_has_what_its_joints_have_per_area():
+    """So that how many blocks stand on it plays no part: block 2 has 9 over 0.54 m, and block 0, 3 over 0.2 m, has
+    8.1 over as much; or the other way round."""
+    assert places(2, fixed=(0,)) == pytest.approx(expected(8.1) | {"friction": 0.3})
+    assert places(2, fixed=(2,)) == pytest.approx(expected(3.0) | {"friction": 0.3})
+    assert places(2, fixed=(1, 3)) == pytest.approx(expected(3.0) | {"friction": 0.3})
+
+
+SOFT = {"joint_stiffness": [5.0, 4.0, 4.0, 4.0], "joint_shear": [1.0, 9.0, 2.0, 2.0], "retardation": [0, 0, 2.0, 1.0]}
+"""Of four joints of which the last one is the softest: then the softest along its face, then the least damped."""
+
+
+def loose_law(in_space=False, fixed=()):
+    """Two loose blocks, of a largest face of 0.5 and 3, and two blocks with joints. Per area the softest joint has 8,
+    in the plane 4 over 2 m of length; and the blocks are 1 m and 3 m long."""
+    sizes = [(0.5, 0.1), (0.2, 3.0), (0.5,), (0.5,)]
+    blocks = [
+        block(*sides, in_space=in_space, length=3.0 if i == 1 else 1.0, fixed=i in fixed)
+        for i, sides in enumerate(sizes)
+    ]
+    given = masonry(blocks, [(2, 3)] * 4, [0.5] * 4, np.array([0.1, 0.2, 0.3, 0.4]), **SOFT)
+    k = np.array([90.0, 80.0, 70.0, 8.0 if in_space else 4.0])
+    table = rows(kinds(2).line, 4, k=k, c=0.1 * k, k_s=0.4 * k, c_s=0.02 * k, friction=0.9)
+    return pair_law.PairLaw.of_joints(given, table, np.arange(4))
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_blocks_without_joints_have_the_softest_joint_of_the_masonry_over_their_faces(in_space):
+    """And never less than a quarter of the largest face, unless they lie over less than a tenth of that."""
+    found, per_area = loose_law(in_space), 8.0 if in_space else 4.0
+    one = np.ones(1)
+    for area, counts in ((0.5, 0.5), (0.3, 0.3), (0.1, 0.125), (0.02, 0.125), (0.0125, 0.125), (0.01, 0.1), (0.0, 0.5)):
+        given = found.of_places(np.array([1]), 0.25 * one, area * one, 4)
+        assert {name: float(column[0]) for name, column in given.items()} == pytest.approx(
+            expected(per_area * counts, 0.25) | {"friction": 0.4}
+        )
+    assert found.loose.tolist() == [True, True, False, False]
+
+
+@pytest.mark.parametrize("fixed", [(), (1,), (0,)])
+def test_of_two_loose_blocks_the_smaller_one_rules_and_of_a_fixed_one_the_other(fixed):
+    """A block of 3 m has 4 per m and m of length, three times as much as one that is 1 m long."""
+    found = loose_law(fixed=fixed)
+    assert found.of_block[0][:2, 0] == pytest.approx([2.0, 36.0])
+    over = 2.9
+    given = found.of_places(np.array([1]), np.ones(1), np.full(1, over), 4)["k"]
+    assert given == pytest.approx(4.0 * over)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 2), (0, 3)])
+def test_a_loose_block_that_is_softer_rules_over_one_with_joints(low, high):
+    given = loose_law().of_places(np.array([4 * low + high]), np.ones(1), np.full(1, 0.2), 4)
+    assert float(given["k"][0]) == pytest.approx(0.2 * 4.0)
+    assert float(given["friction"][0]) == 0.1  # the least of the joints of the other one
+
+
 def test_half_of_many_joints_is_more_than_the_stiffest():
-    joints = [SimpleNamespace(below=0, above=1 + i, width=0.5, area=0.5) for i in range(3)]
-    given = SimpleNamespace(blocks=range(5), joints=joints, in_space=False, residual_friction=np.full(3, 0.9))
+    given = masonry([block(1.0)] * 5, [(0, 1), (0, 2), (0, 3)], [0.5] * 3, np.full(3, 0.9))
     table = rows(kinds(2).line, 3, k=[4.0, 5.0, 6.0], friction=0.6)
     found = pair_law.PairLaw.of_joints(given, table, np.arange(3))
-    one = found.of_places(np.array([0 * 5 + 4]), np.ones(1), np.full(1, 1e9), 5)
-    assert one["k"][0] == pytest.approx(7.5)
+    assert found.of_block[0][0, 0] == pytest.approx(7.5)
 
 
 def test_the_softer_block_of_two_is_taken_whichever_comes_first():
-    joints = [
-        SimpleNamespace(below=0, above=1, width=0.5, area=0.5),
-        SimpleNamespace(below=2, above=3, width=0.5, area=0.5),
-    ]
-    given = SimpleNamespace(blocks=range(4), joints=joints, in_space=False, residual_friction=np.full(2, 0.9))
+    given = masonry([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
     for stiffness in ([4.0, 5.0], [5.0, 4.0]):
         table = rows(kinds(2).line, 2, k=stiffness, friction=[0.6, 0.5])
         found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
@@ -102,9 +173,18 @@ def test_the_softer_block_of_two_is_taken_whichever_comes_first():
         assert (one["k"][0], one["friction"][0]) == (4.0, 0.5)
 
 
+@pytest.mark.parametrize("damped", [(0.1, 0.2), (0.2, 0.1)])
+def test_of_two_blocks_as_stiff_the_one_that_is_less_damped_is_taken(damped):
+    """Whichever has the lower number."""
+    given = masonry([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
+    table = rows(kinds(2).line, 2, k=4.0, c=np.array(damped), friction=0.6)
+    found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
+    assert found.of_places(np.array([0 * 4 + 2]), np.ones(1), np.full(1, 1e9), 4)["c"][0] == pytest.approx(0.1)
+
+
 @pytest.mark.parametrize("in_space", [False, True])
-def test_faces_that_hardly_lie_over_each_other_have_less(in_space):
-    """In proportion below a tenth of the area of the joints, of which edges have none."""
-    whole = (2.0 if in_space else 1.0) * 0.9
+def test_faces_without_a_joint_that_hardly_lie_over_each_other_have_less(in_space):
+    """In proportion below a tenth of the area of the joints of the softer block, of which edges have none."""
+    whole = (2.0 if in_space else 1.0) * 0.2
     for area, share in ((0.05 * whole, 0.5), (0.1 * whole, 1.0), (0.5 * whole, 1.0), (0.0, 1.0)):
-        assert places(4 + 2, area=area, in_space=in_space)["k"] == pytest.approx(15.0 * share)
+        assert places(2, area=area, in_space=in_space)["k"] == pytest.approx(3.0 * share)

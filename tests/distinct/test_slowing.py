@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from by_hand import books, energy, system
 
+import mjrock as mr
 from mjrock.distinct import slowing
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
@@ -45,3 +46,9 @@ def test_each_force_that_is_not_balanced_loses_a_share_against_the_motion(d):
     slowing.oppose(whole, account, share, kick, whole.axes)
     assert account.dashpots[-1] > 1.5 * kick * power
     assert account.dashpots[0] == 0.0
+
+
+def test_local_damping_of_rigid_friction_is_refused():
+    case = mr.MasonryCase(mr.Masonry.column(0.5, 1.0, 1, k_n=1e8), 0.01)
+    with pytest.raises(ValueError, match=r"local_damping = 0\.5 needs joints with a shear stiffness"):
+        mr.solve_explicit(case, local_damping=0.5)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mjrock.distinct.rows import kinds, rows
-from mjrock.distinct.softening import Sides, shares_within
+from mjrock.distinct.softening import Sides, shares_within, unsoftened
 
 
 def places(rng, bodies, count, d):
@@ -106,3 +106,14 @@ def test_two_bodies_take_shares_that_go_as_their_loads():
     law = {"k": np.full(1, 8.0), "c": np.zeros(1), "k_s": np.full(1, np.inf), "c_s": np.zeros(1)}
     sides = Sides(np.array([[0], [1]]), np.zeros((2, 1, 2)), np.array([[0.0, 1.0]]))
     np.testing.assert_allclose(shares_within(sides, law, bodies_of(inverse), 1.0), [4 / 10], rtol=1e-12)
+
+
+@pytest.mark.parametrize("slow", [0.0, 1e-4, 1e-2])
+@pytest.mark.parametrize("step", [1e-3, 4e-3])
+def test_a_step_that_leaves_all_of_the_law_of_a_place(step, slow):
+    """A single mass on a spring and a dashpot: step and share go together as the bound of its step says."""
+    stiffness, short = 1.0e7, 2e-4
+    bound = short**2 * stiffness + 2 * short * slow * stiffness
+    share = bound / (step**2 * stiffness + 2 * step * slow * stiffness)
+    assert unsoftened(share, step, slow) == pytest.approx(short, rel=1e-9)
+    assert unsoftened(1.0, step, slow) == pytest.approx(step, rel=1e-12)

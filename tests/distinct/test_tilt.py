@@ -5,6 +5,7 @@ import pytest
 from driven import B, H, panel
 
 import mjrock as mr
+from mjrock.problem.masonry.tilt import motions_of_tilt
 
 RATE = 0.02
 """Rate at which the table turns [rad/s]."""
@@ -40,6 +41,15 @@ def test_the_same_table_in_mujoco():
     masonry = panel(0.9, k_n=1e8)
     both = [tilted(masonry, 0.33, solve, rate=5 * RATE).theta[:, 0] for solve in (mr.solve_explicit, mr.simulate)]
     np.testing.assert_allclose(*both, atol=0.02 * both[0].max())
+
+
+def test_a_table_turns_as_its_history_says():
+    """At any time gravity along the table is g sin(a), to within 1e-6 g between the samples of the motion."""
+    motion, vertical = motions_of_tilt(((0.0, 1.0), (0.0, 0.4)), 2.0)
+    for t in (0.25, 0.7499, 1.0, 1.7):
+        angle = 0.4 * min(t, 1.0)
+        assert float(motion(t)) == pytest.approx(-mr.GRAVITY * np.sin(angle), abs=1e-6 * mr.GRAVITY)
+        assert float(vertical(t)) == pytest.approx(-mr.GRAVITY * (1 - np.cos(angle)), abs=1e-6 * mr.GRAVITY)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Convex polygons in a plane."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -79,3 +80,31 @@ def test_more_points_have_the_second_moment_of_the_area():
     assert errors[0] == pytest.approx(6 / (2 + math.cos(math.pi / 3)) - 1)
     assert errors[2] == pytest.approx(errors[1] / 4, rel=0.01)
     assert 0 < errors[2] < 0.02
+
+
+def second_moments(polygon):
+    """Area and its moments with x, y, x^2, y^2 and x y, by the middles of the edges of triangles, exact for these."""
+    total = np.zeros(6)
+    for b, c in pairwise(polygon[1:]):
+        a, part = polygon[0], convex.area(np.array([polygon[0], b, c]))
+        for x, y in (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)):
+            total += part / 3 * np.array([1.0, x, y, x * x, y * y, x * y])
+    return total
+
+
+@pytest.mark.parametrize("polygon", [SQUARE, FIVE, FIVE[:3], FIVE[1:], circle(12)], ids=list("abcde"))
+@pytest.mark.parametrize("points", [3, 4, 5, 8])
+def test_sections_have_area_centroid_and_second_moments(polygon, points):
+    places, areas = convex.sectioned(polygon, points)
+    x, y = places.T
+    assert (areas > 0).all()
+    found = [areas.sum(), areas @ x, areas @ y, areas @ x**2, areas @ y**2, areas @ (x * y)]
+    assert found == pytest.approx(second_moments(polygon), abs=1e-12)
+
+
+def test_sections_of_a_rectangle_are_those_of_lobatto_and_simpson():
+    places, areas = convex.sectioned(SQUARE, 3)
+    inner = (np.abs(places - 0.5) < 1e-12).sum(axis=1)  # 0 corner, 1 edge, 2 middle
+    assert areas == pytest.approx(np.array([1, 4, 16])[inner] / 36)
+    assert convex.exact_shares(4) == pytest.approx([1 / 8, 3 / 8, 3 / 8, 1 / 8])
+    assert (convex.exact_shares(1000) > 0).all()

@@ -43,6 +43,10 @@ HELD = "<Contacts, law given, 2 lines a face: base k_n = 5e+08 N/m3, xi = 0.05; 
             "<Masonry of 27 blocks, 2 x 1.5 m: k_n = 1e+10, friction of the joint, xi = 0.05, points = 2>",
         ),
         (
+            mr.Masonry.stack([mr.Block.from_size(0.5, 2.0)], k_n=1e9, law="CALIBRATED"),
+            "<Masonry of 1 blocks, 0.5 x 2 m: k_n = 1e+09, friction = 0.7, law CALIBRATED, points = 2>",
+        ),
+        (
             mr.Masonry.box((0.4, 0.6, 2.0), k_n=1e9, k_s=4e8),
             "<Masonry of 1 blocks, 0.4 x 0.6 x 2 m: k_n = 1e+09, k_s = 4e+08, friction = 0.7, xi = 0.05, points = 2>",
         ),

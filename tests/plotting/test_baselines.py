@@ -116,7 +116,9 @@ PICTURES = {
     ),
     "parity": lambda: plotting.parity(RISING, RISING**1.1, RISING),
     "peers": lambda: plotting.peers(points(4)),
-    "push": lambda: plotting.push({"a": mr.Push(RISING, 1e4 * RISING * (2 - RISING), 0 * RISING, "", swung())}),
+    "push": lambda: plotting.push(
+        {"a": mr.Push(RISING, 1e4 * RISING * (2 - RISING), 0 * RISING, "", swung(), energy=RISING)}
+    ),
     "pushover": lambda: plotting.pushover(pushed()),
     "residuals": lambda: plotting.residuals("t", RISING, {"R": (RISING, "log"), "h": (RISING[::-1], "linear")}),
     "rotation": lambda: plotting.rotation(both(), ["a", "b"]),

@@ -38,6 +38,26 @@ def test_grid_hides_the_panels_it_does_not_need(responses):
     assert [ax.get_visible() for ax in figure.axes] == [True, True, True, False]
 
 
+def test_a_fragility_curve_needs_no_levels():
+    """The fit to capacities has none; the two curves differ in colour, and both are seen in full."""
+    fits = [mr.fit_capacities(middle * np.array([0.8, 0.9, 1.0, 1.1, 1.3])) for middle in (0.6, 0.3)]
+    ax = Figure().subplots()
+    for name, fit in zip(("tied", "as it is"), fits, strict=True):
+        assert plotting.fragility(ax, fit, solver=name) is ax
+    lines = ax.get_lines()
+    assert [line.get_label() for line in lines] == [
+        f"{name}: {fit.median:.2f} g, {fit.dispersion:.2f}"
+        for name, fit in zip(("tied", "as it is"), fits, strict=True)
+    ]
+    assert lines[0].get_color() != lines[1].get_color()
+    assert ax.get_xlim()[1] > 2 * fits[0].median
+    assert len(plotting.fragility(Figure().subplots(), fits[0], [0.5, 0.6], [0.0, 1.0]).get_lines()) == 2
+    with pytest.raises(ValueError, match=r"levels has the shape \(2,\), shares has the shape \(1,\); rows of one"):
+        plotting.fragility(fits[0], [0.5, 0.6], [0.3])
+    with pytest.raises(ValueError, match="levels and shares go together: give both, or neither"):
+        plotting.fragility(fits[0], levels=[0.5])
+
+
 def test_push_over_curves_beside_closed_forms(one_sided, contacts):
     curves = {"rigid": mr.pushover(one_sided), "corner lines": mr.pushover(one_sided, contacts)}
     ax = Figure().subplots()

@@ -137,6 +137,11 @@ def test_masonry_at_the_end_of_a_run_is_drawn_on_its_supports():
     assert block[:, 1].min() == pytest.approx(slab[:, 1].max(), abs=1e-3)
 
 
+def test_joints_are_drawn_or_not():
+    with pytest.raises(TypeError, match=r"joints = .* is neither True nor False"):
+        plotting.blocks(mr.Masonry.arch(5.0, 0.9), joints=np.array([True, False]))
+
+
 def lying(in_space):
     """A bar of 0.2 x 1.6 m that has fallen to the right on the ground that the builders make, which is 6.6 m wide."""
     bar = (0.2, 0.5, 1.6)

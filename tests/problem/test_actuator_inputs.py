@@ -81,3 +81,18 @@ def test_a_displacement_in_millimetres_is_refused():
 
 def test_it_says_its_height_its_farthest_displacement_and_its_stiffness():
     assert actuator().said == "z = 2.5 m,\nto -50 mm, k = 20 kN/mm"
+
+
+def test_an_actuator_of_all_blocks_has_no_point_and_no_guide():
+    whole = {"block": None, "at": None, "direction": (-2.0, 0.0)}
+    one = actuator(**whole)
+    assert (one.block, one.at, one.direction) == (None, None, (-1.0, 0.0))
+    assert np.isnan(one.height)
+    assert one.said == "all blocks,\nto -50 mm, k = 20 kN/mm"
+    assert actuator(block=None, at=None).direction == (1.0, 0.0)
+    assert actuator(**whole | {"direction": (0.0, 3.0, 0.0)}).direction == (0.0, 1.0, 0.0)
+    for changed in ({"at": (0.0, 1.0)}, {"guided": "upright"}):
+        with pytest.raises(ValueError, match="needs a block; block = None drives all blocks"):
+            actuator(**whole | changed)
+    with pytest.raises((TypeError, ValueError), match="at of the actuator"):
+        actuator(at=None)

@@ -25,6 +25,32 @@ def test_a_closed_joint_of_few_lines_is_stiffer_in_bending_than_its_face(points,
     assert bending(space) == pytest.approx(over)
 
 
+BOND = mr.Bond(0.1e6, 0.1e6, 10.0, 100.0)
+
+
+@pytest.mark.parametrize("points", [3, 4, 5, 9])
+def test_a_bonded_joint_has_the_stiffness_of_its_face_in_bending(points):
+    """By closed form, k_n I to rounding, in the plane and both ways in space; its area and its middle stay."""
+    ground = mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True)
+    wall = mr.Polygon([(-0.3, 0), (0.3, 0), (0.3, 1), (-0.3, 1)])
+    options = {"k_n": 1e9, "k_s": 1e9, "points": points, "bond": BOND}
+    plane, space = mr.Masonry([ground, wall], **options), mr.Masonry.box((0.6, 0.9, 1.0), **options)
+    assert bending(plane) == pytest.approx(1.0, rel=1e-12)
+    assert plane.lines.k.sum() == pytest.approx(1e9 * 0.6)
+    at, k = space.lines.at, space.lines.k
+    assert k @ at[:, :2] ** 2 == pytest.approx(1e9 * np.array([0.9 * 0.6**3, 0.6 * 0.9**3]) / 12, rel=1e-12)
+    assert k @ at[:, 0] == pytest.approx(0.0, abs=1e-3)
+    assert len(k) == points**2
+
+
+def test_two_lines_do_not_make_a_bonded_joint():
+    given = {"k_n": 1e9, "k_s": 1e9, "bond": BOND}
+    with pytest.raises(ValueError, match=r"points = 2, and ground\|block has a bond: .* the valid range is 3 or more"):
+        mr.Masonry.box((0.6, 0.9, 1.0), **given)
+    dry = mr.Masonry.box((0.6, 0.9, 1.0), **given | {"bond": lambda joint: None})
+    assert bending(dry) == pytest.approx(3.0)
+
+
 def test_a_triangle_on_its_three_corners_is_four_times_as_stiff():
     masonry = mr.Masonry.column(0.6, 0.8, 1, sides=3, k_n=1e9)
     lines = masonry.lines

@@ -1,10 +1,12 @@
 """The law of a bond on a row of numbers, against its equations."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
+import mjrock as mr
 from mjrock.problem.masonry.bond_law import BRITTLE, bonded_limit, crush, tear, wear
 
 K, TENSION, TORN = 1e8, 2e3, 1e4
@@ -140,3 +142,18 @@ def test_slip_wears_cohesion_by_its_energy():
     assert wear(bond, 0.0) == 0.0
     assert wear(row(worn=0.0), 1e-4) == 0.0
     assert wear(row(), 1.0) == pytest.approx(3e3 / 5e3)
+
+
+@pytest.mark.parametrize("hardening", [None, 1e-4])
+def test_crushing_that_a_spring_would_outdo_is_refused_with_the_valid_ranges(hardening):
+    """Steepest is f_c^2 / (G_c - what hardening takes), here of SAFEGO on its k_n of 2.5e9 N/m3."""
+    bond = replace(mr.BONDS["clay brick, SAFEGO"], hardening=hardening)
+    steepest = (20e6) ** 2 / (22.2e3 - bond.energy_of_hardening)
+    column = {"sides": 4, "k_s": 1e9, "points": 3}
+    with pytest.raises(ValueError, match=r"range of k_n is .* that of the crushing_energy") as refused:
+        mr.Masonry.column(0.5, 2.0, 2, k_n=2.5e9, bond=bond, **column)
+    said = [float(word) for word in str(refused.value).split() if "e+" in word]
+    assert said == pytest.approx([2.5e9, 1.01 * steepest, 1.01 * bond.crushing_energy_on(2.5e9)], rel=0.005)
+    assert len(mr.Masonry.column(0.5, 2.0, 2, k_n=1.001 * steepest, bond=bond, **column).bonds) == 2
+    enough = replace(bond, crushing_energy=1.001 * bond.crushing_energy_on(2.5e9))
+    assert mr.Masonry.column(0.5, 2.0, 2, k_n=2.5e9, bond=enough, **column).bonds[0] == enough

@@ -143,7 +143,7 @@ def test_what_cannot_be(call, complaint):
 
 
 def test_an_acceleration_in_g_is_doubted():
-    with pytest.warns(mr.Implausible, match=r"ag = 0.261 m/s2 is 0.0266 g; is it in m/s2"):
+    with pytest.warns(mr.Implausible, match=r"ag = 0.261 m/s2 is 0.0266 g; accelerations are in m/s2: is it in g"):
         ntc(ag=0.261)
 
 

@@ -138,3 +138,9 @@ def test_an_effect_acts_on_the_unit_and_not_in_its_notch():
     mr.MasonryCase(masonry, 0.1, effects=[mr.Load(force=1e3, at=(0.5, 0, 3), block="L")])
     with pytest.raises(ValueError, match="outside the block"):
         mr.MasonryCase(masonry, 0.1, effects=[mr.Load(force=1e3, at=(1.8, 0, 2.8), block="L")])
+
+
+def test_the_left_end_is_that_of_the_parts_that_reach_so_high():
+    """An L turned round: its foot lies to the left, and only low down."""
+    turned = mr.Compound([box(0, 1, 0, 3), box(-1, 0, 0, 1)])
+    assert [turned.left_at(z) for z in (0.5, 2.0, 2.9)] == [-1.0, 0.0, 0.0]

@@ -103,6 +103,87 @@ def test_drawings_that_are_no_masonry(tmp_path, draw, complaint):
         mr.Masonry.from_dxf(tmp_path / "a.dxf", ground=True)
 
 
+def inserting(path, levels, each=10):
+    """A stone that is inserted so many times, in blocks of so many levels."""
+    document = ezdxf.new(units=units.M)
+    document.blocks.new("B0").add_lwpolyline(box(0, 1, 0, 1), close=True)
+    for i in range(1, levels + 1):
+        block = document.blocks.new(f"B{i}")
+        for j in range(each):
+            block.add_blockref(f"B{i - 1}", (j * each ** (i - 1), 0))
+    document.modelspace().add_blockref(f"B{levels}", (0, 0))
+    document.saveas(path)
+    return path
+
+
+def test_inserted_blocks_are_counted_before_they_are_inserted(tmp_path):
+    """Five levels of ten, 22 kB, would take 20 s; a tower of 60 levels, rows and columns, and many lines likewise."""
+    assert len(mr.Masonry.from_dxf(inserting(tmp_path / "a.dxf", 2), ground=True).free) == 100
+    for levels, count in ((5, "1e\\+05"), (8, "1e\\+08")):
+        with pytest.raises(ValueError, match=rf"b.dxf: there are {count} outlines, and at most 5000 are taken"):
+            mr.Masonry.from_dxf(inserting(tmp_path / "b.dxf", levels), ground=True)
+    with pytest.raises(ValueError, match="inserted in each other on more than 50 levels, from B60 on"):
+        mr.Masonry.from_dxf(inserting(tmp_path / "b.dxf", 60, 1), ground=True)
+    document = ezdxf.new(units=units.M)
+    stone, field = document.blocks.new("stone"), {"row_count": 300, "row_spacing": 1, "column_spacing": 1}
+    for _ in range(20):
+        stone.add_line((0, 0), (1, 1))
+    document.modelspace().add_lwpolyline(box(0, 1, 0, 1), close=True)
+    document.modelspace().add_blockref("stone", (0, 0), dxfattribs=field | {"column_count": 300})
+    document.saveas(tmp_path / "c.dxf")
+    with pytest.raises(ValueError, match=r"c.dxf: there are 1.8e\+06 things that are inserted, and at most 50000 are"):
+        mr.Masonry.from_dxf(tmp_path / "c.dxf", ground=True)
+
+
+def test_blocks_that_insert_each_other_are_refused_by_name(tmp_path):
+    document = ezdxf.new(units=units.M)
+    pier, arch = document.blocks.new("pier"), document.blocks.new("arch")
+    pier.add_blockref("arch", (0, 0))
+    arch.add_blockref("pier", (0, 0))
+    document.modelspace().add_blockref("pier", (0, 0))
+    document.saveas(tmp_path / "a.dxf")
+    with pytest.raises(ValueError, match=r"a.dxf: the blocks pier, arch insert each other"):
+        mr.Masonry.from_dxf(tmp_path / "a.dxf")
+
+
+DAMAGE = {
+    "IndexError": ("$VISRETAIN\n 70\n", "$VISRETAIN\n  0\n"),
+    "KeyError": ("  3\nModel\n", "  3\nMoxdel\n"),
+    "AttributeError": ("  3\nLayout1\n", "  3\n1.0\n"),
+    "of the unit": ("$INSUNITS\n 70\n6\n", "$INSUNITS\n 70\n99\n"),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_drawing_ends_in_an_error_with_its_path(tmp_path, damage):
+    """What the library raises for it is named; each is one line of the file."""
+    path = drawing(tmp_path / "a.dxf", ("stone", box(0, 1, 0, 1)))
+    text = path.read_text()
+    assert DAMAGE[damage][0] in text
+    path.write_text(text.replace(*DAMAGE[damage]))
+    with pytest.raises(ValueError, match=r"a.dxf is not a drawing in DXF, or is damaged: "):
+        mr.Masonry.from_dxf(path, ground=True)
+
+
+def test_a_drawing_that_was_repaired_is_warned_of(tmp_path):
+    path = drawing(tmp_path / "a.dxf", ("stone", box(0, 1, 0, 2.5)))
+    text = path.read_text()
+    assert text.count("\n2.5\n") > 1
+    path.write_text(text.replace(" 20\n2.5\n", " 20\n2.5XT\n"))
+    with pytest.warns(UserWarning, match=r"a.dxf is damaged, and was repaired .*\"2.5XT\" near line \d+ as \"2.5\""):
+        assert mr.Masonry.from_dxf(path, ground=True).blocks[1].area == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    ("start", "what"),
+    [(b"%PDF-1.4", "a PDF"), (b"PK\x03\x04", "a zip archive"), (b"AutoCAD Binary DXF\r\n", "a binary")],
+)
+def test_other_files_are_named(tmp_path, start, what):
+    (tmp_path / "a.dxf").write_bytes(start + bytes(range(256)))
+    with pytest.raises(ValueError, match=rf"a.dxf is {what}.*, and no drawing in DXF; save it as text in DXF"):
+        mr.Masonry.from_dxf(tmp_path / "a.dxf")
+
+
 def test_arguments_are_checked(tmp_path):
     path = drawing(tmp_path / "a.dxf", ("stone", box(0, 1, 0, 1)), ("brick", box(0, 1, 1, 2)))
     with pytest.raises(ValueError, match="fixed = 'rock' is neither a layer nor a block; the layers are stone, brick"):

@@ -97,3 +97,16 @@ def test_a_law_is_told_the_side_and_says_what_it_was_fitted_for(wall, e):
 def test_a_law_of_ones_own_has_three_arguments(wall, e):
     made = mr.Contacts.from_law(wall, e, k_base=5e8, k_side=1e8, law=lambda wall, e, k_n: (0.04, 0.01))
     assert (made.base.xi, made.side.xi) == (0.04, 0.01)
+
+
+def test_a_base_too_soft_for_a_rebound_is_warned_of():
+    """h/b 15 on 5e7 N/m3: Housner's rebound to 0.093 alpha ends below the uplift rotation of 0.177 alpha, and the wall
+    stays on its side. On the k_n that the warning names, and two-sided, nothing is said."""
+    wall = mr.Block.from_slenderness(15.0, 2.255)
+    e = mr.Restitution.from_geometry(wall)
+    with pytest.warns(UserWarning, match=r"no rebound can follow from 0.5 alpha: .* 0.53 times .* above 9.5e\+07 N/m3"):
+        soft = mr.Contacts.from_law(wall, e, k_base=5e7, k_side=5e7)
+    assert not mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 3.0), soft).restitution.size
+    firm = mr.Contacts.from_law(wall, e, k_base=1e8, k_side=1e8)
+    assert mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 3.0), firm).restitution.size
+    mr.Contacts.from_law(wall, e, k_base=5e7)

@@ -192,6 +192,30 @@ def test_the_lowest_frequency_of_two_blocks():
     assert columns(2, xi=0.5).retardation == pytest.approx(1 / lowest, rel=1e-9)
 
 
+@pytest.mark.parametrize("k_s", [None, 3e8])
+def test_a_block_between_inclined_faces_vibrates_on_its_joints(k_s):
+    """Three faces leave no motion in which none slides. Stiffness of its lines by hand, and along them that of k_s."""
+    ground = mr.Polygon([(-3, -1), (3, -1), (3, 0), (-3, 0)], fixed=True)
+    wedge = mr.Polygon([(-0.5, 0), (0.5, 0), (1.0, 1.5), (-1.2, 1.5)])
+    right = mr.Polygon([(0.5, 0), (2.5, 0), (2.5, 1.5), (1.0, 1.5)], fixed=True)
+    left = mr.Polygon([(-0.5, 0), (-1.2, 1.5), (-2.5, 1.5), (-2.5, 0)], fixed=True)
+    masonry = mr.Masonry([ground, wedge, right, left], k_n=1e9, k_s=k_s, xi=0.5)
+    stiffness = np.zeros((3, 3))
+    for joint in masonry.joints:
+        ways = [(joint.normal, 1e9), *([] if k_s is None else [(joint.along, k_s)])]
+        for end in (joint.start, joint.end):
+            x, z = np.subtract(end, wedge.centroid)
+            for way, k in ways:
+                rate = np.array([*way, z * way[0] - x * way[1]])
+                stiffness += 0.5 * joint.area * k * np.outer(rate, rate)
+    mass = np.diag([wedge.mass, wedge.mass, wedge.inertia])
+    lowest = np.sqrt(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).min())
+    assert len(masonry.joints) == 3
+    assert masonry.retardation == pytest.approx(1 / lowest, rel=1e-9)
+    if k_s:
+        assert mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).outcome.name
+
+
 @pytest.mark.parametrize(("law", "points"), [("CALIBRATED", 2), (mr.CALIBRATED_BED, 16)])
 def test_the_law_gives_the_single_wall_its_numbers(law, points):
     wall = mr.Block(0.3, 2.1, length=1.7, density=1900.0)

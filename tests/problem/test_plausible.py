@@ -59,6 +59,55 @@ MISUSE = {
         lambda: with_effect(mr.Tie(8.0, 12e6, slack=3.0, strength=80e3)),
         r"slack = 3 m, and where it is held the wall opens by 0\.6\d* m until it overturns",
     ),
+    "slack in mm, with an anchor above": (
+        lambda: with_effect(mr.Tie(8.0, 12e6, slack=3.0, strength=80e3, anchor_height=9.0)),
+        "slack = 3 m, and where it is held the wall opens by 0",
+    ),
+    "ultimate in mm": (
+        lambda: with_effect(mr.Tie(8.0, 12e6, strength=80e3, ultimate=8.0)),
+        r"Tie: ultimate = 8 m, and where it is held the wall opens by 0\.6\d* m until it overturns: .* in m",
+    ),
+    "strength in Pa": (
+        lambda: mr.Case(SMALL, 0.05, 1.0, effects=mr.Tie(4.0, 5e9, strength=235e6)),
+        r"strength = 2.35e\+08 N, and the wall weighs 7.06e\+04 N: is it in N, and no stress in Pa",
+    ),
+    "slip force in kN": (
+        lambda: with_effect(mr.FrictionDamper(8.0, 2e7, 60.0)),
+        r"slip_force = 60 N, .* is it in kN\?",
+    ),
+    "friction damper in kN/m": (
+        lambda: with_effect(mr.FrictionDamper(8.0, 2e4, 60e3)),
+        "FrictionDamper yields at an elongation of 3 m, and the wall is 0.9 m thick",
+    ),
+    "friction damper of a modulus": (
+        lambda: with_effect(mr.FrictionDamper(8.0, 2e11, 60e3)),
+        "is it a modulus E in Pa",
+    ),
+    "damper in kN s/m": (
+        lambda: with_effect(mr.Damper(8.0, 20.0)),
+        r"c = 20 N s/m bears 59.4 N at 3 m/s, at which the wall falls, and it weighs 2.01e\+06 N: is it in kN s/m\?",
+    ),
+    "damper that holds as if rigid": (
+        lambda: with_effect(mr.Damper(8.0, 1e9)),
+        r"bears 2.97e\+09 N .* is it in N s/m\?",
+    ),
+    "load in another unit": (
+        lambda: mr.Case(SMALL, 0.05, 1.0, effects=mr.Load(9e7, 4.0)),
+        r"force = 9e\+07 N, and the wall weighs 7.06e\+04 N: is it in N",
+    ),
+    "a wall that nothing moves": (
+        lambda: mr.solve_analytical(mr.Case(WALL, 0.0, 1.0), E),
+        r"theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall",
+    ),
+    "a wall that nothing moves in MuJoCo": (lambda: mr.simulate(mr.Case(WALL, 0.0, 0.01), contacts()), "nothing moves"),
+    "a wall that nothing moves in SciPy": (
+        lambda: mr.solve_compliant(mr.Case(WALL, 0.0, 0.01), contacts()),
+        "nothing moves the wall",
+    ),
+    "a wall that nothing moves in explicit steps": (
+        lambda: mr.solve_explicit(mr.Case(WALL, 0.0, 0.01), contacts()),
+        "nothing moves the wall",
+    ),
     "E as stiffness": (lambda: with_effect(mr.Tie(8.0, 210e9, strength=80e3)), r"2.1e\+11 N/m is above 1e\+10 N/m"),
     "density in N/m3": (
         lambda: mr.Block.from_size(0.9, 12.0, 10.0, 19000.0),
@@ -120,6 +169,16 @@ def test_misuse_is_said_once_with_both_numbers(name):
     with pytest.warns(UserWarning, match=text) as caught:
         call()
     assert len(caught) == 1, [str(one.message) for one in caught]
+
+
+def test_forces_at_rest_and_what_a_wall_can_do_are_no_doubt():
+    """A run of forces at rest is meant; and devices are not doubted just within the limits of what is."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mr.simulate(mr.Case(WALL, 0.0, 0.01), contacts(), forces=True)
+        mr.solve_explicit(mr.Case(WALL, 0.0, 0.01), contacts(), forces=True)
+        held = mr.Tie(10.0, 2e9, slack=0.05, strength=1e6, ultimate=0.05), mr.Damper(10.0, 1e6)
+        with_effect((*held, mr.FrictionDamper(10.0, 2e7, 60e3), mr.Damper(10.0, 0.0)))
 
 
 def test_a_tie_above_a_strong_part_is_no_doubt():
@@ -198,6 +257,11 @@ def plausible(rng):
         effects.append(mr.Load(rng.uniform(0.02, 0.5) * wall.weight, height, rng.uniform(-0.3, 0.3) * thickness))
     if rng.random() < 0.3:
         effects.append(mr.AddedMass(rng.uniform(0.005, 0.2) * wall.mass, height))
+    held = rng.uniform(0.6, 1.0) * height
+    if rng.random() < 0.15:
+        effects.append(mr.Damper(held, rng.uniform(0.02, 0.6) * 2 * wall.mass * wall.p))
+    if rng.random() < 0.15:
+        effects.append(mr.FrictionDamper(held, rng.uniform(2, 50) * 1e6, rng.uniform(0.005, 0.1) * wall.weight))
     share = rng.choice([1.0, rng.uniform(0.75, 0.95)])
     stop = True if share == 1 else mr.SideStop(share * height)
     asked = {"side_stop": stop, "effects": tuple(effects)}

@@ -47,6 +47,24 @@ MISUSE = {
         r"yields at an elongation of 6.67 m, and its block is 1\.5\d* m thick",
     ),
     "slack in mm": (lambda: tied(slack=5.0), r"slack = 5 m, and where it is held the masonry opens by 0.6 m"),
+    "ultimate in mm": (lambda: tied(strength=8e3, ultimate=8.0), r"ultimate = 8 m, .* the masonry opens by 0.6 m"),
+    "slip force in kN": (
+        lambda: case(effects=mr.FrictionDamper(4.0, 1e7, 2.0, block=3)),
+        r"FrictionDamper: slip_force = 2 N, .* is it in kN\?",
+    ),
+    "damper in kN s/m": (lambda: case(effects=mr.Damper(4.0, 0.5, block=3)), r"Damper: c = 0.5 N s/m .* in kN s/m\?"),
+    "jack in mm": (
+        lambda: case(effects=mr.Actuator(3, (-0.3, 4.0), 1, ([0.0, 1.0], [0.0, 5.0]), 1e7)),
+        r"actuator_0: displacement reaches 5 m, and the masonry is 0.6 m long there: is it in mm\?",
+    ),
+    "jack in kN/mm": (
+        lambda: case(effects=mr.Actuator(3, (-0.3, 4.0), 1, ([0.0, 1.0], [0.0, 5e-3]), 10.0)),
+        r"actuator_0: stiffness = 10 N/m pushes with at most 0.05 N, .* is it in N/m\?",
+    ),
+    "strength of mortar in MPa": (lambda: mr.Bond(0.2, 0.3, 18.0, 125.0), r"tension = 0.2 Pa, .* is it in MPa\?"),
+    "cohesion in MPa": (lambda: mr.Bond(2e5, 0.3, 18.0, 125.0), r"cohesion = 0.3 Pa, .* is it in MPa\?"),
+    "energy in N/mm": (lambda: mr.Bond(2e5, 3e5, 0.018, 0.125), r"opening_energy = 0.018 J/m2, .* is it in N/mm\?"),
+    "xi in percent": (lambda: columns(1, 1e9, xi=5.0), r"xi = 5 is 500% of critical; damping ratios are fractions"),
     "slack in mm, in space": (
         lambda: case(BLOCK, effects=mr.Tie(stiffness=1e7, slack=5.0, at=(-0.3, 0, 3), block=1)),
         r"slack = 5 m, .* opens by 0.6 m",

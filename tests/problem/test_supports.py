@@ -48,3 +48,11 @@ def test_axes_that_do_not_fit_are_refused():
     with pytest.raises(TypeError, match=r"supports, ground = .* is not \(t, dx, dz\), which masonry in the plane"):
         dataclasses.replace(in_space, masonry=COLUMN)
     assert dataclasses.replace(in_space, duration=2.0).supports == in_space.supports
+
+
+@pytest.mark.parametrize("far", [{"dx": 200.0}, {"dz": -200.0}])
+def test_a_displacement_along_one_axis_may_be_too_large(far):
+    rows = {"dx": 0.0, "dz": 0.0} | far
+    histories = [0.0, 1.0], *([0.0, value] for value in rows.values())
+    with pytest.raises(ValueError, match="a displacement of 200 m is outside the valid range to 100 m"):
+        mr.MasonryCase(COLUMN, 1.0, supports={"ground": histories})

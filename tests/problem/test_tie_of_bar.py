@@ -5,7 +5,7 @@ import math
 import pytest
 
 import mjrock as mr
-from mjrock.problem.wall.tie import strengths_of_bar
+from mjrock import strengths_of_bar
 
 BAR = {
     "height": 6.0, "diameter": 0.024, "yield_stress": 235e6, "length": 8.0, "plate": 0.3, "thickness": 0.6,

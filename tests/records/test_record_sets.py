@@ -49,7 +49,7 @@ def test_other_formats_and_single_files(tmp_path):
     ("names", "pattern", "complaint"),
     [
         ((), "*", "has no file that fits the pattern '\\*'"),
-        (("a.ASC",), "*.at2", "has no file that fits the pattern"),
+        (("a.ASC",), "*.at2", r"has no file that fits the pattern '\*\.at2'$"),
         (("EE", "EN", "NE"), "*", "EE goes with other files in more than one way: "),
     ],
 )

@@ -146,6 +146,12 @@ CYCLE = np.sin(2 * np.pi * T / T[-1])
         ("0,0\n0.01,one\n0.02,2\n", "g", "line 2: .*'one'"),
         ("0,zero\n0.01,1\n0.02,2\n", "g", "line 1: .*'zero'"),
         ("0,0,0\n0.01,1,0\n", "g", "line 1 has 3 columns"),
+        (
+            "0,00\t-0,300\n0,01\t0,1\n",
+            "g",
+            "line 1 has 3 columns, .* write decimal points, since",
+        ),
+        ("0,0\n0.01,1e308\n0.02,1\n", "g", r"accel\[1\] = inf m/s2 is not finite"),
         ("0\n1\n2\n", "g", "line 1 has 1 columns, '0'; two are needed"),
         ("time,accel\n", "g", "0 rows of time and acceleration in 2 lines, the first of them 'time,accel'"),
         ("", "g", "an empty file"),

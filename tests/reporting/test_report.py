@@ -51,6 +51,20 @@ def test_one_page_with_all_that_it_needs(tmp_path):
     assert ANSWER.message in text.replace("&#x27;", "'")
 
 
+def test_what_all_responses_were_solved_with_stands_above_the_table(tmp_path):
+    """What they share is said once; steps, which differ, stay in the rows."""
+    answers = [mr.simulate(mr.Case(WALL, share * WALL.alpha, 1.0), CONTACTS) for share in (0.3, 0.5)]
+    steps = [answer.stats["steps"] for answer in answers]
+    assert steps[0] != steps[1]
+    text = mr.report(answers[0].case, answers, tmp_path / "a.html", e=E, contacts=CONTACTS).read_text(encoding="utf-8")
+    assert text.count("accuracy 0.001") == 1
+    assert "<p>Solved with MuJoCo, accuracy 0.001, timestep " in text
+    assert all(f"{count} steps" in text for count in steps)
+    alone = mr.report(CASE, [ANSWER], tmp_path / "b.html", e=E).read_text(encoding="utf-8")
+    assert "<p>Solved with analytical, rtol " in alone
+    assert "solved with" not in alone
+
+
 def test_equal_messages_are_one_line():
     runs, names = [ANSWER] * 5, list("abcde")
     end = ANSWER.message

@@ -91,5 +91,9 @@ def test_restitution_under_ground_motion_is_said_to_be_that_of_impacts(wall, con
     said = "Under ground motion the restitution is that of single impacts, and none of free rocking."
     assert said in shaken.table().splitlines()
     assert "|e| of impact 1 under ground motion" in repr(shaken)
+    still = mr.Case(wall, 0.0, 0.1, motion=mr.GroundMotion.sine(-3.0, 0.6))
+    assert "|e| of impact 1 under ground motion none for none, RMS" in repr(
+        mr.compare(mr.solve_analytical(still, e), mr.simulate(still, contacts))
+    )
     assert said not in comparison.table()
     assert "|e| of rebound 1 " in repr(comparison)

@@ -113,3 +113,22 @@ def test_undamped_contacts_keep_everything():
     assert np.abs(book.dashpots["base"]).max() < 2e-3 * case.release_energy
     assert np.abs(book.residual).max() < 1e-3 * case.release_energy
     assert set(book.dashpots) == {"base"}
+
+
+@pytest.mark.parametrize(
+    ("times", "complaint"),
+    [
+        ("x", "t = 'x' of type str does not hold real numbers alone; it takes times in s"),
+        ("nan", "t = 'nan' of type str does not hold real numbers"),
+        ([[1], [2, 3]], "t = .* has rows of different lengths"),
+        (1j, "t = 1j of type complex does not hold real numbers"),
+        ([0.1, np.nan], "t = .* holds a value that is not finite"),
+    ],
+)
+def test_a_ledger_is_asked_at_times(times, complaint):
+    t = np.linspace(0.0, 1.0, 3)
+    book = mr.Ledger(t, *(3 * [t]), dashpots={"base": 2 * t}, friction=t, ground=t)
+    assert book.at(0.25).dashpots["base"] == 0.5
+    assert book.at([[0.5], [1.0]]).kinetic.tolist() == [[0.5], [1.0]]
+    with pytest.raises((TypeError, ValueError), match=complaint):
+        book.at(times)

@@ -352,3 +352,8 @@ def test_a_wall_that_leans_rests_where_its_springs_carry_it():
         assert run.theta[0] == pytest.approx(4000.0 / stiffness, rel=2e-3)
         assert np.abs(run.theta - run.theta[0]).max() < 1e-4 * WALL.alpha
         assert run.outcome is mr.Outcome.AT_REST
+
+
+def test_a_tie_says_where_it_is_and_what_it_bears():
+    tie = mr.Tie(6.0, 22e6, 0.02, 110e3, 4.0, ultimate=0.05)
+    assert tie.said == "z = 6 m, 4 m long,\nk = 22 kN/mm, slack 20 mm,\nyields at 110 kN, breaks at 50 mm"

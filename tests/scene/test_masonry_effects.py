@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.effects import laden
+from mjrock.problem.masonry.effects import applied, laden
 
 WALL = mr.Block.from_size(0.6, 4.2)
 HALF = mr.Block.from_size(0.6, 2.1)
@@ -71,6 +71,19 @@ def test_two_blocks_beside_a_rough_wall_stand():
 def test_left_end_of_a_block():
     trapezium = mr.Polygon([(0, 0), (4, 0), (3, 2), (1, 2)])
     assert [trapezium.left_at(z) for z in (0.0, 1.0, 2.0, 9.0)] == [0.0, 0.5, 1.0, 0.0]
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_an_added_mass_weighs_on_its_block(in_space):
+    """Its weight acts at its place and turns the block about its centroid."""
+    if in_space:
+        masonry, place = mr.Masonry.box((0.6, 0.4, 2.0), k_n=1e9), {"at": (0.15, 0.1, 1.8)}
+        expected = [0, 0, -800 * mr.GRAVITY, -800 * mr.GRAVITY * 0.1, 800 * mr.GRAVITY * 0.15, 0]
+    else:
+        masonry, place = mr.Masonry.stack([WALL], k_n=5e8), {"height": 4.0, "offset": 0.15}
+        expected = [0, -800 * mr.GRAVITY, 800 * mr.GRAVITY * 0.15]
+    (block,) = masonry.free
+    np.testing.assert_allclose(applied(masonry, (mr.AddedMass(800.0, block=block, **place),)), [expected], atol=1e-9)
 
 
 MASONRY = mr.Masonry.stack([HALF, HALF], k_n=5e8, xi=0.05)

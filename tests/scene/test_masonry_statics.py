@@ -14,7 +14,7 @@ from scenes import unbalanced
 import mjrock as mr
 from mjrock.problem.masonry import polyhedron
 from mjrock.problem.masonry.effects import applied
-from mjrock.problem.masonry.statics import falling, friction_lacking
+from mjrock.problem.masonry.statics import falling, friction_lacking, nudged
 from mjrock.scene.masonry import require_standing, standing_masonry
 from scripts.studies import two_storeys
 
@@ -80,6 +80,16 @@ def test_blocks_that_fall_are_named():
     assert falling(mr.Masonry([GROUND, post])) == ()
 
 
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_block_that_may_slide_does_not_fall_with_those_that_nothing_carries(friction, in_space):
+    """The mechanism of least power may have any slip of a block on level ground without friction."""
+    floating = [box(2, 2.5, 3, 3.5, name="floats"), box(2, 2.5, 3.5, 4, name="on it")]
+    blocks = [GROUND, box(0, 0.5, 0, 1, name="stands"), *floating]
+    made = [mr.Polyhedron.prism(block) for block in blocks] if in_space else blocks
+    assert falling(mr.Masonry(made, friction=friction)) == ("floats", "on it")
+
+
 def test_the_weight_of_an_added_mass_holds_a_block_down():
     """A cap of 1040 kg turns about the edge of its post by a lever of 0.05 m; what is on its tail has 0.6 m."""
     blocks = [GROUND, box(-0.3, 0.3, 0, 1, name="post"), box(-0.3, 1.0, 1, 1.4, name="cap")]
@@ -115,6 +125,19 @@ def test_a_keystone_without_thrust_is_not_told_to_be_stiffer(k_n):
     with pytest.raises(ValueError, match=r"cannot stand: key would slide down, however large k_n is.*press") as said:
         require_standing(masonry)
     assert "raise k_n" not in str(said.value)
+
+
+def test_a_brick_that_hangs_over_by_half_tips_and_one_at_the_angle_of_friction_slides():
+    """Rigid blocks stand at these limits alone, and neither is held by wedging."""
+    low = box(0, 0.4, 0, 0.2, name="low")
+    for over, said in ((0.2, "top would tip, .* more to stand on"), (0.21, "top would fall under the weight$")):
+        bricks = mr.Masonry([GROUND, low, box(over, over + 0.4, 0.2, 0.4, name="top")], friction=0.5, k_n=1e9)
+        with pytest.raises(ValueError, match=said):
+            require_standing(bricks)
+    require_standing(mr.Masonry([GROUND, low, box(0.199, 0.599, 0.2, 0.4, name="top")], friction=0.5, k_n=1e9))
+    slope = tilted(mr.Masonry([GROUND, box(-0.5, 0.5, 0, 0.2)], friction=math.tan(0.2) * (1 + 1e-9)), 0.2)
+    assert nudged(slope)[1]
+    assert nudged(mr.Masonry.arch(5.0, 0.9)) is None
 
 
 def test_a_wall_beside_a_smooth_one_on_a_soft_base_is_told_to_be_stiffer():

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import chi2, norm
 from scipy.stats import t as student
 
 import mjrock as mr
@@ -73,6 +74,46 @@ def test_capacities_are_fitted_directly():
     assert fit.groups == 40
     low, high = mr.fit_capacities(CAPACITIES, np.arange(40) // 8).median_interval()
     assert low < fit.median < high
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("confidence", [0.0, 0.5, 0.9, 0.99])
+def test_a_band_lies_within_the_intervals_of_its_table(seed, confidence):
+    """At every intensity, of 14 capacities of 7 records: the four curves of the ends of both intervals bound it."""
+    rng = np.random.default_rng(seed)
+    capacities = 0.6 * np.exp(0.12 * rng.normal(size=(7, 1)) + 0.08 * rng.normal(size=(7, 2))).ravel()
+    fits = [mr.fit_capacities(capacities, np.repeat(np.arange(7), 2))]
+    levels = np.linspace(0.3, 1.0, 8)
+    fell = np.repeat(levels, 14) > np.tile(capacities, 8)
+    fits.append(mr.fit_fragility(np.repeat(levels, 14), fell))
+    x = np.linspace(0.05, 1.5, 59)
+    for fit in fits:
+        low, high = fit.band(x, confidence)
+        curves = [
+            norm.cdf(np.log(x / median) / dispersion)
+            for median in fit.median_interval(confidence)
+            for dispersion in fit.dispersion_interval(confidence)
+        ]
+        assert (low >= np.min(curves, axis=0) - 1e-12).all()
+        assert (high <= np.max(curves, axis=0) + 1e-12).all()
+        assert (np.diff(low) >= 0).all()
+        assert (np.diff(high) >= 0).all()
+
+
+def test_the_dispersion_of_few_capacities_has_the_interval_of_a_sample():
+    """s^2 (n - 1) over the quantiles of chi-square, exact for lognormal capacities; resamples may only widen it."""
+    fit = mr.fit_capacities(CAPACITIES[:6])
+    low, high = fit.dispersion_interval(0.8)
+    exact = fit.dispersion * np.sqrt(5 / chi2.ppf([0.9, 0.1], 5))
+    assert low <= exact[0] * (1 + 1e-9)
+    assert high >= exact[1] * (1 - 1e-9)
+    assert fit.dispersion_interval(1.0)[1] == math.inf
+    held = 0
+    for seed in range(200):
+        few = mr.fit_capacities(np.exp(0.3 * np.random.default_rng(seed).normal(size=5)), resamples=50)
+        ends = few.dispersion_interval()
+        held += ends[0] <= 0.3 <= ends[1]
+    assert held > 0.85 * 200  # 0.9 is known from 200 studies to 2 %
 
 
 def test_the_curve_as_a_table(tmp_path):

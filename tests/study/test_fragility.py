@@ -36,12 +36,13 @@ def test_a_table_has_the_intervals_and_what_stands_behind_them():
     x, fell, records = clustered(0)
     fit = fit_fragility(x, fell, records, resamples=100)
     low, high = fit.median_interval()
-    median, dispersion, runs = fit.table().splitlines()
+    median, dispersion, runs, held = fit.table().splitlines()
     assert median == f"median      {fit.median:.4g}, 90% interval {low:.4g} to {high:.4g}"
     assert dispersion.startswith(
         f"dispersion  {fit.dispersion:.4g}, 90% interval {fit.dispersion_interval()[0]:.4g} to "
     )
     assert runs == "720 runs of 30 groups"
+    assert held.startswith("90% intervals of 5 to 40 groups held the median in 88 to 96 ")
     assert (
         fit_fragility(x, fell)
         .table(0.8)

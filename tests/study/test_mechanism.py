@@ -97,8 +97,11 @@ def test_ties_that_never_break_are_doubted_where_they_make_the_capacity():
         tie = mr.Tie(height=4.0, stiffness=2e7, **changed)
         return mr.mechanism_check(mr.Case(wall, 0.0, 1.0, effects=tie), spectrum)
 
-    with pytest.warns(mr.Implausible, match=r"d_SLC = .* is more than 0.3 m, .* tie_0 would hold at any displacement"):
+    with pytest.warns(mr.Implausible, match=r"d_SLC = .* than 0.3 m, .* tie_0 \(ultimate = None\) would still hold"):
         endless = check(strength=120e3)
+    with pytest.warns(mr.Implausible, match="would still hold there|ultimate = 8 m") as said:
+        assert check(strength=120e3, ultimate=8).states["SLC"].capacity > 0.3
+    assert ["tie_0 (ultimate = 8 m)" in str(one.message) for one in said] == [False, True]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         drawn_out = check(strength=120e3, ultimate=0.05)
@@ -106,3 +109,7 @@ def test_ties_that_never_break_are_doubted_where_they_make_the_capacity():
     assert endless.d_0 > 1.0
     assert drawn_out.d_0 == pytest.approx(0.3, rel=1e-3)
     assert 0.3 < weak.d_0 < 0.5
+    for name in ("SLV", "SLC"):
+        (row,) = (line for line in drawn_out.table().splitlines() if line.startswith(f"capacity over demand {name}  "))
+        assert row.endswith("without tie_0, broken")
+    assert "broken" not in endless.table()

@@ -9,7 +9,7 @@ import pytest
 
 import mjrock as mr
 from mjrock import plotting
-from mjrock.study.capacity import bracket, halved
+from mjrock.study.capacity import bracket, halved, lowest
 from mjrock.study.grid import Grid
 
 OPTIONS = {"rtol": 1e-6}
@@ -153,24 +153,49 @@ def test_the_capacity_is_where_the_outcome_changes(build):
     down = mr.Capacity(build(1.0), tolerance=1e-3, start=20.0)()
     assert down["capacity_g"] == pytest.approx(row["capacity_g"], rel=2e-3)
     assert tuple(row) == task.COLUMNS
-    assert row["falls_below_g"] is None
+    assert row["stands_down_to_g"] == pytest.approx(row["stands_at_g"] / 1.02**12, rel=0.03)
+    assert row["stands_above_g"] is None
 
 
-def test_a_capacity_says_where_the_wall_falls_at_less():
+def test_a_capacity_is_the_lowest_that_was_found():
+    """The wall falls from 1.27 g on and in a band at 0.8 g; a search from 2.4 g meets the upper edge first."""
     wall = mr.Block.from_size(thickness=0.6, height=4.2)
     motion = mr.GroundMotion.synthetic(peak=4.0, duration=8.0, seed=23)
     analysis = mr.Analysis(mr.Case(wall, 0.0, 11.0, motion=motion), "analytical", e=mr.Restitution.from_geometry(wall))
-    row = mr.Capacity(analysis, tolerance=0.02, start=6.0)()
-    assert row["message"].endswith("Not monotonic: it overturns at 1.002, 0.8017 g too.")
-    assert row["falls_below_g"] < 0.65 * row["stands_at_g"]
-    weaker = mr.Capacity(analysis).scaled(row["falls_below_g"] * mr.GRAVITY / 4.0)
-    assert weaker.solve().outcome is mr.Outcome.OVERTURNED
     alone = mr.Capacity(analysis, tolerance=0.02, start=6.0, below=0)()
-    assert alone["falls_below_g"] is None
-    assert alone["runs"] == row["runs"] - 4
-    assert row["message"].startswith(alone["message"])
-    with pytest.raises(ValueError, match="below = 31 is outside the valid range 0 to 30"):
-        mr.Capacity(analysis, below=31)
+    assert alone["message"].endswith("It is an edge: whether a weaker intensity does so too was not looked at.")
+    task = mr.Capacity(analysis, tolerance=0.02, start=6.0, below=40, spacing=0.05)
+    row = task()
+    assert row["capacity_g"] < 0.65 * alone["capacity_g"]
+    assert row["stands_above_g"] > row["capacity_g"] > row["stands_at_g"]
+    assert "Not monotonic: it stands at " in row["message"]
+    assert task.scaled(row["capacity_scale"]).solve().outcome is mr.Outcome.OVERTURNED
+    looked = row["stands_at_g"] / row["stands_down_to_g"]
+    assert 1.05**39 < looked < 1.05**41
+    for i in range(0, 41, 8):
+        weaker = task.scaled(row["stands_down_to_g"] * 1.05**i * mr.GRAVITY / 4.0)
+        assert weaker.solve().outcome is not mr.Outcome.OVERTURNED
+    with pytest.raises(ValueError, match="below = 1001 is outside the valid range 0 to 1000"):
+        mr.Capacity(analysis, below=1001)
+
+
+def test_the_lowest_band_is_found_and_the_count_begins_again():
+    """Bands from 3 on, from 2 to 2.2 and from 1.5 to 1.52: a spacing of 5 % meets the second, one of 1 % all three."""
+    tried = []
+
+    def falls(scale):
+        tried.append(scale)
+        return scale >= 3.0 or 2.0 <= scale < 2.2 or 1.5 <= scale < 1.52
+
+    assert lowest(falls, 2.9, 3.0, 0, 0.1) == (2.9, 3.0)
+    low, high = lowest(falls, 2.9, 3.0, 10, 0.05)
+    assert low < 2.0 <= high < 2.1
+    assert high / low == pytest.approx(1.05)
+    assert tried[-1] == pytest.approx(low / 1.05**10)
+    low, high = lowest(falls, 2.9, 3.0, 40, 0.01)
+    assert low < 1.5 <= high < 1.515
+    with pytest.raises(ValueError, match=r"the wall overturns at scales down to 2\.\d+e-06"):
+        lowest(lambda scale: True, 2.9, 3.0, 3, 0.1)
 
 
 def test_capacities_are_tasks_of_a_grid(build):

@@ -23,7 +23,7 @@ from ...quantities import (
 from ..wall.block import Block
 from ..wall.case import Case
 from .interface import Interface, reference_frequency, require_points
-from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named
+from .law import CALIBRATED, CALIBRATED_BED, DampingLaw, law_named, rebound_over_uplift
 from .restitution import UNLIKE, Restitution
 
 HOLDS = 10.0
@@ -187,12 +187,14 @@ class Contacts:
 
         Warns:
             UserWarning: what the law warns of; where it was fitted for another number of lines or another friction; and
-                one-sided where it was fitted in another code, as PUBLISHED was.
+                one-sided where it was fitted in another code, as PUBLISHED was, or where the base is so soft that no
+                rebound can follow.
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
         points, k_base, k_side = required_layout(points, k_base, k_side)
         friction, side_friction = required_frictions(friction, side_friction)
+        amplitude = require_within("amplitude theta_0/alpha", amplitude, 1e-3, 1.0)
         law = required_law(law, points)
         if k_side is not None:
             e.require_rebound()
@@ -204,6 +206,13 @@ class Contacts:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
         if unlikely := e.doubt(wall, None):
             warnings.warn(unlikely, Implausible, stacklevel=2)
+        if k_side is not None and (lifts := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
+            warnings.warn(
+                f"no rebound can follow from {amplitude:g} alpha: it would turn the wall {lifts:.2g} times as far as "
+                f"it takes to lift an edge off a base of {k_base:g} N/m3, whatever the damping; one above "
+                f"{k_base / max(lifts, 1e-9):.2g} N/m3 gives a rebound",
+                stacklevel=2,
+            )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
             wall,

@@ -154,13 +154,10 @@ class DampingLaw:
         low, high = self.reach(wall, k_n, amplitude)
         k_n, amplitude = float(k_n), float(amplitude)
         margin = MARGIN * (high - low)
-        groups = Groups.of(wall, e, k_n, k_side, amplitude)
-        released = float(wall.potential_energy(amplitude * wall.alpha))
-        rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
         return (
             not self._outside(wall, e, k_n, k_side)
             and low + margin <= e.base <= high - margin
-            and rebound > SIZE * groups.softness
+            and rebound_over_uplift(wall, e, k_n, amplitude) > SIZE
         )
 
     def _outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:
@@ -224,6 +221,17 @@ class DampingLaw:
             raise ValueError(f"{path} is not a damping law: {error} is missing") from None
         except (TypeError, ValueError) as error:
             raise ValueError(f"{path} is not a damping law: {error}") from None
+
+
+def rebound_over_uplift(wall: Block, e: Restitution, k_n: float, amplitude: float) -> float:
+    """Rotation of the first rebound from a side stop over that at which an edge of the wall lifts off its base [-].
+
+    A wall that is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3] has no rebound below 1, whatever
+    its damping.
+    """
+    released = float(wall.potential_energy(amplitude * wall.alpha))
+    rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
+    return float(rebound / Groups.of(wall, e, k_n, amplitude=amplitude).softness)
 
 
 def _toml(value: object) -> str:

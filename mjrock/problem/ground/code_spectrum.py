@@ -207,7 +207,11 @@ def code_spectrum(
     if not isinstance(topography, str) or topography not in TOPOGRAPHY_NTC:
         raise ValueError(f"topography = {spelt(topography)} is not one of {', '.join(TOPOGRAPHY_NTC)}")
     if ag < FAINT:
-        warnings.warn(f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; is it in m/s2?", Implausible, stacklevel=2)
+        warnings.warn(
+            f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?",
+            Implausible,
+            stacklevel=2,
+        )
     if code in SITE_EC8:
         for name, value in (("F0", F0), ("Tc", Tc)):
             if value is not None:

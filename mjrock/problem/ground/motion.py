@@ -465,7 +465,8 @@ class GroundMotion:
         header: Mapping[str, str] | None = None,
     ) -> GroundMotion:
         """The record of a file, named after its header or its file, with what makes one doubt its unit or baseline."""
-        record = read(path, parse)  # fills the header
+        with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
+            record = read(path, parse)  # fills the header
         named = [header[field] for field in NAMING if header.get(field)] if header else []
         motion = cls(*record, name := " ".join(named) or Path(path).stem, header)
         peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity

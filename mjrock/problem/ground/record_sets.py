@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...quantities import Array, require_kind, require_path, require_text, shown
+from ...quantities import Array, require_kind, require_path, require_text, shown, spelt
 from .code_spectrum import CodeSpectrum, FloorSpectrum, SpectrumOfCode
 from .motion import GroundMotion
 from .spectrum import factor_to_spectrum, response_spectrum
@@ -86,7 +86,7 @@ def records_in(
     files = {path.name: path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")}
     names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
     if not names:
-        raise ValueError(f"{folder} has no file that fits the pattern {shown(pattern)}")
+        raise ValueError(f"{folder} has no file that fits the pattern {spelt(pattern)}")
     records = RecordSet()
     for key, members in _grouped(names).items():
         motions = tuple(read(files[name]) for name in members)

@@ -48,6 +48,7 @@ ESM_UNITS = {"cm/s^2": 1e-2, "m/s^2": 1.0, "g": GRAVITY}
 SAC_HEAD = re.compile(rf"[ \t]*{COUNT}[ \t]+{STEP}(?:[ \t]+(.*))?", AS_ASCII)
 BREAK = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\x85\u2028\u2029]")
 """A control character, which could hide a row at the end of a header or comment."""
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+", AS_ASCII)
 COMMENT = re.compile(r"[ \t]*(#|%|//|$)")
 DATA = re.compile(r"\W*(\d|(nan|inf|infinity)\b)", re.IGNORECASE)
 """A line of columns whose first letter or digit is a digit of any script, so that a damaged number is not a header."""
@@ -193,6 +194,8 @@ def parse_columns(lines: Sequence[str], unit: str, time_unit: str, dt: float | N
         row = _columns(line)
         if len(row) != wanted:
             remedy = "; one column needs its time step: give dt" if dt is None and len(row) == 1 else ""
+            if all(DECIMAL_COMMA.fullmatch(word) for word in _words(line)):
+                remedy = "; write decimal points, since a comma is one between semicolons alone"
             raise ValueError(f"line {place} has {len(row)} columns, {_short(line)}; {said} needed, {what}{remedy}")
         rows.append([_number(word, place) for word in row])
         places.append(place)

@@ -1,4 +1,4 @@
-"""An actuator: it pushes a point of a block to a displacement, as the jack of a laboratory does."""
+"""An actuator: it pushes a point of a block, or all blocks, to a displacement, as the jack of a laboratory does."""
 
 from __future__ import annotations
 
@@ -30,26 +30,29 @@ GUIDES = {None: Guide(), "upright": Guide(turning=True), "translation": Guide(ri
 
 @dataclass(frozen=True, repr=False)
 class Actuator(Effect):
-    """An actuator that drives a point of a block of masonry along a direction, through a spring.
+    """An actuator that drives a point of a block of masonry along a direction, through a spring, or all blocks.
 
     Its force is stiffness (d - u) + damping (d' - u'): d is the history, u the displacement of the point along the
-    direction since the masonry stood at rest, or as drawn, and d' and u' are their rates. The actuator pushes and
-    pulls, and its direction stays as it is in space. Its force at the samples is `response.actuators` [N], positive
-    where it pushes along the direction. What it puts in is in `ledger.actuators`, what its spring holds
-    in `ledger.elastic`, and what its dashpot takes in `ledger.dashpots`. A stiffness far above that of the joints
-    follows the history closely and makes the steps short. Without damping the block swings on the spring.
+    direction since the masonry stood at rest, or as drawn, and d' and u' are their rates. Without a block it pushes
+    every free block in proportion to its mass, with added masses, and u is the displacement of their common centroid.
+    The actuator pushes and pulls, and its direction stays as it is in space. Its force at the samples is
+    `response.actuators` [N], positive where it pushes along the direction. What it puts in is in `ledger.actuators`,
+    what its spring holds in `ledger.elastic`, and what its dashpot takes in `ledger.dashpots`. A stiffness far above
+    that of the joints follows the history closely and makes the steps short. Without damping the block swings on the
+    spring.
 
     Args:
-        block: the block that it drives, by its name or number.
-        at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m].
-        direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z).
+        block: the block that it drives, by its name or number, or None for all free blocks.
+        at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m]; None for all free blocks.
+        direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z). All free blocks of masonry
+            in space take a vector.
         displacement: (t, d) in s and m, from (0, 0) on, linear in between and constant after the last, within 10 m.
             None rests, for `push`, which finds its own.
         stiffness: of its spring [N/m], 1 to 1e12.
         damping: of its dashpot [N s/m], 0 to 1e12.
-        guided: how the block is guided from rest on: None leaves it free, "upright" keeps it from turning, as a beam
-            that a constant load presses on the wall, and "translation" from turning and rising, as a beam of a rig
-            that is held in both. Guides do no work.
+        guided: how the block is guided from the start on: None leaves it free, "upright" keeps it from turning, as a
+            beam that a constant load presses on the wall, and "translation" from turning and rising, as a beam of a rig
+            that is held in both. Guides do no work, so that the block starts with no velocity that they do not allow.
 
     Raises:
         TypeError, ValueError: for a value outside its range. A case checks that the point is on the block.
@@ -66,29 +69,39 @@ class Actuator(Effect):
     guided: Literal["upright", "translation"] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        at = require_reals("at of the actuator", self.at, "x, z or x, y, z")
-        at = require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,))
-        require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST, FARTHEST, "m")
+        if self.block is None:
+            self._require_all()
+        else:
+            at = require_reals("at of the actuator", self.at, "x, z or x, y, z")
+            at = require_array("at of the actuator", at, (3,) if at.shape == (3,) else (2,))
+            require_within("at of the actuator", float(at[np.abs(at).argmax()]), -FARTHEST, FARTHEST, "m")
+            keep(self, at=tuple(at.tolist()))
         if not isinstance(self.guided, str | None) or self.guided not in GUIDES:
             names = "None, 'upright' and 'translation'"
             raise ValueError(f"guided of the actuator = {shown(self.guided)} is not known; the valid ones are {names}")
-        if not isinstance(self.block, str):
+        if not isinstance(self.block, str | None):
             keep(self, block=require_whole("block of the actuator", self.block, 0, BLOCKS))
         if self.displacement is None:
             keep(self, displacement=((0.0,), (0.0,)))
+        shaped = self.direction if self.at is None else self.at
         keep(
             self,
-            at=tuple(at.tolist()),
-            direction=_unit(self.direction, len(at)),
+            direction=_unit(self.direction, 3 if np.shape(shaped) == (3,) else 2),
             displacement=history_of("displacement of the actuator", self.displacement, LARGEST, "m", from_zero=True),
             stiffness=require_within("stiffness of the actuator", self.stiffness, 1.0, 1e12, "N/m"),
             damping=require_within("damping of the actuator", self.damping, 0.0, 1e12, "N s/m"),
         )
 
+    def _require_all(self) -> None:
+        """Raise a ValueError unless it is one of all blocks: without a point and without a guide."""
+        if self.at is not None or self.guided is not None:
+            name, given = ("at", self.at) if self.at is not None else ("guided", self.guided)
+            raise ValueError(f"{name} of the actuator = {shown(given)} needs a block; block = None drives all blocks")
+
     @property
     def height(self) -> float:  # type: ignore[override]
-        """Of its point [m]."""
-        return float(self.at[-1])
+        """Of its point [m], not a number for one that drives all blocks."""
+        return math.nan if self.at is None else float(self.at[-1])
 
     @property
     def way(self) -> Array:
@@ -104,7 +117,8 @@ class Actuator(Effect):
     def said(self) -> str:
         """For sketch and report."""
         far = max(self.displacement[1], key=abs)
-        return f"z = {self.height:g} m,\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"
+        where = "all blocks" if self.at is None else f"z = {self.height:g} m"
+        return f"{where},\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"
 
 
 def _unit(direction: Any, d: int) -> tuple[float, ...]:

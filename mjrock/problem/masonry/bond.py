@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...quantities import Array, keep, require_kind, require_within, shown
+from ...quantities import Implausible, keep, require_kind, require_within, shown
 from .bond_law import HARDENED, YIELDS
+from .joint_law import Law
 from .joints import Joint
 from .joints_in_space import SpaceJoint
 
+LEAST_POINTS = 3
+"""Fewest contact lines of a joint with a bond: of these the stiffness in bending can be k_n I."""
+ROUNDED_UP = 1.01
+"""Factor on values in messages, so that what is rounded to three digits is within the range."""
 STRONGEST, TOUGHEST = 1e12, 1e15
 """Largest strength [Pa] and largest fracture energy [J/m2]. The largest ones stand for joints that never break."""
+
+
+WEAKEST, FRAGILE = 100.0, 0.06
+"""Strength [Pa] and fracture energy [J/m2] below which they are taken for ones in MPa and N/mm."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +39,8 @@ class Bond:
             spring gives back as much, f_t^2 / k_n, breaks at once when it reaches its tension.
         slip_energy: fracture energy of slip G_II [J/m2], above 0 to 1e15.
         crushing: compressive strength f_c [Pa], 1e3 to 1e12, or None for a joint that is not crushed.
-        crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`.
+        crushing_energy: energy of crushing G_c [J/m2], above 0 to 1e15, given with `crushing`. A joint needs at least
+            f_c^2 / k_n, and what `hardening` takes, since its spring would give back more than crushing takes.
         residual_friction: coefficient to which friction falls as the bond is lost [-], 0 to that of the joint. None
             keeps that of the joint.
         hardening: plastic closing at which a joint that is crushed reaches f_c [m], 1e-9 to 0.1. Up to there it bears
@@ -39,6 +50,9 @@ class Bond:
 
     Raises:
         ValueError: for a value outside its range.
+
+    Warns:
+        Implausible: for strengths that are probably in MPa, and fracture energies that are probably in N/mm.
 
     Examples:
         >>> bond = mr.Bond(tension=0.2e6, cohesion=0.3e6, opening_energy=18.0, slip_energy=125.0)
@@ -84,6 +98,18 @@ class Bond:
                 f"cohesion = {self.cohesion:g} Pa with a tension of 0: cohesion ends where a joint opens; the valid "
                 "range of the tension is then above 0"
             )
+        if odd := self._doubt():
+            warnings.warn(odd, Implausible, stacklevel=3)
+
+    def _doubt(self) -> str:
+        """What is odd about strengths and energies, in words, empty where nothing is."""
+        for name in ("tension", "cohesion"):
+            if 0 < (strength := getattr(self, name)) < WEAKEST:
+                return f"{name} = {strength:g} Pa, and one unit presses with more than {WEAKEST:g} Pa: is it in MPa?"
+        for name in ("opening_energy", "slip_energy"):
+            if (energy := getattr(self, name)) < FRAGILE and self.tension >= 1e4:
+                return f"{name} = {energy:g} J/m2, and mortar takes more than {FRAGILE:g} J/m2: is it in N/mm?"
+        return ""
 
     @property
     def is_dry(self) -> bool:
@@ -96,6 +122,17 @@ class Bond:
         if self.crushing is None:
             return math.inf
         return self.crushing if self.hardening is None else YIELDS * self.crushing
+
+    @property
+    def steepest(self) -> float:
+        """Stress that a joint which is crushed loses by closing for good, at most [N/m3]; 0 where it is not crushed."""
+        if self.crushing is None or self.crushing_energy is None:
+            return 0.0
+        return self.crushing**2 / (self.crushing_energy - self.energy_of_hardening)
+
+    def crushing_energy_on(self, k_n: float) -> float:
+        """The least energy of crushing on a spring [N/m3], which is released as the stress falls [J/m2]."""
+        return (self.crushing or 0.0) ** 2 / k_n + self.energy_of_hardening
 
     @property
     def energy_of_hardening(self) -> float:
@@ -142,22 +179,21 @@ def required_bond(bond: Any) -> OfBond:
     return bond  # type: ignore[no-any-return]
 
 
-def bonds_of(
-    given: OfBond, joints: Sequence[Joint | SpaceJoint], shear: Array, friction: Array
-) -> tuple[Bond | None, ...]:
+def bonds_of(given: OfBond, joints: Sequence[Joint | SpaceJoint], law: Law, points: int) -> tuple[Bond | None, ...]:
     """The bond of each joint, None where it is dry.
 
     Args:
         given: one for all, or a function of the joint.
         joints: the joints.
-        shear: k_s of each [N/m3], infinite where it sticks rigidly, shape (joints,).
-        friction: of each [-], shape (joints,).
+        law: their k_n, k_s, infinite where one sticks rigidly [N/m3], and friction [-], shape (joints,) each.
+        points: contact lines of each joint.
 
     Raises:
-        ValueError: for a bond on a joint without k_s, or a residual friction above that of the joint.
+        ValueError: for a bond on a joint of two lines or without k_s, of a residual friction above that of the joint,
+            or whose crushing softens faster than the joint springs back.
     """
     found: list[Bond | None] = []
-    for joint, k_s, most in zip(joints, shear.tolist(), friction.tolist(), strict=True):
+    for joint, k_n, k_s, most in zip(joints, law.k.tolist(), law.k_s.tolist(), law.friction.tolist(), strict=True):
         bond = given
         if callable(given):
             try:
@@ -168,9 +204,21 @@ def bonds_of(
         if not isinstance(bond, Bond) or bond.is_dry:
             found.append(None)
             continue
+        if points < LEAST_POINTS:
+            raise ValueError(
+                f"points = {points}, and {joint.name} has a bond: on two lines it would crack in bending at 3 times "
+                f"the moment that it bears; the valid range is {LEAST_POINTS} or more, and 5 or more follow the crack"
+            )
         if not np.isfinite(k_s):
             raise ValueError(f"bond of {joint.name}: k_s = None, and a bond needs a shear stiffness; give k_s in N/m3")
         if bond.residual_friction is not None:
             require_within(f"residual_friction of {joint.name}", bond.residual_friction, 0.0, most)
+        if bond.steepest > k_n:
+            stiff, tough = (ROUNDED_UP * least for least in (bond.steepest, bond.crushing_energy_on(k_n)))
+            raise ValueError(
+                f"bond of {joint.name}: its spring of k_n = {k_n:g} N/m3 gives back more than crushing takes; the "
+                f"valid range of k_n is {stiff:.3g} N/m3 or more with this crushing_energy, and that of the "
+                f"crushing_energy {tough:.3g} J/m2 or more with this k_n; or leave crushing out"
+            )
         found.append(bond)
     return tuple(found)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...quantities import (
     Array,
+    Flags,
     Implausible,
     keep,
     require_array,
@@ -52,7 +53,8 @@ class MasonryCase(Carrying):
             block. A tie holds the left end of its block at its height. In space each acts at a point, `at`.
         velocity: velocity of each block that is not fixed at the release: x, z and rotation [m/s, m/s, rad/s], shape
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
-            turns to the right. In space x, y, z and the angular velocity about the three axes, shape (bodies, 6).
+            turns to the right. In space x, y, z and the angular velocity about the three axes, shape (bodies, 6). A
+            block that an actuator guides has none that its guide does not allow.
 
         supports: displacement histories of fixed blocks, by name, (t, dx, dz) in s and m, in space (t, dx, dy, dz), for
             `solve_explicit`.
@@ -103,6 +105,8 @@ class MasonryCase(Carrying):
             velocity.setflags(write=False)
             keep(self, velocity=velocity)
         self._require_effects()
+        if self.velocity is not None:
+            self.require_guided("velocity", np.asarray(self.velocity))
         keep(self, supports=supports_of(self.masonry, self.supports))
         for doubt in doubts(self):
             warnings.warn(doubt, Implausible, stacklevel=3)
@@ -115,6 +119,9 @@ class MasonryCase(Carrying):
             require_kind(f"effects[{i}]", effect, *KINDS, Actuator)
             effect = numbered(f"effects[{i}]", effect, self.masonry)
             numbers.append(effect)
+            if effect.block is None:
+                require_pushing(f"effects[{i}]", effect, self.masonry)
+                continue
             require_whole(f"effects[{i}], block", effect.block, 0, len(self.masonry.blocks) - 1)
             block = self.masonry.blocks[effect.block]
             name = f"effects[{i}] on {self.masonry.names[effect.block]}"
@@ -139,6 +146,39 @@ class MasonryCase(Carrying):
     def actuators(self) -> dict[str, Actuator]:
         """The actuators by name: `actuator_0` and so on."""
         return {f"{Actuator.label}_{i}": actuator for i, actuator in enumerate(self.each(Actuator))}
+
+    @property
+    def guided(self) -> Flags:
+        """Which velocities of blocks that are not fixed guides of actuators keep at zero, shape (bodies, nv)."""
+        d = 3 if self.masonry.in_space else 2
+        held = np.zeros((len(self.masonry.free), 3 * d - 3), dtype=bool)
+        for actuator in self.actuators.values():
+            if not any(actuator.guide):
+                continue  # it may drive all blocks
+            body = self.masonry.free.index(actuator.block)
+            held[body, d - 1] |= actuator.guide.rising
+            held[body, d:] |= actuator.guide.turning
+        return held
+
+    def require_guided(self, name: str, velocity: Array, most: float = 0.0) -> None:
+        """Raise a ValueError that names the block where a guide holds one that moves as it may not.
+
+        Args:
+            name: of the velocities.
+            velocity: of the blocks that are not fixed [m/s, rad/s], shape (bodies, nv).
+            most: velocity that is taken for none, rotations times the size of the block [m/s].
+        """
+        held, d = self.guided, 3 if self.masonry.in_space else 2
+        for body in np.flatnonzero(held.any(axis=1)).tolist():
+            block, speeds = self.masonry.free[body], np.abs(velocity[body])
+            speeds[d:] *= self.masonry.blocks[block].size
+            if (speeds[held[body]] > most).any():
+                axes = (*"xyz",) if d == 3 else (*"xz",)
+                may = " and ".join(axis for axis, no in zip(axes, held[body], strict=False) if not no)
+                raise ValueError(
+                    f"{name} of {self.masonry.names[block]} = {velocity[body].tolist()}: its actuator guides it, which "
+                    f"lets it move along {may} alone; the others are 0"
+                )
 
     @property
     def passive(self) -> tuple[Effect, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -32,13 +33,44 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     """
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        force = np.array(effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added))
-        arm, row = np.array(placed(masonry, effect)) - masonry.centroids[effect.block], masonry.free.index(effect.block)
-        if masonry.in_space:
-            total[row] += [*force, *np.cross(arm, force)]
-        else:
-            total[row] += force[0], force[2], force[0] * arm[1] - force[2] * arm[0]
+        force = effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added)
+        arm = placed(masonry, effect) - masonry.centroids[effect.block]
+        total[masonry.free.index(effect.block)] += acting(arm, np.array(force)[_axes(masonry)])
     return total
+
+
+def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
+    """The same of the weight of added masses along a unit vector, shape (2,), in space (3,)."""
+    total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
+    for effect in effects:
+        arm = placed(masonry, effect) - masonry.centroids[effect.block]
+        total[masonry.free.index(effect.block)] += acting(arm, GRAVITY * effect.mass_added * way)
+    return total
+
+
+def pulls_of(masonry: Masonry, ties: Sequence[Anchored]) -> Array:
+    """Forces and moments on the free blocks of each link that pulls with 1 N, shape (t, free, 3), in space
+    (t, free, 6)."""
+    pulls = np.zeros((len(ties), len(masonry.free), 6 if masonry.in_space else 3))
+    for pull, tie in zip(pulls, ties, strict=True):
+        held = np.array(placed(masonry, tie))
+        anchor = tie.anchor_of(held)
+        way = (anchor - held) / np.linalg.norm(anchor - held)
+        for block, point, force in ((tie.block, held, way), (tie.anchor_block, anchor, -way)):
+            if block is not None and block in masonry.free:
+                pull[masonry.free.index(block)] += acting(point - masonry.centroids[block], force)
+    return pulls
+
+
+def acting(arm: Array, force: Array) -> Array:
+    """A force and its moment about a centroid, from where it acts from there [m], see `applied`."""
+    turn = np.cross(arm, force) if len(arm) == 3 else [arm[1] * force[0] - arm[0] * force[1]]
+    return np.array([*force, *turn])
+
+
+def _axes(masonry: Masonry) -> list[int]:
+    """The axes of the world along which blocks of the masonry move."""
+    return [0, 1, 2] if masonry.in_space else [0, 2]
 
 
 def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
@@ -76,6 +108,10 @@ def numbered(name: str, effect: Effect, masonry: Masonry) -> Effect:
 def require_pushing(name: str, actuator: Actuator, masonry: Masonry) -> None:
     """Raise a ValueError that names the field, unless an actuator pushes its block, in the plane or in space."""
     d = 3 if masonry.in_space else 2
+    if actuator.block is None:
+        if len(actuator.direction) != d:
+            raise ValueError(f"{name}, direction = {actuator.direction}: all blocks of this masonry take {d} numbers")
+        return
     if len(actuator.at) != d:
         raise ValueError(f"{name}, at = {actuator.at} m has {len(actuator.at)} numbers; this masonry takes {d}")
     _require_on(f"{name}, at", actuator.at, masonry.blocks[actuator.block])

@@ -20,7 +20,7 @@ class JointForces:
         shear: along `Joint.along`, which is x on a bed joint [N], shape (joints,). In space along the two axes of
             `SpaceJoint.axes`, shape (joints, 2).
         eccentricity: from the middle of the joint to where the force passes through it, in the same directions [m], of
-            the shape of `shear`; NaN where nothing presses.
+            the shape of `shear`, also where a bond pulls; NaN without a normal force.
     """
 
     normal: Array
@@ -47,8 +47,7 @@ def joint_forces(masonry: Masonry, forces: Array) -> JointForces:
     np.add.at(total, lines.joint, parts)
     np.add.at(moments, lines.joint, parts[:, :1] * arms)
     normal = total[:, 0]
-    pressed = np.where(normal > 0, normal, np.nan)[:, None]
-    shear, eccentricity = total[:, 1:], moments[:, 1:] / pressed
+    shear, eccentricity = total[:, 1:], moments[:, 1:] / np.where(normal != 0, normal, np.nan)[:, None]
     if axes.shape[1] == 2:
         shear, eccentricity = shear[:, 0], eccentricity[:, 0]
     return JointForces(normal.copy(), shear.copy(), eccentricity.copy())

@@ -1,7 +1,8 @@
 """States of rigid masonry at its limit: forces of the joints, and a mechanism that these forces do not stop.
 
 Forces of the joints are x >= 0: the pressures n of the contact lines, the shares q of friction along the edges of its
-cones, and the friction that is left. They balance the weight w and the multiplier lambda times the forces f that grow:
+cones, and the friction that is left. They balance the constant forces w, the weight among them, and the multiplier
+lambda times the forces f that grow:
 
     M x + lambda f + w = 0,    M = [N  Q  0; mu G  -E  -I].
 
@@ -23,13 +24,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack
+from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
 from ...quantities import Array, Flags, Integers
 from .joint_law import Law, shear_limit
 from .lines import rates
 from .masonry import Masonry
-from .statics import edges_of, method, sizes_of, weight_of
+from .statics import Pulls, edges_of, method, sizes_of, weight_of
 
 SLOPE, SHRINKS, LEAST_SLOPE = 0.3, 0.9, 0.01
 """Dilatancy of the first cone that follows the pressures, over the friction, its factor a turn, and the least [-]."""
@@ -75,12 +76,13 @@ class Programme(NamedTuple):
     Args:
         matrix: M, moments over the size of their block.
         grip: the part mu G of it, in a matrix of the same shape.
-        weight: w, over the weight of all blocks, and zero in the rows of friction.
+        weight: w, weight and other constant forces, over the weight of all blocks, and zero in the rows of friction.
         grown: f, likewise.
         edges: directions of the edges of the cones, shape (edges, groups, d).
         leader: number of the first contact line of each group, shape (groups,). In the plane the lines of a joint are
             one group: they slide as one. In space each is its own.
         unknowns: of the blocks.
+        ties: how many there are, whose pulls come last in x, followed by what is left of their strengths.
         method: how linear programmes are solved.
     """
 
@@ -91,15 +93,17 @@ class Programme(NamedTuple):
     edges: Array
     leader: Integers
     unknowns: int
+    ties: int
     method: str
 
     @classmethod
-    def of(cls, masonry: Masonry, grown: Array, across: tuple[Array, ...]) -> Programme:
-        """Those of masonry under its weight and forces that grow [N, N m], of all unknowns.
+    def of(cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls) -> Programme:
+        """Those of masonry under forces that are constant, its weight among them, and forces that grow [N, N m], of all
+        unknowns, and of ties.
 
         The edges of the cones begin at the first of the directions `across` along the faces.
         """
-        lines, sizes, weight = masonry.lines, sizes_of(masonry), weight_of(masonry)
+        lines, sizes = masonry.lines, sizes_of(masonry)
         m, group = len(lines.k), np.arange(len(lines.k)) if masonry.in_space else lines.joint
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
         edges = edges_of(across)
@@ -110,10 +114,17 @@ class Programme(NamedTuple):
         balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]
         matrix = csc_array(block_array([[*balance, None], [held, *[-whole] * (len(edges) + 1)]]))
         rest = csr_array((len(leader), matrix.shape[1] - m))
-        grip = csc_array(block_array([[csr_array((len(weight), m)), None], [held, rest]]))
-        total, none = float(np.abs(weight).sum()), np.zeros(len(leader))
-        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (weight, grown))
-        return cls(matrix, grip, down, pushed, edges[:, leader], leader, len(weight), method(masonry))
+        grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [held, rest]]))
+        total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
+        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (constant, grown))
+        count, yields = len(ties.strength), np.isfinite(ties.strength)
+        if count:  # a pull and what is left of it are the strength
+            pulls, limit = vstack([ties.columns, csr_array((len(leader), count))]), csr_array(eye_array(count))[yields]
+            matrix = csc_array(block_array([[matrix, pulls, None], [None, -limit, -eye_array(limit.shape[0])]]))
+            grip = csc_array(block_array([[grip, None], [None, csr_array((limit.shape[0], count + limit.shape[0]))]]))
+            down, pushed = np.append(down, ties.strength[yields] / total), np.append(pushed, np.zeros(limit.shape[0]))
+        numbers = len(sizes), count
+        return cls(matrix, grip, down, pushed, edges[:, leader], leader, *numbers, method(masonry))
 
     def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> Any:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""
@@ -152,11 +163,17 @@ class Programme(NamedTuple):
         missing = np.abs(self.matrix @ state.x + state.multiplier * self.grown + self.weight).max()
         return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < HELD)
 
+    @property
+    def pulled(self) -> int:
+        """Where the pulls of the ties begin in x."""
+        limited = self.matrix.shape[0] - self.unknowns - len(self.leader)
+        return int(self.matrix.shape[1] - self.ties - limited)
+
     def on_lines(self, masonry: Masonry, x: Array) -> Array:
         """Forces x of a state as those of the contact lines, over the weight of all blocks, shape (m, d)."""
         m, count = len(masonry.lines.k), len(self.edges)
         forces = x[:m, None] * masonry.lines.normal
-        shares = x[m:].reshape(count + 1, -1)[:count]
+        shares = x[m : self.pulled].reshape(count + 1, -1)[:count]
         forces[self.leader] += np.einsum("eg,egd->gd", shares, self.edges)
         return np.asarray(forces)
 

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csr_array, vstack
+from scipy.sparse import block_diag, coo_array, csr_array, eye_array, vstack
 
-from ...geometry.convex import spread, within
+from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .compound import AnyBlock
-from .joints import Joint
+from .joints import LEVEL, Joint
 from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
 from .sides import Side
@@ -63,50 +63,82 @@ class Lines(NamedTuple):
         return pairs[:, 0], pairs[:, 1]
 
 
-def lines_of(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint], k_n: Array, points: int) -> Lines:
+def lines_of(
+    blocks: Sequence[AnyBlock],
+    joints: Sequence[Joint | SpaceJoint],
+    k_n: Array,
+    points: int,
+    bonded: Sequence[bool] | None = None,
+    *,
+    mirrored: bool = True,
+) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
-    point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,).
-    A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
+    point is on the block below, unless that one is fixed. Lines are `mirrored` where the masonry is: of two blocks
+    beside each other the point is on the one that is farther from the middle of the masonry, where both or neither
+    have a corner there. If they are as far, it is on either, with half the stiffness. The stiffness of each joint is
+    k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
+    Those that are `bonded` have the stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
+    middle = np.mean([block.centroid for block in blocks if not block.fixed], axis=0)
     for number, joint in enumerate(joints):
-        k_joint = k_n[number]
+        k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
-            own = _on_edge(joint, points, k_joint)
+            own = _on_edge(joint, points, k_joint, exact)
         else:
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
-            own = _on_face(joint, faces, points, k_joint)
+            flat, areas = sectioned(joint.flat, points) if exact else spread(joint.flat, points)
+            own = _on_face(joint, faces, flat, k_joint * areas)
+        below, above = blocks[joint.below], blocks[joint.above]
+        beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) < LEVEL and not below.fixed else ()
         for place, stiffness, overhangs in own:
-            turned = overhangs and not blocks[joint.below].fixed
-            rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
-            at.append(place)
-            normal.append(-joint.normal if turned else joint.normal)
-            k.append(stiffness)
+            turns: tuple[bool, ...] = (overhangs and not below.fixed,)
+            if beside and _has_corner(below, place) == _has_corner(above, place):
+                turns = beside
+            for turned in turns:
+                rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
+                at.append(place)
+                normal.append(-joint.normal if turned else joint.normal)
+                k.append(stiffness / len(turns))
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
 
 
-def _on_edge(joint: Joint, points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
+def _outer(above: AnyBlock, below: AnyBlock, middle: Array) -> tuple[bool, ...]:
+    """Whether the point of a joint is on the block below, as that is farther from the middle of the masonry, apart from
+    heights. Both ways where the two blocks are as far."""
+    own, other = (float(np.linalg.norm((block.centroid - middle)[:-1])) for block in (above, below))
+    return (False, True) if abs(other - own) <= EDGE else (other > own,)
+
+
+def _has_corner(block: AnyBlock, place: Array) -> bool:
+    """Whether a corner of a block is at a place."""
+    return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE)
+
+
+def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[tuple[Array, float, bool]]:
     """Places of the lines of a joint, evenly from end to end, their stiffness, and whether the block above overhangs.
 
-    The outer two have half the tributary width.
+    The outer two have half the tributary width, or in a joint that is `exact` less, see `exact_shares`.
     """
-    for i, (place, width) in enumerate(zip(*contact_lines(joint.width, points), strict=True)):
+    places, widths = contact_lines(joint.width, points)
+    widths = joint.width * exact_shares(points) if exact else widths
+    for i, (place, width) in enumerate(zip(places, widths.tolist(), strict=True)):
         overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
         yield joint.middle + place * joint.along, k_n * joint.length * width, overhangs
 
 
-def _on_face(joint: SpaceJoint, faces: Sequence[Array], points: int, k_n: float) -> Iterator[tuple[Array, float, bool]]:
-    """The same of the points of a joint in space. Those at its corners may be of the block below alone, and those on an
-    edge of the face below that lies within the face above are."""
-    flat, areas = spread(joint.flat, points)
+def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> Iterator[tuple[Array, float, bool]]:
+    """The same of the points of a joint in space, which lie `flat` in its plane, and have the stiffness k [N/m]. Those
+    at its corners may be of the block below alone, and those on an edge of the face below that lies within the face
+    above are."""
     below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
     edges = (within(below, flat) < EDGE) & (within(above[::-1], flat) > EDGE)
-    for place, area, on_edge in zip(joint.outline[0] + flat @ joint.axes, areas, edges.tolist(), strict=True):
+    for place, stiffness, on_edge in zip(joint.outline[0] + flat @ joint.axes, k, edges.tolist(), strict=True):
         apart = np.abs(joint.outline - place).max(axis=1)
-        yield place, k_n * area, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
+        yield place, stiffness, on_edge or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
 
 
 def edge_ends(edge: Side, joint: Joint) -> tuple[float, float]:
@@ -148,21 +180,29 @@ def slips(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
 
-def lowest_frequency(blocks: Sequence[AnyBlock], lines: Lines, friction: Array) -> float:
+def lowest_frequency(
+    blocks: Sequence[AnyBlock], lines: Lines, friction: Array, along: Array | float = math.inf
+) -> float:
     """The lowest natural frequency of masonry whose joints are all closed and do not slide [rad/s].
 
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
     weight's own part of the stiffness is left out, as in `reference_frequency`, which is the case of one block.
+
+    Inclined faces may leave no motion in which none of them slides, as those of a wedge do. There joints give way along
+    their faces by their springs `along` [N/m], shape (m,), and slide where these are infinite.
     """
     masses, axes = masses_of(blocks)
-    opening, sliding = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
-    if axes is not None:
-        opening, sliding = csr_array(opening @ axes), csr_array(sliding @ axes)
+    axes = csr_array(eye_array(len(masses))) if axes is None else axes
+    moves = rates(blocks, lines, lines.normal), slips(blocks, lines, len(friction))
+    opening, sliding = (csr_array(part @ axes) for part in moves)
     held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    grip = sliding[np.tile(held, sliding.shape[0] // len(held))]
-    square = lowest_square(sprung(opening, lines.k), masses, grip, RIGID)
+    grip, stiffness = sliding[np.tile(held, sliding.shape[0] // len(held))], sprung(opening, lines.k)
+    square = lowest_square(stiffness, masses, grip, RIGID)
     if square == 0:
-        raise ValueError("the blocks have no joint that a motion could compress, and xi refers to no frequency")
+        springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
+        for way in lines.across:
+            stiffness = stiffness + sprung(csr_array(rates(blocks, lines, way) @ axes), springs)
+        square = lowest_square(stiffness, masses, grip[:0], RIGID)
     return math.sqrt(square)
 
 

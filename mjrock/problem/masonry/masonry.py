@@ -42,8 +42,9 @@ from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, cu
 from .builders_in_space import box_on_ground, column_of, dome_of, facade_of, ground_below, wallette_of, walls_of
 from .compas_files import compas_text, read_compas
 from .compound import AnyBlock, Compound, FlatBlock, SolidBlock
-from .drawing import odd_sizes, split_faces
+from .drawing import WIDEST, gaps, odd_damping, odd_sizes, split_faces
 from .dxf_files import OfLayer, polygons_of, read_dxf
+from .joint_law import Law
 from .joints import Joint, joints_in_plane, names_of
 from .joints_in_space import SpaceJoint, joints_in_space
 from .lines import Lines, lines_of, lowest_frequency
@@ -77,7 +78,8 @@ class Masonry:
     points in place of the lines. Blocks are convex; a unit that is not, such as an L or a hook, is a `Compound`.
 
     In MuJoCo blocks meet only at the joints that they have at rest, faces have no end, and the run ends when two blocks
-    of a joint are farther apart than the whole masonry is large, or when a block has turned by 90 degrees. Friction
+    of a joint are farther apart than the whole masonry is large, when a block has turned by 90 degrees, or when one
+    lies lower than a face that it has left, four times the largest extent of a block away from their joint. Friction
     that holds is a strong dashpot there: under a sustained force F along a joint it creeps at about F / (3e8 m) [m/s],
     m the reduced mass of the two blocks [kg]. In explicit steps, see `solve_explicit`, faces end and blocks that fall
     meet others.
@@ -89,13 +91,16 @@ class Masonry:
         friction: coefficient of friction [-], 0 to 10, or a function of the joint.
         xi: damping ratio [-], 0 to 100, or a function of the joint. The dashpot of a line is c = (2 xi / omega) k, the
             stiffness-proportional damping of distinct-element codes.
-        frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed. It is
-            `reference_frequency` for one block on the ground.
+        frequency: omega [rad/s], 1e-3 to 1e9. None takes the lowest natural frequency with every joint closed and none
+            sliding. It is `reference_frequency` for one block on the ground. Where inclined faces leave no such motion,
+            they slide on k_s, or freely where that is None.
         points: contact lines of each joint, 2 to 1000. In space 2 to 50: two put a contact point on each corner of the
             joint, and more divide a joint of four corners into (points - 1)^2 cells with a point on each of their
             corners, and other joints alike. Each point has the stiffness of its tributary area. A closed joint of n
             lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times with 2, 1.5 with 3, 1.031 with 9. In
-            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff.
+            space this holds for a rectangle both ways; a triangle on its corners is 4 times as stiff. A joint with a
+            bond takes 3 or more, and shares its area out to them so that it is as stiff as k_n I. A joint that has slid
+            keeps its lines and k_n, on the part of its faces that still lies over each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         law: a damping law or its name, which takes the place of xi. Each bed joint of a stack is damped as the base of
@@ -107,14 +112,16 @@ class Masonry:
         k_s: shear stiffness of the joints [N/m3], 1e4 to 1e16, or a function of the joint, for `solve_explicit`. None
             lets them stick rigidly, up to their friction, as they always do in MuJoCo.
         bond: what mortar holds, a `Bond` or a function of the joint that gives one, or None where a joint is dry, for
-            `solve_explicit`. It needs `k_s`, and three `points` or more are advised, see docs/mortar.md.
+            `solve_explicit`. It needs `k_s` and three `points` or more. The first crack in bending is that of the
+            elastic section for any number of them; five or more follow the crack, see docs/mortar.md.
 
     Raises:
         ValueError: for a value outside its range, blocks that overlap, or a law for what is not a stack.
 
     Warns:
-        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for blocks
-            so large or small that they are probably not in m, and for faces that rounded vertices have split.
+        Implausible: for a frequency so far from the lowest one of the masonry that the dashpots are odd, for an xi
+            above 1 without one, for blocks so large or small that they are probably not in m, and for faces that
+            rounded vertices have split.
 
     Examples:
         >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.9)
@@ -137,9 +144,13 @@ class Masonry:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
         joints = {"k_n": self.k_n, "k_s": self.k_s, "friction": self.friction, "xi": self.xi}
+        if self.law is not None:
+            del joints["xi"]
         said = [
             f"{name} of the joint" if callable(v) else f"{name} = {v:g}" for name, v in joints.items() if v is not None
         ]
+        if self.law is not None:
+            said.append(f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = "" if self.bond is None else ", mortar"
         return f"<Masonry of {len(self.free)} blocks, {size} m: {', '.join(said)}, points = {self.points}{bonded}>"
 
@@ -167,7 +178,7 @@ class Masonry:
         keep(
             self,
             points=require_whole("points", self.points, 2, 50 if self.in_space else 1000),
-            tolerance=require_within("tolerance", self.tolerance, 1e-9, 0.1, "m"),
+            tolerance=require_within("tolerance", self.tolerance, 1e-9, WIDEST, "m"),
         )
         if self.frequency is not None:
             keep(self, frequency=require_within("frequency", self.frequency, 1e-3, 1e9, "rad/s"))
@@ -178,7 +189,11 @@ class Masonry:
                 given = f"frequency = {self.frequency:g} rad/s"
                 raise ValueError(f"{given} is given with a law, which has its own; leave it")
         if not self.joints:
-            raise ValueError(f"blocks: no two of them touch along {'a face' if self.in_space else 'an edge'}")
+            side = "a face" if self.in_space else "an edge"
+            raise ValueError(
+                f"blocks: no two of them touch along {side} within the tolerance of {self.tolerance:g} m; "
+                f"{gaps(self.blocks, self.names, self.free, self._joints_within, self.tolerance)}"
+            )
         keep(self, bond=required_bond(self.bond))
         _ = (
             self.joint_stiffness,
@@ -191,7 +206,8 @@ class Masonry:
             _ = self.retardation
         elif self.frequency is not None and (odd := self._doubt_of_frequency(self.frequency)):
             warnings.warn(odd, Implausible, stacklevel=3)
-        for odd in (odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
+        overdamped = "" if self.law is not None or self.frequency is not None else odd_damping(self.joint_damping)
+        for odd in (overdamped, odd_sizes(self.blocks, self.names), split_faces(self.joints, self.blocks, self.names)):
             if odd:
                 warnings.warn(odd, Implausible, stacklevel=3)
 
@@ -249,9 +265,13 @@ class Masonry:
     @cached_property
     def joints(self) -> tuple[Joint | SpaceJoint, ...]:
         """The joints, in the order of the blocks: `Joint`, or `SpaceJoint` of blocks in space."""
+        return self._joints_within(self.tolerance)
+
+    def _joints_within(self, tolerance: float) -> tuple[Joint | SpaceJoint, ...]:
+        """The joints of another tolerance [m]."""
         if self.in_space:
-            return joints_in_space(self.polyhedra, self.tolerance)
-        return joints_in_plane(self.polygons, self.tolerance)
+            return joints_in_space(self.polyhedra, tolerance)
+        return joints_in_plane(self.polygons, tolerance)
 
     @cached_property
     def joint_stiffness(self) -> Array:
@@ -288,12 +308,14 @@ class Masonry:
     @cached_property
     def bonds(self) -> tuple[Bond | None, ...]:
         """The bond of each joint, None where it is dry."""
-        return bonds_of(self.bond, self.joints, self.joint_shear, self.joint_friction)
+        law = Law(self.joint_stiffness, 0.0, self.joint_shear, self.joint_friction)
+        return bonds_of(self.bond, self.joints, law, self.points)
 
     @cached_property
     def lines(self) -> Lines:
         """The contact lines of all joints."""
-        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points)
+        bonded = [bond is not None for bond in self.bonds]
+        return lines_of(self.blocks, self.joints, self.joint_stiffness, self.points, bonded)
 
     @cached_property
     def retardation(self) -> Array:
@@ -306,7 +328,8 @@ class Masonry:
 
     @cached_property
     def _lowest_frequency(self) -> float:
-        return lowest_frequency(self.blocks, self.lines, self.joint_friction)
+        along = self.joint_shear[self.lines.joint] * self.areas_of(self.lines.k, self.lines.joint)
+        return lowest_frequency(self.blocks, self.lines, self.joint_friction, along)
 
     def _doubt_of_frequency(self, frequency: float) -> str:
         """What is odd about a given frequency [rad/s], in words, empty where nothing is.
@@ -314,10 +337,7 @@ class Masonry:
         With the lowest one of the masonry it makes of xi the damping ratio of that mode, which says whether c/k is odd.
         """
         xi = float(self.joint_damping.max())
-        try:
-            lowest = self._lowest_frequency if xi else 0.0
-        except ValueError:  # no joint that a motion could compress
-            lowest = 0.0
+        lowest = self._lowest_frequency if xi else 0.0
         found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
         overdamped = found > OVERDAMPED and lowest > FAR * frequency
         if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
@@ -839,8 +859,12 @@ class Masonry:
 
         Raises:
             ImportError: if ezdxf is missing.
-            ValueError: if the file is not valid, for a polyline that is open, has arcs or is not convex, or a block
-                that touches no other; the message names it. Or as `Masonry` does.
+            ValueError: if the file is not valid, for inserted blocks that hold each other or are too many, for a
+                polyline that is open, has arcs or is not convex, or a block that touches no other; the message names
+                it. Or as `Masonry` does.
+
+        Warns:
+            UserWarning: if the drawing is damaged and was repaired while it was read.
         """
         fixed, path = _names(fixed), require_path("path", path)
         ground = require_flag("ground", ground)
@@ -910,14 +934,9 @@ class Masonry:
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]
         if loose:
-            low, high = (np.array([end(block.corners, axis=0) for block in self.blocks]) for end in (np.min, np.max))
-            i = loose[0]
-            gaps = np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1)
-            gaps[i] = np.inf
             raise ValueError(
                 f"{named([self.names[i] for i in loose])} touch no other block within the tolerance of "
-                f"{self.tolerance:g} m; between the bounds of {self.names[i]} and {self.names[int(gaps.argmin())]} "
-                f"there are {gaps.min():.3g} m"
+                f"{self.tolerance:g} m; {gaps(self.blocks, self.names, loose, self._joints_within, self.tolerance)}"
             )
         return self
 

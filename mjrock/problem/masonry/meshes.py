@@ -108,10 +108,35 @@ def block_of(body: Mesh, density: float, fixed: bool) -> Polyhedron:
     volume = float(np.abs(np.linalg.det(body.vertices[triangles] - block.centroid)).sum()) / 6
     if abs(volume / block.volume - 1) > SAME_VOLUME:
         raise ValueError(
-            f"body {body.name} is not convex: its faces enclose {volume:.4g} m3, and their hull {block.volume:.4g} m3; "
-            "cut it into convex blocks"
+            f"body {body.name} is not convex: its faces enclose {enclosed_by(body):.4g} m3 within their hull of "
+            f"{block.volume:.4g} m3; cut it into convex blocks"
         )
     return block
+
+
+def enclosed_by(body: Mesh) -> float:
+    """Volume that the faces of a closed body enclose, convex or not, whichever way they turn [m3]."""
+    faces = list(body.faces)
+    of_edge: dict[frozenset[int], list[int]] = {}
+    for number, face in enumerate(faces):
+        for edge in edges_of(face):
+            of_edge.setdefault(frozenset(edge), []).append(number)
+    seen, open_ends = {0}, [0]
+    while open_ends:
+        number = open_ends.pop()
+        for edge in edges_of(faces[number]):
+            for other in of_edge[frozenset(edge)]:
+                if other not in seen:  # beside a face that turns the same way, an edge is passed the other way
+                    faces[other] = faces[other][::-1] if edge in edges_of(faces[other]) else faces[other]
+                    seen.add(other)
+                    open_ends.append(other)
+    triangles = np.array([(face[0], i, j) for face in faces for i, j in pairwise(face[1:])])
+    return abs(float(np.linalg.det(body.vertices[triangles] - body.vertices.mean(axis=0)).sum())) / 6
+
+
+def edges_of(face: tuple[int, ...]) -> list[tuple[int, int]]:
+    """The edges of a face, in its order."""
+    return list(zip(face, (*face[1:], face[0]), strict=True))
 
 
 def blocks_of(meshes: Sequence[Mesh], density: float, fixed: Sequence[str]) -> list[Polyhedron]:

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..wall.plausible import IN_G, Whole, of_effects, of_motion
-from ..wall.tie import Tie
-from .collapse import collapse_multiplier
+from ...quantities import GRAVITY, Array
+from ..wall.effect import Anchored
+from ..wall.plausible import IN_G, NEGLIGIBLE, Whole, of_effects, of_motion
+from .actuator import Actuator
+from .collapse import limit_of, pushed
 from .effects import held_at
 from .masonry import Masonry
 
@@ -23,7 +25,8 @@ def doubts(case: Any) -> list[str]:
     masonry = case.masonry
     mass = sum(masonry.blocks[i].mass for i in masonry.free)
     found = of_motion(case.motion, case.duration, "masonry", stood(case))
-    return found + of_effects(case.effects, Whole("masonry", "its block", mass), lambda tie: _room(masonry, tie))
+    found += of_effects(case.effects, Whole("masonry", "its block", mass), lambda link: _room(masonry, link))
+    return found + [odd for name, jack in case.actuators.items() if (odd := _of_jack(name, jack, masonry, mass))]
 
 
 def stood(case: Any) -> float:
@@ -35,15 +38,33 @@ def stood(case: Any) -> float:
 
 @lru_cache(maxsize=16)
 def _multiplier(masonry: Masonry) -> float:
+    ways = np.eye(3 if masonry.in_space else 2)[0] * [[1.0], [-1.0]]
     try:
-        return min(collapse_multiplier(masonry, way).multiplier for way in (1, -1))
+        return min(limit_of(masonry, way, pushed(masonry, way)).multiplier for way in ways)
     except ValueError:  # it cannot stand, which the solvers say
         return math.inf
 
 
-def _room(masonry: Masonry, tie: Tie) -> tuple[float, float]:
-    """Largest extent of the block that a tie holds, and of all free blocks along the tie [m]."""
-    held = np.zeros(2) if tie.at is None else held_at(tie)
-    way = held - tie.anchor_of(held)
-    along = np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ (way / np.linalg.norm(way))
-    return 2 * masonry.blocks[tie.block].size, float(np.ptp(along))
+def _room(masonry: Masonry, link: Anchored) -> tuple[float, float]:
+    """Largest extent of the block that a link holds, and of all free blocks along the link [m]."""
+    held = np.zeros(2) if link.at is None else held_at(link)
+    way = held - link.anchor_of(held)
+    return 2 * masonry.blocks[link.block].size, _extent(masonry, way / np.linalg.norm(way))
+
+
+def _extent(masonry: Masonry, way: Array) -> float:
+    """Extent of all free blocks along a unit vector [m]."""
+    return float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ way))
+
+
+def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
+    """A doubt about an actuator, empty where there is none."""
+    far, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
+    if far > extent:
+        return f"{name}: displacement reaches {far:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
+    if 0 < jack.stiffness * far < NEGLIGIBLE * mass * GRAVITY:
+        return (
+            f"{name}: stiffness = {jack.stiffness:g} N/m pushes with at most {jack.stiffness * far:.3g} N, and the "
+            f"masonry weighs {mass * GRAVITY:.3g} N: is it in N/m?"
+        )
+    return ""

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse.csgraph import connected_components
 
 from ...linear import loose
-from ...quantities import GRAVITY, Array
+from ...quantities import GRAVITY, Array, Flags
 from .joint_law import Law, shear_limit
-from .lines import rates, slips
+from .lines import free_numbers, rates, slips
 from .masonry import Masonry
 
 UNBALANCED = 1e-7
@@ -24,6 +25,8 @@ MOST_FRICTION = 2.0
 """Largest coefficient of friction that is thought of as a remedy [-]."""
 ROUNDED = 1e-3
 """To how much a coefficient of friction that is lacking is rounded up [-]."""
+NUDGE = 1e-3
+"""Push to the side, over the weight, under which blocks fall that stand at their limit alone [-]."""
 DEAR = 1e-3
 """Price of a force beyond the friction that a joint has, over that of one that is missing [-]."""
 EDGES = 8
@@ -31,7 +34,28 @@ EDGES = 8
 the pyramid has cos(pi/8) = 0.924 of the friction."""
 
 
-def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
+class Pulls(NamedTuple):
+    """Ties that pull with what equilibrium asks, up to their strength.
+
+    Args:
+        columns: forces of a pull of 1 N on all unknowns, moments over the size of the block, shape (unknowns, t).
+        strength: of each [N], shape (t,).
+    """
+
+    columns: csc_array
+    strength: Array
+
+    @classmethod
+    def of(cls, masonry: Masonry, pulls: Array | None = None, strength: Array | None = None) -> Pulls:
+        """Those of forces and moments of unit pulls on the free blocks, shape (t, free, 3), in space (t, free, 6);
+        none without."""
+        sizes, strength = sizes_of(masonry), np.zeros(0) if strength is None else strength
+        shape = (len(strength), len(sizes))
+        rows = np.zeros(shape) if pulls is None else np.reshape(pulls, shape)
+        return cls(csc_array(rows.T / sizes[:, None]), strength)
+
+
+def falling(masonry: Masonry, applied: Array | float = 0.0, ties: Pulls | None = None) -> tuple[str, ...]:
     """Names of the blocks that fall if the blocks are rigid; none where the joints can carry the weight.
 
     A linear programme looks for forces at the contact lines, pressing and within the cone of friction, that leave the
@@ -44,11 +68,14 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
         masonry: the masonry.
         applied: further forces on each free block and their moment about its centroid, positive where it turns the top
             to the right [N, N, N m], shape (free, 3). In space three forces and three moments, shape (free, 6).
+        ties: that hold the blocks, or None.
     """
-    answer = _balanced(masonry, applied, masonry.joint_friction)
+    answer = _balanced(masonry, applied, masonry.joint_friction, ties=ties)
     if _stands(answer):
         return ()
-    return moving(masonry, answer.eqlin.marginals)
+    lacks = _lacking(masonry, answer.x)
+    free = dict(zip((masonry.names[i] for i in masonry.free), lacks.tolist(), strict=True))
+    return tuple(name for name in moving(masonry, answer.eqlin.marginals) if free[name])
 
 
 def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[float, tuple[str, ...]] | None:
@@ -72,6 +99,22 @@ def friction_lacking(masonry: Masonry, applied: Array | float = 0.0) -> tuple[fl
     beyond = np.reshape(answer.x[edges * m : 2 * edges * m], (edges, m)).sum(axis=0)
     short = np.unique(masonry.lines.joint[(beyond > UNBALANCED) & (friction < enough)[masonry.lines.joint]])
     return enough, tuple(masonry.joints[j].name for j in short)
+
+
+def nudged(masonry: Masonry, applied: Array | float = 0.0) -> tuple[tuple[str, ...], bool] | None:
+    """What falls of rigid blocks that stand at their limit alone: under a nudge sideways, as a share of the weight.
+
+    Returns:
+        The names of the blocks, and whether more friction would keep them; None of blocks that stand the nudge any way.
+    """
+    weight = weight_of(masonry).reshape(len(masonry.free), -1)
+    for axis in range(2 if masonry.in_space else 1):
+        for way in (NUDGE, -NUDGE):
+            push = np.zeros_like(weight)
+            push[:, axis] = way * weight.sum(axis=1)
+            if names := falling(masonry, applied + push):
+                return names, friction_lacking(masonry, applied + push) is not None
+    return None
 
 
 def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -156,7 +199,13 @@ def edges_of(across: tuple[Array, ...]) -> Array:
     return np.asarray(np.einsum("ea,amd->emd", spread, np.stack(across)))
 
 
-def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None) -> Any:
+def _balanced(
+    masonry: Masonry,
+    applied: Array | float,
+    friction: Array,
+    dear: Array | None = None,
+    ties: Pulls | None = None,
+) -> Any:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
     The unknowns are the forces along the edges of the cone of each line, then what is missing. With `dear`, a wider
@@ -171,14 +220,35 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
             edges.append(cones(masonry, cone))
             cost.append(np.full(edges[-1].shape[1], price))
     missing = eye_array(len(weight))
-    pulls, limits, _ = bonded(masonry)
-    columns = hstack([*edges, missing, -missing, pulls])
+    (pulls, limits, _), ties = bonded(masonry), ties or Pulls.of(masonry)
+    limits = np.append(limits, ties.strength)
+    columns = hstack([*edges, missing, -missing, pulls, ties.columns])
     prices = np.concatenate([*cost, np.ones(2 * len(weight)), np.zeros(len(limits))])
     highest = np.append(np.full(len(prices) - len(limits), np.inf), limits / total)
     bounds = np.column_stack([np.zeros_like(highest), highest])
     return scipy.optimize.linprog(
         prices, A_eq=columns, b_eq=-weight / total / sizes_of(masonry), bounds=bounds, method=method(masonry)
     )
+
+
+def _lacking(masonry: Masonry, forces: Array) -> Flags:
+    """Which free blocks are connected with one that lacks forces, shape (free,). Others may slide as these fall, and do
+    not fall.
+
+    Args:
+        masonry: the masonry.
+        forces: the answer of the programme of `_balanced` without `dear`.
+    """
+    number, count = free_numbers(masonry.blocks), len(masonry.free)
+    pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
+    pairs = pairs[(pairs >= 0).all(axis=1)]
+    graph = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+    part = connected_components(graph, directed=False)[1]
+    unknowns = len(weight_of(masonry))
+    first = (EDGES if masonry.in_space else 2) * len(masonry.lines.k)
+    missing = forces[first : first + 2 * unknowns].reshape(2, count, -1).sum(axis=(0, 2))
+    of_part = np.bincount(part, weights=missing)
+    return np.asarray((of_part >= min(UNBALANCED, of_part.max()))[part])
 
 
 def _stands(answer: Any) -> bool:

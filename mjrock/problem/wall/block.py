@@ -125,7 +125,9 @@ class Block:
     ) -> Block:
         """The wall of full sizes `thickness` 2b at the base, `height` 2h and `length` [m]; the rest as for `Block`."""
         thickness = require_within("thickness", thickness, 2e-3, 20.0, "m")
-        height = require_within("height", height, max(1e-2, thickness), min(200.0, 200 * thickness), "m")
+        if require_real("height", height) < thickness:
+            raise ValueError(f"height = {height:g} m is less than thickness = {thickness:g} m: are they swapped?")
+        height = require_within("height", height, 1e-2, min(200.0, 200 * thickness), "m")
         parts = {"openings": openings, "profile": profile, "masses": masses, "gable": gable}
         return cls(thickness / 2, height / 2, length, density, inset, **parts)  # type: ignore[arg-type]
 

@@ -104,6 +104,7 @@ class Anchored(Effect):
 
     Attributes:
         colour, dashes: how its line is drawn, in the ways of matplotlib.
+        limit: name of its argument that is the force at which it yields.
         length: distance from the inner face to the anchor [m].
         anchor: in space, the anchor at rest [m]; None is `length` behind the point.
         anchor_block: of masonry, the block that it moves with; None is the ground.
@@ -112,6 +113,7 @@ class Anchored(Effect):
     on_face = True
     colour: ClassVar[str] = "#12406b"
     dashes: ClassVar[Literal["-", "--", "-."]] = "-"
+    limit: ClassVar[str] = "strength"
     length: float
     anchor: Point | None
     anchor_block: int | None

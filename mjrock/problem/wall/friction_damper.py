@@ -37,6 +37,7 @@ class FrictionDamper(Anchored):
     arguments: ClassVar[str] = "height, stiffness,\nslip_force, length"
     colour: ClassVar[str] = "#8a4f9e"
     dashes: ClassVar[Literal["-", "--", "-."]] = "--"
+    limit: ClassVar[str] = "slip_force"
     height: float = None  # type: ignore[assignment]
     stiffness: float = None  # type: ignore[assignment]
     slip_force: float = None  # type: ignore[assignment]

@@ -11,13 +11,16 @@ import numpy as np
 
 from ...quantities import GRAVITY, Implausible
 from ..ground.motion import GroundMotion
-from .effect import Effect
+from .effect import Anchored, Effect
 from .effects import AddedMass, Load, Thrust
 from .tie import Tie
-from .ties_on_wall import moment_at_strength, pulled
+from .ties_on_wall import TiePull, moment_at_strength, pulled
 
 NEGLIGIBLE = 1e-4
 """Share of the weight, or of the mass, below which a force or a mass is taken for one in kN or t [-]."""
+EXCESSIVE = 1000.0
+"""Force of a tie, damper, load or thrust over the weight above which it is taken for one in another unit [-]: a jack
+presses a panel with up to some 200 times its weight, and a bar of 30 mm holds 100 times a small model."""
 STIFFEST = 1e10
 """Stiffness above which that of a tie is taken for a modulus [N/m]; a steel bar of 100 mm and 1 m has 1.6e9."""
 CUT_OFF = 0.2
@@ -57,6 +60,17 @@ def warn_of_low_stop(case: Any) -> None:
             f"the side stop reaches {top:.4g} m, and one below {LOW * height:.4g} m pushes the base outwards; here the "
             "base cannot slide. On a base of friction 0.6 peaks differ by more than 10 %, against still lower stops "
             "rebounds too: give the contacts the friction that the base has",
+            Implausible,
+            stacklevel=3,
+        )
+
+
+def warn_if_still(case: Any, *, forces: bool = False) -> None:
+    """Warn of a run of a wall that nothing moves, unless it is asked for the forces at rest."""
+    if not (case.theta0 or case.omega0 or case.shaken or forces):
+        warnings.warn(
+            "theta0 = 0, omega0 = 0, motion = None and vertical = None: nothing moves the wall, and the run is one of "
+            "rest; give the case a release or a motion",
             Implausible,
             stacklevel=3,
         )
@@ -119,9 +133,10 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
 
 
 def _of_effects(case: Any) -> list[str]:
-    def room(tie: Tie) -> tuple[float, float]:
-        pull, far = case.pulls[case.each(Tie).index(tie)], max(case.restoring.outer.alpha, case.wall.alpha)
-        return 2 * case.block.b, float(pulled(pull, far, 1.0)[0]) + tie.slack
+    def room(link: Anchored) -> tuple[float, float]:
+        b, far = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
+        pull = TiePull.of(link, b, case.block.half_base)._replace(reach=link.span)
+        return 2 * b, float(pulled(pull, far, 1.0)[0])
 
     return of_effects(case.effects, Whole("wall", "the wall", case.block.mass), room)
 
@@ -134,20 +149,27 @@ class Whole(NamedTuple):
     mass: float
 
 
-def of_effects(effects: Sequence[Effect], whole: Whole, room: Callable[[Tie], tuple[float, float]]) -> list[str]:
-    """What is odd about effects. `room` is how thick the thing is that a tie holds, and how far it opens [m]."""
+Room = Callable[[Anchored], tuple[float, float]]
+"""How thick the thing is that a link holds, and how far it opens there until it overturns [m]."""
+
+
+def of_effects(effects: Sequence[Effect], whole: Whole, room: Room) -> list[str]:
+    """What is odd about effects."""
     found = []
     weight = whole.mass * GRAVITY
     for i, effect in enumerate(effects):
         name = f"effects[{i}], {type(effect).__name__}"
-        if isinstance(effect, Thrust | Load) and 0 < abs(effect.force) < NEGLIGIBLE * weight:
-            found.append(_too_little(name, "force", effect.force, whole))
+        if isinstance(effect, Thrust | Load):
+            if 0 < abs(effect.force) < NEGLIGIBLE * weight:
+                found.append(_against_weight(name, "force", effect.force, whole, "kN"))
+            elif abs(effect.force) > EXCESSIVE * weight:
+                found.append(_against_weight(name, "force", effect.force, whole, "N"))
         elif isinstance(effect, AddedMass) and 0 < effect.mass < NEGLIGIBLE * whole.mass:
             found.append(
                 f"{name}: mass = {effect.mass:g} kg, that of the {whole.called} {whole.mass:.3g} kg: is it in t?"
             )
-        elif isinstance(effect, Tie):
-            found += _of_tie(name, effect, whole, room)
+        elif isinstance(effect, Anchored):
+            found += filter(None, (of(name, effect, whole, room) for of in (_of_dashpot, _of_spring)))
     return found
 
 
@@ -170,25 +192,46 @@ def _of_free_part(case: Any) -> list[str]:
     ]
 
 
-def _of_tie(name: str, tie: Tie, whole: Whole, room: Callable[[Tie], tuple[float, float]]) -> list[str]:
-    """At most one doubt about a tie."""
-    if tie.strength < NEGLIGIBLE * whole.mass * GRAVITY:
-        return [_too_little(name, "strength", tie.strength, whole)]
-    if tie.stiffness > STIFFEST:
-        return [f"{name}: stiffness = {tie.stiffness:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"]
-    thickness, opens = room(tie)
-    if math.isfinite(tie.strength) and tie.stretch > thickness:
-        return [
-            f"{name} yields at an elongation of {tie.stretch:.3g} m, and {whole.held} is {thickness:g} m thick: is "
-            "its stiffness in N/m?"
-        ]
-    if tie.slack > opens > 0:
-        return [
-            f"{name}: slack = {tie.slack:g} m, and where it is held the {whole.called} opens by {opens:.3g} m until it "
-            "overturns: is the slack in m?"
-        ]
-    return []
+def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
+    """At most one doubt about the spring of a link and its limits, empty where there is none."""
+    law, limit, weight = link.law, link.limit, whole.mass * GRAVITY
+    if not law.k > 0:
+        return ""
+    if law.strength < NEGLIGIBLE * weight:
+        return _against_weight(name, limit, law.strength, whole, "kN")
+    if law.k > STIFFEST:
+        return f"{name}: stiffness = {law.k:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"
+    thickness, opens = room(link)
+    if math.isfinite(law.strength) and law.strength / law.k > thickness:
+        return (
+            f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {whole.held} is {thickness:g} m "
+            "thick: is its stiffness in N/m?"
+        )
+    if math.isfinite(law.strength) and law.strength > EXCESSIVE * weight:
+        return _against_weight(name, limit, law.strength, whole, "N, and no stress in Pa")
+    for what, length in (("slack", law.reach - link.span), ("ultimate", law.ultimate)):
+        if math.inf > length > opens > 0:
+            return (
+                f"{name}: {what} = {length:g} m, and where it is held the {whole.called} opens by {opens:.3g} m until "
+                f"it overturns: is the {what} in m?"
+            )
+    return ""
 
 
-def _too_little(name: str, what: str, value: float, whole: Whole) -> str:
-    return f"{name}: {what} = {value:g} N, and the {whole.called} weighs {whole.mass * GRAVITY:.3g} N: is it in kN?"
+def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
+    """A doubt about the dashpot of a link, by its force at the speed sqrt(g t) of a wall of thickness t that falls."""
+    if not link.law.c > 0:
+        return ""
+    speed, weight = math.sqrt(GRAVITY * room(link)[0]), whole.mass * GRAVITY
+    force = link.law.c * speed
+    if NEGLIGIBLE * weight <= force <= EXCESSIVE * weight:
+        return ""
+    unit = "kN s/m" if force < weight else "N s/m"
+    return (
+        f"{name}: c = {link.law.c:g} N s/m bears {force:.3g} N at {speed:.2g} m/s, at which the {whole.called} falls, "
+        f"and it weighs {weight:.3g} N: is it in {unit}?"
+    )
+
+
+def _against_weight(name: str, what: str, value: float, whole: Whole, unit: str) -> str:
+    return f"{name}: {what} = {value:g} N, and the {whole.called} weighs {whole.mass * GRAVITY:.3g} N: is it in {unit}?"

@@ -195,7 +195,18 @@ def strengths_of_bar(
     number: int = 1,
     spacing: float | None = None,
 ) -> dict[str, float]:
-    """Strength of equal ties by what gives way, see `Tie.of_bar`: bars, punching and bearing of the masonry [N]."""
+    """Strengths of equal ties [N], by what gives way: "bar", "punching" and "bearing", of which `Tie.of_bar` takes the
+    least. The arguments and their ranges are those of `Tie.of_bar`.
+
+    Raises:
+        TypeError, ValueError: for a value outside its range.
+
+    Examples:
+        >>> masonry = {"thickness": 0.55, "shear_strength": 30e3, "compressive_strength": 2e6}
+        >>> found = mr.strengths_of_bar(0.024, 235e6, 0.3, **masonry)
+        >>> {name: round(force / 1e3, 1) for name, force in found.items()}
+        {'bar': 106.3, 'punching': 56.1, 'bearing': 180.0}
+    """
     steel = require_within("yield_stress of the bar", yield_stress, 50e6, 2e9, "Pa")
     a, b = (plate, plate) if isinstance(plate, int | float) else require_array("plate", plate, (2,)).tolist()
     for side in (a, b):

@@ -1,0 +1,130 @@
+"""Polygons that roll and fall on long ground: rimless wheels against their closed form, and how deep thrown ones sink.
+
+A rimless wheel of n sides and radius R pivots about one corner after the other. Each impact leaves eta of its rate, and
+between two of them it gains what it falls by, so that in the long run its rate before an impact is omega with
+(1 - eta^2) omega^2 I_0 / 2 = m g 2 R sin(pi/n) sin(slope), I_0 about a corner (McGeer, Int. J. Robotics Research 9,
+1990). It does not depend on the springs, which bend by a ten-thousandth of R.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from everyday import among
+from masonry_blocks import box
+
+import mjrock as mr
+from mjrock.distinct import encounters
+
+RADIUS = 0.3
+SIDES = range(5, 25)
+BEHIND = (0.5, 5.0, 50.0)
+
+
+def slope_of(sides):
+    """On which a wheel passes each corner, and does not leave the ground [rad]."""
+    return math.radians(15.0 if sides == 5 else 72.0 / sides)
+
+
+def wheel_on(slope, sides, behind, others=()):
+    """A wheel that stands on a side at x = 0, on ground from -behind to 20 m, turned to a slope; with other blocks."""
+    half = math.pi / sides
+    around = 2 * half * np.arange(sides)
+    ring = RADIUS * np.column_stack([np.sin(around - half), math.cos(half) - np.cos(around - half)])
+    turn = np.array([[math.cos(slope), math.sin(slope)], [-math.sin(slope), math.cos(slope)]])
+    corners = [box(-behind, 20.0, -1.0, 0.0).corners, ring, *(box(*other).corners for other in others)]
+    ground, *free = (each @ turn.T for each in corners)
+    return [mr.Polygon(ground, fixed=True, name="ground"), *(mr.Polygon(each) for each in free)], turn
+
+
+def rolls(sides, behind, others=(), *, falls=5.0, **options):
+    """The run of a wheel at its closed-form rate, for some times of a fall from corner to corner, and this rate."""
+    slope, half = slope_of(sides), math.pi / sides
+    blocks, turn = wheel_on(slope, sides, behind, others)
+    about = blocks[1].inertia + blocks[1].mass * RADIUS**2
+    eta = (blocks[1].inertia + blocks[1].mass * RADIUS**2 * math.cos(2 * half)) / about
+    falling = 2 * blocks[1].mass * mr.GRAVITY * 2 * RADIUS * math.sin(half) * math.sin(slope)
+    rate = math.sqrt(falling / about / (1 - eta**2))
+    arm = turn @ (math.cos(half), math.sin(half))
+    velocity = [[*(eta * rate * RADIUS * arm), eta * rate], *np.zeros((len(others), 3))]
+    masonry = mr.Masonry(blocks, k_n=3e9, friction=2.0, xi=1.0, frequency=400.0)
+    case = mr.MasonryCase(masonry, falls * 2 * math.sin(half) / rate, velocity=velocity, settled=False)
+    return mr.solve_explicit(case, output_step=1e-4, **options), rate
+
+
+def sinks(run, turn):
+    """How deep the corners of the wheel lie below the ground [m], shape (samples,)."""
+    corners = np.array(run.case.masonry.blocks[1].vertices) - run.case.masonry.centroids[1]
+    at = run.pose[:, 0, :2] + run.case.masonry.centroids[1]
+    cosine, sine = np.cos(run.pose[:, 0, 2])[:, None], np.sin(run.pose[:, 0, 2])[:, None]
+    x = at[:, :1] + corners[:, 0] * cosine + corners[:, 1] * sine
+    z = at[:, 1:] - corners[:, 0] * sine + corners[:, 1] * cosine
+    return -(turn[0, 1] * x + turn[1, 1] * z).min(axis=1)
+
+
+@pytest.mark.parametrize("behind", among(BEHIND, 0.5))
+@pytest.mark.parametrize("sides", among(SIDES, 12, 24))
+def test_a_rimless_wheel_rolls_at_its_closed_form_speed(sides, behind):
+    """Its rates before impacts, from the third on, are within 0.2 %: a sample is at most 0.1 ms before each, in which
+    the rate grows by 0.05 % at most."""
+    run, rate = rolls(sides, behind, falls=14.0 if sides == 5 else 5.0)
+    turned = run.pose[:, 0, 2] / (2 * math.pi / sides)
+    later = run.velocity[turned > 2, 0, 2]
+    assert turned[-1] > 3
+    assert later.max() == pytest.approx(rate, rel=2e-3)
+    assert sinks(run, wheel_on(slope_of(sides), sides, behind)[1]).max() < 2e-3 * RADIUS
+    assert run.stats["overlap"] < 1e-3
+
+
+def test_a_wheel_rolls_alike_whatever_lies_beside_it():
+    """On ground that ends 5 or 50 m behind it, and with blocks on this ground that it never meets."""
+    beside = [(-3.0, -2.95, 0.0, 0.05), (-4.0, -3.9, 0.0, 0.1), (-4.9, -4.2, 0.0, 0.7)]
+    given = {"timestep": 8e-6, "falls": 2.0}
+    alone, _ = rolls(12, 5.0, **given)
+    for behind, others in ((50.0, ()), (5.0, beside)):
+        run, _ = rolls(12, behind, others, **given)
+        np.testing.assert_allclose(run.pose[:, 0], alone.pose[:, 0], atol=1e-10)
+
+
+def thrown(seed):
+    """A random convex polygon that stands on one of its sides, the ground behind it, and how fast it is thrown."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.uniform(0, 2 * math.pi, rng.integers(5, 11)))
+    while np.diff([*angles, angles[0] + 2 * math.pi]).max() > 2.0:
+        angles = np.sort(rng.uniform(0, 2 * math.pi, rng.integers(5, 11)))
+    corners = np.column_stack([0.3 * np.cos(angles), 0.21 * np.sin(angles)])
+    side = rng.integers(len(corners))
+    along = np.roll(corners, -1, axis=0)[side] - corners[side]
+    c, s = along / np.linalg.norm(along)
+    corners = (corners - corners[side]) @ np.array([[c, -s], [s, c]])
+    return corners, rng.choice([0.6, 2.0, 5.0]), (1.5, 0.0, rng.uniform(2, 6))
+
+
+@pytest.mark.parametrize("seed", among(range(24), 3))
+def test_a_polygon_that_is_thrown_sinks_by_no_more_than_the_overlap_of_its_landing(seed):
+    """One line has at least half of what the joint has on which it stood, and stops no more than all of the mass at the
+    speed that it would have from all of its energy."""
+    corners, behind, velocity = thrown(seed)
+    blocks = [box(-behind, 30, -1, 0, fixed=True), mr.Polygon(corners)]
+    masonry = mr.Masonry(blocks, k_n=1e9, friction=0.7, xi=0.5)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 1.0, velocity=[velocity], settled=False), output_step=2e-3)
+    mass, inertia = blocks[1].mass, blocks[1].inertia
+    energy = 0.5 * mass * velocity[0] ** 2 + 0.5 * inertia * velocity[2] ** 2
+    energy += mass * mr.GRAVITY * (masonry.centroids[1][1])
+    landing = math.sqrt(2 * energy / (0.5 * 1e9 * masonry.joints[0].width))
+    on_the_ground = (run.pose[:, 0, 0] + masonry.centroids[1][0] > 0.6 - behind).nonzero()[0]
+    assert sinks(run, np.eye(2))[on_the_ground].max() < landing
+
+
+@pytest.mark.parametrize("sides", [4, 8, 12, 24, 60])
+def test_a_joint_ends_before_the_next_side_of_a_polygon_lands(sides):
+    """At half the angle to it the other end of the joint has slipped by 1 less its cosine, or at 5 % of the width. A
+    side that goes straight on, as that of ground in two parts, is none."""
+    blocks, _ = wheel_on(0.0, sides, 1.0)
+    parts = mr.Compound([box(-1.0, 0.0, -1.0, 0.0), box(0.0, 20.0, -2.0, 0.0)], fixed=True, name="parts")
+    for ground in (blocks[0], parts):
+        masonry = mr.Masonry([ground, blocks[1]], points=2)
+        width = sum(joint.width for joint in masonry.joints)
+        serving = encounters._serving(masonry) / [joint.width for joint in masonry.joints]
+        np.testing.assert_allclose(serving, min(0.05, 1 - math.cos(math.pi / sides)), rtol=1e-9)
+        assert width == pytest.approx(2 * RADIUS * math.sin(math.pi / sides))

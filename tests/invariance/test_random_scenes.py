@@ -1,0 +1,143 @@
+"""Random scenes, checked and run under invariances: see docs/invariances.md and `python -m tests.invariance`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mjrock.problem.masonry.masonry import Masonry
+from tests.invariance.__main__ import table
+from tests.invariance.balance import is_stepwise, unbalanced, unbalanced_bodies
+from tests.invariance.invariances import INVARIANCES, Trial
+from tests.invariance.judge import judge, overheard
+from tests.invariance.quantities import changed, moved, scaled, turned
+from tests.invariance.random_scenes import PLACES, draw
+from tests.invariance.runs import solve
+
+FIRST, SCENES, CHUNK, DRAWN = 1000, 300, 10, 4
+"""Of the slow scenes: the first seed, how many there are, how many are one test, and how many invariances each is
+under."""
+EVERY_DAY = (2, 5, 7, 12, 22)
+STACK = 5
+"""A plane stack on springs with a record."""
+PAGE = Path(__file__).parents[2] / "docs" / "invariances.md"
+
+
+def broken(seed, names=None):
+    """What is wrong with the scene of a seed under these invariances or all, in words."""
+    row = judge(seed, names)
+    unlike = [f"{name}: {said}" for name, (verdict, said) in row.get("apart", {}).items() if verdict == "unexplained"]
+    unnamed = [f"unnamed: {row['unnamed']}"] if "unnamed" in row else []
+    return [
+        f"seed {seed}, {row['place']}, {row['kind']}: {said}" for said in (*unnamed, *row.get("wrong", ()), *unlike)
+    ]
+
+
+@pytest.mark.parametrize("seed", EVERY_DAY)
+def test_a_scene(seed):
+    assert not broken(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(FIRST, FIRST + SCENES, CHUNK))
+def test_scenes(first):
+    """Each under some of the invariances, drawn by its seed."""
+    found = []
+    for seed in range(first, first + CHUNK):
+        found += broken(seed, np.random.default_rng(seed).choice(list(INVARIANCES), DRAWN, replace=False))
+    assert not found, "\n".join(found)
+
+
+def alike(one, other):
+    """Whether two scenes are the same but for rounding."""
+    leaves = [[], []]
+    for scene, kept in zip((one, other), leaves, strict=True):
+        changed(scene, lambda name, value, kept=kept: kept.append((name, value)))
+    assert len(leaves[0]) == len(leaves[1]) > 10
+    for (name, value), (_, there) in zip(*leaves, strict=True):
+        if isinstance(value, str | bool | int):
+            assert value == there
+        else:
+            np.testing.assert_allclose(value, there, rtol=1e-12, atol=1e-12, err_msg=name)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_map_and_its_inverse(seed):
+    scene = draw(seed)
+    alike(scene, draw(seed))
+    alike(scaled(scaled(scene, 4.0, 2.0), 0.25, 0.5), scene)
+    if scene["place"] != "wall":
+        matrix = np.array([(0.0, -1.0), (1.0, 0.0)]) if scene["place"] == "plane" else np.eye(3)[[1, 2, 0]]
+        back = turned(turned(scene, matrix), matrix.T)
+        alike(moved(moved(back, np.ones(len(matrix))), -np.ones(len(matrix))), scene)
+
+
+def test_all_kinds_of_scenes_are_drawn():
+    scenes = [draw(seed) for seed in range(300)]
+    masonry = [scene for scene in scenes if scene["place"] != "wall"]
+    devices = {device["kind"] for scene in masonry for device in scene["devices"]}
+    assert {scene["place"] for scene in scenes} == set(PLACES)
+    assert {scene["solver"] for scene in scenes} == {"explicit", "MuJoCo", "theory"}
+    assert len({scene["kind"] for scene in masonry}) == 9
+    assert devices == {"tie", "damper", "friction damper", "thrust", "load", "mass", "jack"}
+    for name in ("bond", "record", "tilt", "kick", "supports"):
+        assert 0.05 < np.mean([bool(scene[name]) for scene in masonry]) < 0.8
+    assert max(len(scene["units"]) for scene in masonry) <= 13
+
+
+def test_what_is_not_the_same_is_told():
+    """Without its twin in stiffness a denser scene moves otherwise, and a nudge of k_n does not."""
+    trial = Trial(draw(STACK))
+    denser = changed(trial.scene, lambda name, value: 2 * value if name == "density" else value)
+    assert trial.twin(denser) > 1e-4
+    assert 0 < trial.nudged < 1e-9
+    assert not INVARIANCES["heavier"].allows(trial, 1e-4)
+    assert INVARIANCES["twice"].allows(trial, 0.0)
+    assert not INVARIANCES["twice"].allows(trial, 1e-16)
+
+
+def test_an_error_that_is_not_named_is_told(monkeypatch):
+    def fail(self):
+        raise IndexError("list index out of range")
+
+    monkeypatch.setattr(Masonry, "__post_init__", fail)
+    assert "IndexError" in judge(0)["unnamed"]
+
+
+def test_a_warning_of_numpy_is_an_error():
+    with overheard(), pytest.raises(RuntimeWarning, match="divide by zero"):
+        np.float64(1.0) / np.float64(0.0)
+
+
+def test_the_table_names_the_seeds():
+    rows = [
+        {"seed": 7, "place": "plane", "kind": "stack", "wrong": [], "apart": {"twice": ("unexplained", 1e-9)}},
+        {"seed": 8, "place": "space", "kind": "rain", "refused": "ValueError: block_3 at 2.5 m"},
+        {"seed": 9, "place": "space", "kind": "rain", "crashed": "exit code -11"},
+    ]
+    text = table(rows)
+    assert "3 scenes, 1 answered, 1 refused, 0 unnamed, 1 crashed" in text
+    assert next(line for line in text.splitlines() if line.startswith("twice")).split()[-2:] == ["1", "7"]
+    assert "ValueError: # at # m" in text
+    assert "crashed: space 9: exit code -11" in text
+
+
+def test_the_page_has_the_table_of_the_code():
+    text = PAGE.read_text(encoding="utf-8")
+    for name, row in INVARIANCES.items():
+        title = row.run.__doc__.splitlines()[0]
+        assert f"| `{name}` | {title} | {row.bounds} | {row.reason} |" in text
+
+
+def test_a_force_that_is_left_out_is_told():
+    """The balances of a stack with a damper hold to rounding, and not without the damper."""
+    scene = draw(STACK)
+    held = scene["units"][1]
+    at = held["parts"][0]["corners"].mean(axis=0)
+    damper = {"kind": "damper", "block": held["name"], "at": at, "reach": np.array([-1.0, 0.0]), "damping": 1e4}
+    trial = Trial(scene | {"devices": [damper]})
+    answer = solve(trial.scene | {"timestep": trial.step}, output_step=trial.step, forces=True)
+    assert is_stepwise(answer)
+    assert max(unbalanced(answer), unbalanced_bodies(answer)) < 1e-9
+    object.__setattr__(answer.kept_forces, "links", {"damper_0": np.zeros(len(answer.t))})
+    assert unbalanced_bodies(answer) > 1e-4
