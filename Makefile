@@ -83,6 +83,7 @@ figures: $(DOCS) # the pictures and tables of the README; RECORDS=folder takes r
 	$(BIN)/python scripts/checks/hard_cases.py --out docs/figures
 	$(BIN)/python scripts/checks/trouble.py --out docs/figures
 	$(BIN)/python scripts/measure/work_precision.py --out docs/figures
+	$(BIN)/python scripts/measure/records_accuracy.py --out docs/figures
 	$(BIN)/python scripts/peers/peers.py --out docs/figures
 	$(BIN)/python scripts/measure/masonry_precision.py --out docs/figures
 	$(BIN)/python scripts/measure/stack_losses.py --out docs/figures

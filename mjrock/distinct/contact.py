@@ -43,7 +43,8 @@ OPEN = 1.0
 TURNED_OVER = 2 * OPEN
 """Gap of a line whose block has turned over [m]. The contact is gone for good."""
 PASSES = 3
-"""Passes over the lines that touched in a step, which change the rates of each other."""
+"""Passes over the lines that touched in a step, which change the rates of each other. A pass takes the rates of all
+lines before it strikes any, so that it does not matter in which order they stand."""
 
 
 class Meeting(NamedTuple):
@@ -208,7 +209,7 @@ def press_lines(
             drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
         elif line.friction > 0:
             books.active[active] = p
-            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, meet.arm, meet.face_arm, velocity)
+            list_rigid(system, line, (len(axes) - 1) * active, meet.normal, (meet.arm, meet.face_arm), velocity, kick)
             begin(system, line, (len(axes) - 1) * active, shear_limit(line, push), kick, axes)
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))
@@ -246,7 +247,10 @@ def settle_touches(system: System, books: Books, count: int, kick: float, axes: 
             line = system.lines[books.touched[i]]
             meet = meeting(system, line, axes)
             rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet, axes))
-            impulse = due_impulse(line, rate) - books.struck[i]
+            books.asked[i] = due_impulse(line, rate) - books.struck[i]
+        for i in range(count):
+            line, impulse = system.lines[books.touched[i]], books.asked[i]
+            meet = meeting(system, line, axes)
             strike_body(system.bodies[line.body], meet.arm, scaled(impulse, meet.normal))
             if line.face >= 0:
                 strike_body(system.bodies[line.face], meet.face_arm, scaled(-impulse, meet.normal))

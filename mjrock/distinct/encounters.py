@@ -174,6 +174,7 @@ class Encounters:
             found = self.finder.found(motion.poses, reach, seen.stale, intact)
             soon = np.empty(len(found.gap), dtype=bool)
             wait(found, motion, self.sizes, seen, soon, self.reach.look)
+            soon &= found.share > 0
             of_gone = np.append(worn[self.wear.pairs], ~stays)
             if soon.any() or of_gone.any():
                 system = self._renewed(system, books, motion.poses, found.only(soon), of_gone, h)

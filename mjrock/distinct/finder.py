@@ -55,7 +55,7 @@ class Found(NamedTuple):
         place: halfway between the two surfaces [m], shape (n, d).
         normal: unit vector out of the face, shape (n, d).
         gap: between the surfaces, negative for an overlap [m], shape (n,).
-        share: of what the pair has, shape (n,).
+        share: of what the pair has, zero where no face lies over the other, shape (n,).
         area: of the part of a face that lies over the other [m2], in the plane its length [m], zero for edges, (n,).
     """
 
@@ -273,8 +273,23 @@ def find_pair(
             if across > EDGES * gap:
                 return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
     if cells[0] > 1:
-        return lay_out(solids, face, blocks, cells, table, count, room)
-    return clip(solids, face, blocks, table, count, room)
+        last = lay_out(solids, face, blocks, cells, table, count, room)
+    else:
+        last = clip(solids, face, blocks, table, count, room)
+    return last if last > count else pass_by(solids, face, blocks, best, table, count)
+
+
+@inlined
+def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Array, count: int) -> int:
+    """Write a corner of a face that another block is near and does not lie over, as two that come together at their
+    corners: a place without a share, so that it is known when to look again. Returns how many places there are then."""
+    corner = solids.first[face]
+    for i in range(corner, solids.first[face + 1]):
+        if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
+            corner = i
+    write_place(table, count, blocks, corner_of(solids, corner), normal_of(solids, face), gap)
+    table[count, 9], table[count, 10] = 0.0, 0.0
+    return count + 1
 
 
 @inlined

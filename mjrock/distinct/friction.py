@@ -27,6 +27,7 @@ from ..geometry.vectors import (
     put,
     scaled,
     spin_components,
+    spun,
     tangent,
     tangents,
     times,
@@ -151,8 +152,19 @@ def list_way(
 
 
 @inlined
+def swept(system: System, line: Row, arm: Vector, face_arm: Vector) -> Vector:
+    """Acceleration of the point of a line over its face that turning alone makes, towards both centroids [m/s2]."""
+    spin = spin_components(system.bodies[line.body].spin, arm)
+    towards = spun(spin, spun(spin, arm))
+    if line.face >= 0:
+        spin = spin_components(system.bodies[line.face].spin, arm)
+        towards = minus(towards, spun(spin, spun(spin, face_arm)))
+    return towards
+
+
+@inlined
 def list_rigid(
-    system: System, line: Row, first: int, normal: Vector, arm: Vector, face_arm: Vector, velocity: Vector
+    system: System, line: Row, first: int, normal: Vector, arms: tuple[Vector, Vector], velocity: Vector, h: float
 ) -> None:
     """Prepare the ways of a line that sticks rigidly.
 
@@ -161,17 +173,20 @@ def list_rigid(
         line: the line.
         first: number of its first way.
         normal: of its face.
-        arm, face_arm: from the two centroids to where friction acts [m].
+        arms: from the two centroids to where friction acts [m].
         velocity: of the point there against its face, before the forces act [m/s].
+        h: length of a step [s].
     """
-    a = system.ways[first]
+    arm, face_arm = arms
+    a, drift = system.ways[first], scaled(0.5 * h, swept(system, line, arm, face_arm))
     if len(normal) == 2:
         list_way(system, line, first, tangent(normal), arm, face_arm, velocity)
-        a.stiffness = 1 / a.compliance
+        a.stiffness, a.drift = 1 / a.compliance, dot(tangent(normal), drift)
         return
     b, (way, other) = system.ways[first + 1], tangents(normal)
     list_way(system, line, first, way, arm, face_arm, velocity)
     list_way(system, line, first + 1, other, arm, face_arm, velocity)
+    a.drift, b.drift = dot(way, drift), dot(other, drift)
     a.coupling = dot(spin_components(a.lever, normal), spin_components(b.spin, normal))
     if line.face >= 0:
         a.coupling += dot(spin_components(a.lever_on_face, normal), spin_components(b.spin_of_face, normal))
@@ -241,13 +256,17 @@ def begin(system: System, line: Row, first: int, held: float, kick: float, axes:
 
 @inlined
 def stopping(system: System, first: int, axes: tuple[int, ...]) -> Vector:
-    """The impulses along its ways that stop the slip of a line as far as its face can [N s]."""
+    """The impulses along its ways that stop the slip of a line in the middle of the step as far as its face can [N s].
+
+    Its slip at the pose is then the drift before the forces act, and less the drift after them: a line that sticks
+    takes nothing, and stays where it is.
+    """
     a = system.ways[first]
-    slip, limit = slip_along(system, a, axes), a.limit
+    slip, limit = slip_along(system, a, axes) + a.drift, a.limit
     if len(axes) == 2:
         return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.ways[first + 1]
-    other = slip_along(system, b, axes)
+    other = slip_along(system, b, axes) + b.drift
     along = a.impulse - (a.stiffness * slip - a.shared * other)
     across = b.impulse - (b.stiffness * other - a.shared * slip)
     if along * along + across * across > limit * limit:  # it slips, and friction is against the slip

@@ -39,6 +39,9 @@ ALIKE = 0.7
 """Cosine of the angle between the normals of two places that are the same [-]."""
 REGAINED = 1.25
 """Largest factor by which a find raises what presses of the overlap of a place [-]."""
+HAIR = 1e-9
+"""Opening at which a place begins that nothing presses at, over its overlap [-]. So it is not rounding that decides
+whether it has touched."""
 AS_NEAR = 1 + 1e-6
 """Square of the distance of a place over that of the nearest one up to which it is as near [-]."""
 
@@ -181,19 +184,19 @@ def nearest(lines: Lines, ends: tuple[int, int], at: Vector) -> tuple[int, float
 def pressed_at(
     i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks, axes: tuple[int, ...]
 ) -> float:
-    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`."""
+    """What presses of the overlap of place i [m], if a line of its pair was there, see `hand_over`. It is that of the
+    nearest line of such a normal: at a corner two joints of a pair may have their lines."""
     overlap: float = max(-found.gap[i], 0.0)
-    face, other = found.face[i], found.other[i]
-    if overlap == 0 or ends[0] == ends[1]:
-        return 0.0
-    j, off = nearest(gone, ends, vector(found.place, i, axes))
-    there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
-    alike = sense * there.sense * dot(vector(found.normal, i, axes), there.normal)
-    deep = dot(vector(found.normal, i, axes), minus(there.at, vector(found.place, i, axes)))
-    beside = math.sqrt(max(off * off - deep * deep, 0.0))
-    if beside >= BESIDE * min(blocks.sizes[face], blocks.sizes[other]) or alike <= ALIKE:
-        return 0.0
-    pressed: float = max(overlap - gone.slack[j], 0.0)
+    face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, axes), vector(found.normal, i, axes)
+    bound, best, least = (BESIDE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
+    for j in range(ends[0], ends[1] if overlap > 0 else ends[0]):
+        square = square_between(gone, j, at)
+        if square < least:
+            there, sense = place_of(gone.rows[j], face + other, blocks, axes), 1.0 if other > face else -1.0
+            deep = dot(normal, minus(there.at, at))
+            if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > ALIKE:
+                best, least = j, square
+    pressed: float = max(overlap - gone.slack[best], 0.0) if best >= 0 else 0.0
     return pressed
 
 
@@ -255,11 +258,13 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks, axes: tuple[int, ...]) -> None:
     """Let a line take over a share of the friction of one that is gone, and of its push of the last step.
 
-    Of a spring along the face the force is kept, as that of rigid friction is.
+    Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest
+    gives its rate.
     """
     poses, old, new = blocks.poses, place_of(gone, both, blocks, axes), place_of(line, both, blocks, axes)
     line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
-    line.depth, line.rate = max(line.depth, gone.depth), gone.rate
+    if gone.depth > line.depth or line.depth == 0:
+        line.depth, line.rate = gone.depth, gone.rate
     grip = scaled(share, spin_components(gone.grip, axes))
     if len(axes) == 3 and gone.face >= 0:
         grip = turned(poses, old.face, grip)
@@ -311,7 +316,8 @@ def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Block
             new.depth[i] = pressed_at(i, found, gone, ends, blocks, axes)
         press(new, (begin, end), found, gone, ends)
         for i in range(begin, end):
-            new.slack[i] = max(-found.gap[i], 0.0) - new.depth[i]
+            overlap = max(-found.gap[i], 0.0)
+            new.slack[i] = overlap - new.depth[i] if new.depth[i] > 0 else (1 + HAIR) * overlap
             write_line(new.rows[i], i, new.slack[i], found, blocks, axes)
             put(new.at[i], place_of(new.rows[i], both, blocks, axes).at)
         for j in range(ends[0], ends[1]):

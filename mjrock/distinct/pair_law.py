@@ -121,9 +121,12 @@ class PairLaw(NamedTuple):
         both, fixed = self.of_block[0][ends], self.fixed[ends]
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
-        first = both[0, :, 0] <= both[1, :, 0]
-        rules = np.where(fixed[0] | (~fixed[1] & ~first), *self.loose[ends[::-1]])
-        return np.where(first[:, None], *both), rules
+        less, more = both[0] < both[1], both[0] > both[1]
+        unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
+        first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
+        second = fixed[0] | (~fixed[1] & ~first)
+        rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
+        return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
 
 
 def part_of_face(over: Array) -> Array:
@@ -163,6 +166,6 @@ def _of_loose(masonry: Masonry, joints: Array, friction: Array, loose: Flags) ->
     largest = np.reshape(areas, (-1, 1))
     per_area = joints[softest] / joints[softest, -1]
     if not masonry.in_space:
-        length = np.array([block.length for block in blocks]).reshape(-1, 1)
+        length = np.array([block.length for block in masonry.polygons])[loose][:, None]
         per_area = per_area * np.append(length / masonry.joints[softest].length * np.ones(4), np.ones_like(length), 1)
     return largest * per_area, np.full(len(blocks), friction[softest])

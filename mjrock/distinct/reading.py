@@ -171,7 +171,8 @@ def require_sound(run: Run, stats: Mapping[str, Any]) -> None:
     work, left, there = looks["ground"] + looks["driven"], looks["ends"].sum(axis=1), run.above_rest(looks)
     given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(looks["kinetic"].max())  # what falls below its rest has more
-    scale = max(given, kinetic, run.rounding / ENERGY_GAIN)
+    elastic = float(looks["elastic"].max())  # and masonry that is wedged, or pushed by supports
+    scale = max(given, kinetic, elastic, run.rounding / ENERGY_GAIN)
     try:
         require_no_gain(run.looked, there - work + left, scale)
     except StepError as gain:

@@ -137,6 +137,7 @@ def _way(d: int, s: int) -> Fields:
         *_number("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
         *_number("stiffness", "shared"),  # impulse that stops a slip of 1 m/s along the way, and along the other [kg]
         *_number("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
+        *_number("drift"),  # slip that turning bodies gain from the pose to the middle of the step [m/s]
     ]
 
 

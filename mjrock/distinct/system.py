@@ -79,7 +79,7 @@ class Books(NamedTuple):
             supports; and of `push`, the acceleration of the ground in the last step [m/s2].
         active, touched: room for the numbers of the lines that stick rigidly, and of those that met or left their face
             in the last step, shape (m,) each.
-        struck: what their springs did for that in this step [N s], likewise.
+        struck, asked: what their springs did for that in this step, and what they still ask for [N s], likewise.
     """
 
     dashpots: Array
@@ -93,6 +93,7 @@ class Books(NamedTuple):
     active: Integers
     touched: Integers
     struck: Array
+    asked: Array
 
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
@@ -101,16 +102,16 @@ class Books(NamedTuple):
         sizes = groups, ties, ties, len(system.dampers) + driven, driven, 2, 3
         dashpots, yielding, broken, dampers, actuators, ends, bonds = (np.zeros(size) for size in sizes)
         active, touched = (np.zeros(len(system.lines), dtype=np.int64) for _ in range(2))
-        totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros(len(active))
+        totals, struck = rows(kinds(len(system.axes)).total, 1), np.zeros((2, len(active)))
         work = dashpots, yielding, broken, dampers, actuators, ends, bonds
-        return cls(*work, totals, active, touched, struck)
+        return cls(*work, totals, active, touched, *struck)
 
     def with_room(self, lines: int) -> Books:
         """The books with room for so many lines."""
         if lines <= len(self.active):
             return self
         active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
-        return self._replace(active=active, touched=touched, struck=np.zeros(lines))
+        return self._replace(active=active, touched=touched, struck=np.zeros(lines), asked=np.zeros(lines))
 
     @property
     def size(self) -> int:

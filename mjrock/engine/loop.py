@@ -17,12 +17,13 @@ from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array
 from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
-from .pace import Pace, judged, step_of, while_loaded, while_taut
+from .pace import Pace, approached, judged, step_of, while_loaded, while_taut
 from .points import Points, Reach
 from .progress import Progress, StepClock
 from .record import Record
 from .rows import set_rows
 from .setting import Setting, push
+from .shaken import add_change, find_answer, is_shaken, take_mean
 from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
 from .sticking import Moved, put_sticking_edges_back
 from .touches import Openings, closure_changed, follow_openings, step_to_break, step_to_touch
@@ -73,11 +74,16 @@ def out_of_reach(reach: Reach, openings: Openings) -> bool:
 
 
 @inlined
-def at_the_pose(memory: EngineArrays, setting: Setting, state: Progress, previous: float) -> None:
-    """Velocity and acceleration at the time of the pose, from the last step and its rate of change, gaps and slack."""
+def at_the_pose(memory: EngineArrays, setting: Setting, state: Progress, t: float, previous: float) -> None:
+    """Velocity at the time of the pose, and acceleration after it, from the last step and its rate of change; gaps and
+    slack."""
     for j in range(len(state.rate)):
         state.acceleration_now[j] = state.acceleration[j] + state.rate[j] * previous
         state.velocity_now[j] = memory.velocity[j] + 0.5 * previous * state.acceleration_now[j]
+    if previous > 0:
+        half = 0.5 * previous
+        add_change(state.shaken, setting.ground, t - 0.5 * half, half, half, state.velocity_now)
+        add_change(state.shaken, setting.ground, t + half, previous, 1.0, state.acceleration_now)
     follow_now(setting, state)
 
 
@@ -97,11 +103,16 @@ def follow_now(setting: Setting, state: Progress) -> None:
 
 
 @inlined
-def shift_velocity(memory: EngineArrays, state: Progress, step: float, previous: float) -> None:
+def shift_velocity(
+    memory: EngineArrays, setting: Setting, state: Progress, t: float, step: float, previous: float
+) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
-    late, lag = 0.5 * (step - previous), previous - 0.25 * (previous + step)
+    if is_shaken(setting.ground):
+        find_answer(memory, setting, state.sliding, state.frames, state.shaken, t)
+    late, middle = 0.5 * (step - previous), 0.25 * (previous + step)
     for j in range(len(state.rate)):
-        memory.velocity[j] -= late * (state.acceleration[j] + lag * state.rate[j])
+        memory.velocity[j] -= late * (state.acceleration[j] + (previous - middle) * state.rate[j])
+    add_change(state.shaken, setting.ground, t - middle, abs(late), -late, memory.velocity)
 
 
 @inlined
@@ -134,19 +145,17 @@ def release(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Ar
 
 @inlined
 def change_of_acceleration(
-    memory: EngineArrays, setting: Setting, state: Progress, previous: float, step: float, no_rate: bool
+    memory: EngineArrays, setting: Setting, state: Progress, t: float, previous: float, step: float, no_rate: bool
 ) -> float:
-    """(h |da|)^2 of the step just made; brings acceleration and rate up to date."""
-    change, masses = 0.0, setting.masses
-    for j in range(len(masses)):
-        difference = memory.acceleration[j] - state.acceleration[j]
-        change += masses[j] * difference * difference
-        state.change[j] = difference
-        state.rate[j] = 0.0 if no_rate else difference / previous
+    """(h |da|)^2 of the step just made, but for the answer to the ground; brings acceleration and rate up to date."""
+    for j in range(len(state.change)):
+        state.change[j] = memory.acceleration[j] - state.acceleration[j]
         state.acceleration[j] = memory.acceleration[j]
-    if len(setting.products) > 0:
-        change += coupling(setting.products, state.change)
-    return step * step * change
+    add_change(state.shaken, setting.ground, t, step, -1.0, state.change)
+    take_mean(state.shaken, setting.ground, t, step)
+    for j in range(len(state.change)):
+        state.rate[j] = 0.0 if no_rate else state.change[j] / previous
+    return step * step * kinetic(setting.masses, setting.products, state.change)
 
 
 @inlined
@@ -205,12 +214,12 @@ def fitted_loop(
     """
     t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
-    axes = points.places.axes
+    axes, shaken = points.places.axes, is_shaken(setting.ground)
     if previous == 0:
         set_step(memory, points, pace, allowed)
         before_the_release(memory, setting, state, allowed)
     while n < len(record.t) and not ended:
-        at_the_pose(memory, setting, state, previous)
+        at_the_pose(memory, setting, state, t, previous)
         if closure_changed(openings, state.closed) and previous > pace.short and not no_rate:
             acceleration_from_engine(memory, setting, state, t)
             allowed, calm_steps, no_rate = pace.short, 0, True
@@ -220,7 +229,10 @@ def fitted_loop(
         least = pace.method.faded * pace.accuracy * energy
         to_touch = 0.0
         if not unpredictable:
-            to_touch = step_to_touch(state.springs, openings, step, allowed, least, pace.short, state.touches)
+            ahead = step / pace.method.approach if shaken else step
+            to_touch = step_to_touch(state.springs, openings, ahead, allowed, least, pace.short, state.touches)
+            if shaken:
+                step, to_touch = approached(pace, step, to_touch)
             to_break = step_to_break(setting.ties, openings, step, pace.short)
             if to_break > 0 and not 0 < to_touch < to_break:
                 to_touch = to_break
@@ -233,13 +245,13 @@ def fitted_loop(
             release(memory, setting, sliding, state.frames, state.velocity_now)
             copy_into(memory.acceleration, state.acceleration)
         elif step != previous:
-            shift_velocity(memory, state, step, previous)
+            shift_velocity(memory, setting, state, t, step, previous)
             set_step(memory, points, pace, step)
         record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
         sliding_turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting, state, previous, step, no_rate or sliding_turned) / energy
+        change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned) / energy
         unpredictable = change > pace.method.abrupt**2
         settle_pose(memory, setting, pace, state, record, n)
 

@@ -7,7 +7,9 @@ The lengths follow from the contacts, the rocking and an error estimate:
   it is no longer than the time step of the record;
 * between the two, a step is halved when the acceleration changed by too much in it, h |da| more than
   change x accuracy x |v|, and doubled after two steps in a row that changed by less than a quarter of that. |.| weighs
-  with the masses, and |v| is the speed at which the bodies arrived at their last touch;
+  with the masses, and |v| is the speed at which the bodies arrived at their last touch. What bodies answer to the
+  ground does not count, see `mjrock.engine.shaken`;
+* on a shaken base a touch is approached: a step ends before it, but for the last short ones;
 * a loaded contact stays loaded: no step moves a loaded point by more than the share `stays` of its penetration through
   the velocities alone;
 * no step is longer than a taut tie is integrated well in, and a tie that can yield is met at its greatest length.
@@ -146,6 +148,18 @@ def while_taut(pace: Pace, ties: Ties, openings: Openings, h: float) -> float:
         if ties.stretch[i] < math.inf and g < 0 and g1 < 0 and g1 + h * g2 > 0:
             h = -g1 / g2
     return max(h, pace.short)
+
+
+@inlined
+def approached(pace: Pace, step: float, to_touch: float) -> tuple[float, float]:
+    """The step on moving ground, and the step to a touch, zero where none is met in it [s].
+
+    A touch that is predicted from the motion of now comes earlier or later as the ground goes on, the more the further
+    ahead it is. So one that is not near is approached only.
+    """
+    if to_touch > pace.method.near * pace.short:
+        return min(step, pace.method.approach * to_touch), 0.0
+    return step, to_touch if to_touch <= step else 0.0
 
 
 @inlined

@@ -11,6 +11,7 @@ from ..quantities import Array, Flags
 from .memory import EngineArrays
 from .pace import Pace
 from .setting import Setting
+from .shaken import Shaken
 from .sliding import Sliding
 from .sticking import Joints
 from .touches import Openings, Springs, Touches
@@ -31,6 +32,7 @@ class Progress(NamedTuple):
         springs: of the contacts and the ties.
         joints: where sticking edges stuck.
         sliding: which contacts slide.
+        shaken: the ground in the last step, and how the bodies answer to it.
     """
 
     acceleration: Array
@@ -46,6 +48,7 @@ class Progress(NamedTuple):
     springs: Springs
     joints: Joints
     sliding: Sliding
+    shaken: Shaken
 
     @classmethod
     def of(cls, memory: EngineArrays, setting: Setting, joints: Joints, sliding: Sliding) -> Progress:
@@ -56,7 +59,7 @@ class Progress(NamedTuple):
         acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
         rates = acceleration, rate, change, velocity_now, acceleration_now
         touching = Openings.of(springs), closed, Touches.of(springs), springs
-        return cls(*rates, frames, frames.copy(), *touching, joints, sliding)
+        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, Shaken.of(setting))
 
 
 class StepClock(NamedTuple):

@@ -41,6 +41,10 @@ from .stepping import fitted_steps, fixed_steps
 
 Asked = tuple[Case | MasonryCase, Contacts | None]
 """A case and its contacts; those of masonry are its own."""
+ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
+"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground. Rocking under a record
+multiplies an error of its first impacts, two-sided by some 10 in the median and by more than 100 in one of ten
+(`scripts/measure/records_accuracy.py`)."""
 SPACING = 1e-3
 """Distance of samples between fitted steps, where none is asked for [s]."""
 
@@ -135,7 +139,7 @@ def simulate(
     contacts: Contacts | None = None,
     timestep: float | None = None,
     *,
-    accuracy: float = 1e-3,
+    accuracy: float | None = None,
     newmark_beta: float = 0.25,
     coulomb: bool | None = None,
     output_step: float | None = None,
@@ -150,8 +154,10 @@ def simulate(
         case: the wall, its release, its sides; or masonry and what moves it. Masonry settles under its weight first.
         contacts: the interfaces of the wall; masonry has its own joints.
         timestep: a fixed step [s]; None lets the steps fit the motion, see `mjrock.engine.stepping`.
-        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy [-], 1e-8 to 0.1. A run in
-            which energy appears from nowhere is discarded and repeated with a tenth of it, twice at most.
+        accuracy: what fitted steps aim at, as a relative tolerance on rotation and energy from one impact to the next
+            [-], 1e-8 to 0.1. None stands for 1e-3, and for 1e-4 for a wall on moving ground, whose rocking multiplies
+            what an impact errs by. A run in which energy appears from nowhere is discarded and repeated with a tenth of
+            it, twice at most.
         newmark_beta: Newmark's beta of the contact rows at a fixed step [-], 0 to 10, see `mjrock.engine.solref`.
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None stands for True where
             steps fit the motion, and for False at a fixed step, which then is the model text, stepped by MuJoCo.
@@ -187,6 +193,7 @@ def simulate(
     """
     watch = Stopwatch()
     require_case(case, contacts)
+    accuracy = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
     if isinstance(case, MasonryCase):
         require_still(case)
@@ -227,6 +234,11 @@ def simulate(
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     return response
+
+
+def default_accuracy(case: Case | MasonryCase) -> float:
+    """What fitted steps aim at where nothing else is asked for [-]."""
+    return ACCURACY_SHAKEN if isinstance(case, Case) and case.shaken else ACCURACY
 
 
 def fitted(asked: Asked, scene: Scene, course: Course, options: Options) -> tuple[EngineRun, dict[str, Any]]:

@@ -69,7 +69,7 @@ class Ledger:
         elastic: in the springs of the contacts.
         dashpots: work that the dashpots have taken since the release, by group of contacts: "base" and "side" of a
             wall.
-        friction: work that friction has taken since the release.
+        friction: work that friction has taken since the release. It gives none back beyond the error of the steps.
         ground: work that the ground motion has put in, as seen from the base, and with it that of supports that are
             moved.
         actuators: work that each actuator has put in since the release, by its name: its force times the way of its
@@ -78,8 +78,10 @@ class Ledger:
         broken: elastic energy that ties have lost by breaking since the release, by tie; only those that may break.
         ends: energy that contacts of masonry have lost at the ends of faces since the release, those of "joints" and
             of "encounters". A contact that passes the end of its face leaves what its spring held, and its force
-            turns from the normal of one face to that of the other. Negative where energy was gained.
-        bonds: what bonds of mortared joints have taken since the release, in "tension", "slip" and "crushing".
+            turns from the normal of one face to that of the other. Contacts that are found anew may hold more along
+            their faces than those before them. Negative where energy was gained.
+        bonds: what bonds of mortared joints have taken since the release, in "tension", "slip" and "crushing"; in slip
+            no more than the force along the joint has done.
     """
 
     t: Array

@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.collapse import Collapse, limit_of, pushed
-from ..problem.masonry.effects import applied, dragged
+from ..problem.masonry.effects import applied, dragged, pulls_of
 from ..problem.masonry.lines import slips
 from ..problem.masonry.masonry import Masonry
-from ..problem.masonry.statics import MOVES, falling
+from ..problem.masonry.statics import MOVES, Pulls, falling
 from ..problem.wall.effect import Effect
 from ..problem.wall.effects import AddedMass, Load, Thrust
+from ..problem.wall.tie import Tie
 from ..quantities import (
     Array,
     Implausible,
@@ -77,16 +78,17 @@ def collapse_multiplier(
         loads: further forces that grow with the multiplier, by the name of their block: at its centroid along x and z
             [N], or with the moment about it, positive where it turns the top to the right [N m], shape (2,) or (3,); in
             space forces along x, y and z, or with three moments, shape (3,) or (6,).
-        effects: what is constant beside the weight, `Load` and `Thrust`, and `AddedMass`, whose inertia grows with that
-            of the blocks. Each names its block as in a `MasonryCase`.
+        effects: what is constant beside the weight, `Load` and `Thrust`, `AddedMass`, whose inertia grows with that of
+            the blocks, and `Tie`, which pulls with up to its strength however far it is drawn out, and is not slack.
+            Each names its block as in a `MasonryCase`.
 
     Returns:
         The `Collapse`: `multiplier` [-], and the mechanism and the forces of the joints at it.
 
     Raises:
         TypeError, ValueError: for masonry that falls under its weight and what is constant, with the names of the
-            blocks, a direction or a load out of range, an effect that is no constant force, or if no state without
-            dilatancy is found.
+            blocks, a direction or a load out of range, an effect of another kind or a slack tie, or if no state
+            without dilatancy is found.
 
     Warns:
         Implausible: for blocks that stand only by wedging, and where no torsion is borne without dilatancy.
@@ -102,16 +104,18 @@ def collapse_multiplier(
         masonry.require_dry("collapse_multiplier without dilatancy")
     none = direction is None and angle is None
     push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
-    given = _constant(masonry, effects)
+    given = _required(masonry, effects)
     grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
-    constant = applied(masonry, given)
-    falls = falling(masonry, constant)
+    links = tuple(effect for effect in given if isinstance(effect, Tie))
+    strength, constant = np.array([tie.strength for tie in links]), applied(masonry, given)
+    ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
+    falls = falling(masonry, constant, ties)
     if falls:
         under = "the weight and the effects" if given else "the weight"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under {under}")
-    found = limit_of(masonry, push, grown, constant, associated=dilates)
+    found = limit_of(masonry, push, grown, constant, associated=dilates, ties=ties)
     found = replace(found, wedged=wedged(masonry, given))
     if found.wedged:
         warnings.warn(
@@ -120,7 +124,7 @@ def collapse_multiplier(
             Implausible,
             stacklevel=2,
         )
-    if not dilates and (turning := _turning(found, grown, constant)):
+    if not dilates and (turning := _turning(found, grown, constant, ties)):
         warnings.warn(
             f"multiplier = {abs(found.multiplier):.1g}: {named(turning)} turn about their normals without friction, "
             "since rigid faces let normal forces gather in a point; give points = 2, or associated=True for an upper "
@@ -131,25 +135,30 @@ def collapse_multiplier(
     return found
 
 
-def _constant(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:
-    """Effects as a case of the masonry takes them. An error names one that is no constant force and no mass."""
+def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:
+    """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
     given = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
     for i, effect in enumerate(given):
-        if not isinstance(effect, Load | Thrust | AddedMass):
+        if not isinstance(effect, Load | Thrust | AddedMass | Tie):
             raise TypeError(
                 f"effects[{i}] is a {type(effect).__name__}, whose force depends on the motion; limit analysis takes "
-                "Load, Thrust and AddedMass"
+                "Load, Thrust, AddedMass and Tie"
+            )
+        if isinstance(effect, Tie) and effect.slack > 0:
+            raise ValueError(
+                f"effects[{i}], slack = {effect.slack:g} m: the tie holds nothing as the masonry begins to move; the "
+                "valid value is 0"
             )
     return given
 
 
-def _turning(found: Collapse, grown: Array, constant: Array) -> tuple[str, ...]:
+def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tuple[str, ...]:
     """Names of joints that press and turn about their normals in a mechanism of no multiplier, where only that is why:
     associated friction, which has corners of the faces press, bears something."""
     masonry = found.masonry
     if masonry is None or not masonry.in_space or found.forces is None or abs(found.multiplier) > NOTHING:
         return ()
-    if limit_of(masonry, found.direction, grown, constant).multiplier < BORNE:
+    if limit_of(masonry, found.direction, grown, constant, ties=ties).multiplier < BORNE:
         return ()
     count, lines = len(masonry.joints), masonry.lines
     rates = np.abs(slips(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)

@@ -63,7 +63,8 @@ class Push:
             direction of the force [m], shape (n,).
         force: what the masonry bears: force of the actuator, or horizontal force over the weight of the free blocks,
             each less inertia and damping of the motion [N] or [-], shape (n,).
-        inertia: forces of inertia and of the damping of the motion along the direction, likewise, shape (n,).
+        inertia: forces of inertia and of the damping of the motion, likewise, shape (n,): under an actuator the rate of
+            the momentum along it, under a direction the growth of the kinetic energy over the displacement.
         ended: why it stopped, in words.
         answer: the last piece of the motion, whose `end` carries on.
         unit: of the force, "N" or "-".
@@ -229,6 +230,7 @@ class Load:
             driven = replace(self.actuator, displacement=(t, path))
             case = MasonryCase(self.masonry, t[-1], effects=(*self.effects, driven))
             warnings.filterwarnings("ignore", "explicit steps would take")  # the push has a bar of its own
+            warnings.filterwarnings("ignore", "the ledger does not close")  # the work under the curve is checked
             spacing = t[-1] / (POINTS * SAMPLES)
             answer = solve_explicit(case, output_step=spacing, ledger=True, start=self.start, **self.options)
         *_, force = answer.actuators.values()  # effects may have others

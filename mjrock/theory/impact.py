@@ -86,7 +86,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     if not before.any():
         raise ValueError("velocity is zero everywhere; an impact needs a block that moves")
     blocks, joints = masonry.polygons, masonry.plane_joints
-    ends = lines_of(blocks, joints, np.ones(len(joints)), 2)
+    ends = lines_of(blocks, joints, np.ones(len(joints)), 2, mirrored=False)
     root = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, float(blocks[i].inertia))])
     opens = rates(blocks, ends, ends.normal).toarray() / root
     slips = rates(blocks, ends, ends.along).toarray()[::2] / root  # both ends of a joint slip alike

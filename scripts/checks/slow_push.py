@@ -1,7 +1,7 @@
 """Six walls of the literature by a slow push in explicit steps, beside limit analysis without dilatancy.
 
-The walls are those of `limit_analysis`. A horizontal force in proportion to the weight of each block grows until it is
-no longer borne, and the wall moves on to 10 mm. Joints have k_n = k_s = 1e10 N/m3, and nothing is fitted. Prints the
+The walls are those of `limit_analysis`. A horizontal force in proportion to the weight of each block moves the centroid
+of all blocks by 10 mm. Joints have k_n = k_s = 1e10 N/m3, and nothing is fitted. Prints the
 largest multiplier of each wall beside the published one, and draws the curves.
 """
 

@@ -97,6 +97,28 @@ def test_rigid_friction_that_a_run_has_found_carries_on(in_space):
     np.testing.assert_allclose(second.pose[-1], whole.pose[-1], atol=1e-12)
 
 
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("size", [0.1, 0.002])
+def test_the_default_step_counts_blocks_without_joints(size, in_space):
+    """As if each lay between two others, so that none is softened; splinters shorten it tenfold at most.
+
+    A square on a line at each end with K = k_n a / 2, and K / 2 along it, and the radius of gyration a / 6^1/2: in slip
+    and rocking the matrix over 2 K / m is [[1/2, s/2], [s/2, s^2 / 2 + s^2]] with s = 6^1/2 / 2. A bar of 1 m in space
+    rocks along its length: 12 (1/2)^2 = 3.
+    """
+    blocks = [GROUND, box(3.0, 3.5, 0.0, 0.5), box(0.0, size, 0.6, 0.6 + size)]
+    blocks = [mr.Polyhedron.prism(block) for block in blocks] if in_space else blocks
+    masonry = mr.Masonry(blocks, k_n=K_N, k_s=0.5 * K_N, friction=0.5, xi=0.0)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 0.1, settled=False), output_step=0.1)
+    if size < 0.01:
+        assert run.stats["timestep"] == pytest.approx(0.04 * run.stats["stable_timestep"], rel=0.01)
+        return
+    s = math.sqrt(6) / 2
+    highest = 3.0 if in_space else np.linalg.eigvalsh([[0.5, 0.5 * s], [0.5 * s, 1.5 * s * s]])[-1]
+    bound = 2 / math.sqrt(2 * K_N * size / masonry.blocks[2].mass * highest)
+    assert run.stats["timestep"] == pytest.approx(0.4 * bound, rel=0.02)  # a whole share of the run
+
+
 FALLS = mr.Masonry([GROUND, STANDS, TABLE, box(0.0, 0.2, 1.52, 1.72, name="falls")], k_n=K_N)
 
 

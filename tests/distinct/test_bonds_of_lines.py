@@ -123,6 +123,30 @@ def test_a_bond_that_has_torn_keeps_its_secant_and_presses_with_its_line(d):
 
 @BOTH
 @pytest.mark.parametrize("face", [-1, 0])
+@pytest.mark.parametrize("held", [1.0, 0.9])
+def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
+    """Where crushing limits the force to a ninth of the cohesion, friction pays for nothing."""
+    whole, _ = bonded_line(d, face, 0.0, bears=COHESION / 3, residual=0.0, falls=0.0, c=0.0, c_s=0.0)
+    line, bond, limit = whole.lines[0], whole.bonds[0], COHESION / 9
+    meet = contact.where_friction_rubs(met(whole))
+    velocity = contact.relative(whole.bodies, line, whole.supports, meet, whole.axes)
+    slip = np.array(friction.along_face(meet.normal, velocity))
+    way = slip / np.linalg.norm(slip)
+    grip = held * limit / K_SHEAR * way
+    bond.dragged = -K_SHEAR * grip
+    bond.grip = matrix(3, 0).T @ grip if face == 0 and d == 3 else grip
+    kept = books(whole)
+    bonds.hold_bonds(whole, kept, H, whole.axes)
+    assert np.linalg.norm(bond.dragged) == pytest.approx(limit)
+    work = 0.5 * H * (held + 1) * limit * np.linalg.norm(slip)
+    there = work - 0.5 * (1 - held**2) * limit**2 / K_SHEAR
+    assert 0 < there < COHESION * (1 - bond.left) / WORN
+    assert kept.bonds[1] == pytest.approx(there)
+    assert kept.totals[0].friction == pytest.approx(work - there)
+
+
+@BOTH
+@pytest.mark.parametrize("face", [-1, 0])
 @pytest.mark.parametrize(("push", "slides"), [(1e4, False), (400.0, True), (-300.0, True)])
 def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides):
     """Kept in the axes of the face. Its friction falls from that of a whole bond to the residual one."""

@@ -209,6 +209,7 @@ def test_a_step_that_is_taken_can_be_given():
         solve(masonry, 1e-6, timestep=1e-13)
 
 
+@pytest.mark.filterwarnings("ignore:.*lie inside each other")  # a motion that blows up
 @pytest.mark.parametrize("blocks", [1, 4])
 def test_the_longest_step_is_the_limit_of_stability(blocks, monkeypatch):
     """Beyond the limit the motion blows up, and the run says so."""

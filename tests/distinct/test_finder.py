@@ -212,11 +212,21 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
 
 
 def decided(
-    monkeypatch, apart, *, reach=0.01, outlines=(6.0, 4.0), faces=(0, 6), gap=-0.2, cosine=-1.0, across=-1.0, rows=11
+    monkeypatch,
+    apart,
+    *,
+    reach=0.01,
+    outlines=(6.0, 4.0),
+    faces=(0, 6),
+    gap=-0.2,
+    cosine=-1.0,
+    across=-1.0,
+    rows=11,
+    clipped=1,
 ):
     """How two blocks meet whose faces and edges are so far apart: as edges or along which face, and how deep another
     face may lie that comes into question."""
-    sought = []
+    sought, met = [], []
 
     def shallowest(_, face, blocks, least, *rest):
         sought.append(least)
@@ -230,11 +240,13 @@ def decided(
         "normal_of": lambda _, face: normals[face],
         "across_edges": lambda _, a, b: ((0.0, 0.0, 1.0), across),
         "meet_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
-        "clip": lambda _, face, blocks, table, count, room: ("faces", face, blocks),
+        "clip": lambda _, face, blocks, table, count, room: met.append(("faces", face, blocks)) or count + clipped,
+        "pass_by": lambda _, face, blocks, gap, table, count: met.append(("passes", face, blocks, gap)) or count + 1,
     }.items():
         monkeypatch.setattr(finder, name, what)
     solids = SimpleNamespace(extent=dict(zip(faces, outlines, strict=True)))
-    return finder.find_pair(solids, reach, (0, 1), range(rows), 7, range(4)), *sought
+    count = finder.find_pair(solids, reach, (0, 1), range(rows), 7, range(4))
+    return met[-1] if met else count, *sought
 
 
 def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
@@ -246,6 +258,25 @@ def test_blocks_that_are_farther_than_they_reach_do_not_meet(monkeypatch):
     assert decided(monkeypatch, (0.001, -math.inf), faces=(0, -1)) == (7,)  # all of its faces lie inside
     assert decided(monkeypatch, (-math.inf, 0.001), faces=(-1, 0)) == (7,)
     assert decided(monkeypatch, (0.001, 0.005), faces=(6, 0)) == (("faces", 0, (1, 0)),)
+
+
+@pytest.mark.parametrize("gap", [0.005, -0.1])
+def test_blocks_that_are_near_and_do_not_lie_over_each_other_pass_by(monkeypatch, gap):
+    assert decided(monkeypatch, (gap, -0.3), clipped=0)[0] == ("passes", 0, (0, 1), gap)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_two_corners_that_come_together_are_found_without_a_share(in_space):
+    """Squares that stand on their corners side by side, of which no side lies over one of the other."""
+    turn = np.array([[1.0, -1.0], [1.0, 1.0]]) / math.sqrt(2)
+    blocks = [mr.Polygon(np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) @ turn.T + at) for at in ((0, 0), (1.45, 0.0))]
+    blocks = [mr.Polyhedron.prism(block) for block in blocks] if in_space else blocks
+    pairs, places = found(blocks, reach=0.02)
+    assert pairs == [(0, 1)]
+    np.testing.assert_array_equal((places.share, places.area), np.zeros((2, 1)))
+    np.testing.assert_allclose(
+        places.gap, (1.45 - math.sqrt(2)) / math.sqrt(2), rtol=1e-9
+    )  # along the normal of a side
 
 
 def test_without_room_for_the_most_places_of_a_pair_none_is_written(monkeypatch):

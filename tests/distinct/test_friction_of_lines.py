@@ -22,12 +22,18 @@ def tangential(d):
     return np.array([0.8, -0.6]) if d == 2 else np.array([-0.6, 0.0, 0.45]) / 0.75
 
 
+def listed(whole, line, first, arms, slip, h=0.0):
+    """Prepare the ways of a line. In a step that is no time bodies turn by nothing."""
+    normal = NORMAL[len(whole.axes)]
+    friction.list_rigid(whole, line, first, tuple(normal), tuple(map(tuple, arms)), tuple(slip), h)
+
+
 def rigid(d, on_face=True, held=1e6):
     """A system with one line that sticks rigidly, at a place of body 1 and of the face of body 0 or of a support."""
     whole = system(d)
     line = whole.lines[0]
     line.body, line.face, line.support, line.friction = 1, 0 if on_face else -1, -1 if on_face else 0, 0.5
-    friction.list_rigid(whole, line, 0, *map(tuple, (NORMAL[d], ARM[d], OTHER[d], slip_of(whole, on_face))))
+    listed(whole, line, 0, (ARM[d], OTHER[d]), slip_of(whole, on_face))
     friction.begin(whole, line, 0, held, KICK, whole.axes)
     return whole
 
@@ -200,6 +206,29 @@ def test_a_line_stops_its_slip_where_the_face_holds_it(d, on_face):
 
 
 @BOTH
+@pytest.mark.parametrize("on_face", [True, False])
+def test_a_line_stops_its_slip_in_the_middle_of_the_step(d, on_face):
+    """The arms of bodies that turn are turned by then, and as far back in the middle of the step before."""
+    whole, h = rigid(d, on_face), 2e-3
+
+    def slip_with_arms(turned):
+        """Slip of the place for arms that have turned for a time [m/s]."""
+        slip = -whole.supports.moving[0] * (not on_face)
+        for sign, body, arm in ((1, whole.bodies[1], ARM[d]), (-1, whole.bodies[0], OTHER[d]))[: 1 + on_face]:
+            turning = velocity_at(body, arm) - body.velocity
+            slip = slip + sign * velocity_at(body, arm + turned * turning)
+        return whole.ways["way"] @ slip
+
+    listed(whole, whole.lines[0], 0, (ARM[d], OTHER[d]), slip_of(whole, on_face), h)
+    late, early = slip_with_arms(0.5 * h), slip_with_arms(-0.5 * h)
+    np.testing.assert_allclose(whole.ways["drift"], 0.5 * (late - early), rtol=1e-9)
+    assert np.abs(whole.ways["drift"]).min() > 1e-5
+    whole.ways["limit"] = 1e6
+    friction.stop(whole, 0, whole.axes)
+    np.testing.assert_allclose(slip_with_arms(0.0), -whole.ways["drift"], atol=1e-14)
+
+
+@BOTH
 def test_a_line_stops_its_slip_where_the_face_just_holds_it(d):
     for slower in (1.0, 1e-3):
         held = 1e6
@@ -231,7 +260,7 @@ def test_the_step_towards_sliding_is_that_of_the_loosest_direction():
     """By the larger eigenvalue of what impulses do, with which the search cannot overshoot; shortened where needed."""
     whole = rigid(3)
     whole.bodies["inverse_in_world"] *= 10
-    friction.list_rigid(whole, whole.lines[0], 0, *map(tuple, (NORMAL[3], ARM[3], OTHER[3], slip_of(whole))))
+    listed(whole, whole.lines[0], 0, (ARM[3], OTHER[3]), slip_of(whole))
     values, directions = np.linalg.eigh(compliances(whole))
     loosest, slip = values[-1], directions @ [0.9, 0.3]  # mostly along the other one
     whole.bodies["velocity"][1] += (slip - whole.ways["way"] @ slip_of(whole)) @ whole.ways["way"]
@@ -255,7 +284,7 @@ def many(d, held, count=7):
     for i, line in enumerate(whole.lines):
         line.body, line.face, line.support = 1, -(i % 2), -1 + i % 2
         arms = random.normal(size=(2, d))
-        friction.list_rigid(whole, line, (d - 1) * i, *map(tuple, (NORMAL[d], *arms, np.zeros(d))))
+        listed(whole, line, (d - 1) * i, arms, np.zeros(d))
         friction.begin(whole, line, (d - 1) * i, held, KICK, whole.axes)
     return whole, np.arange(count)
 

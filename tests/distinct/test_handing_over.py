@@ -182,7 +182,7 @@ def test_a_line_was_there_within_a_fifth_of_the_smaller_block_and_with_a_like_no
 
 @pytest.mark.parametrize(("off", "there"), [(0.0999, True), (0.2 * 0.5, True), (math.hypot(0.1, 0.002) + 1e-9, False)])
 def test_at_a_fifth_of_the_smaller_block_no_line_was_there(off, there, monkeypatch):
-    monkeypatch.setattr(handover, "nearest", lambda *given: (0, off))
+    monkeypatch.setattr(handover, "square_between", lambda *given: off**2)
     assert bool(presses(2, gone_at(2)) > 0) is there
 
 

@@ -30,7 +30,7 @@ def masonry(blocks, ends=ENDS, widths=WIDTHS, residual=RESIDUAL, **known):
         for (low, high), width in zip(ends, widths, strict=True)
     ]
     same = {name: np.ones(len(ends)) for name in ("joint_stiffness", "joint_shear", "retardation")}
-    given = {"joints": joints, "in_space": blocks[0].in_space, "residual_friction": residual}
+    given = {"joints": joints, "in_space": blocks[0].in_space, "residual_friction": residual, "polygons": blocks}
     return SimpleNamespace(blocks=blocks, **given, **same | {name: np.array(each) for name, each in known.items()})
 
 
@@ -171,6 +171,15 @@ def test_the_softer_block_of_two_is_taken_whichever_comes_first():
         found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
         one = found.of_places(np.array([0 * 4 + 2]), np.ones(1), np.full(1, 1e9), 4)
         assert (one["k"][0], one["friction"][0]) == (4.0, 0.5)
+
+
+@pytest.mark.parametrize("damped", [(0.1, 0.2), (0.2, 0.1)])
+def test_of_two_blocks_as_stiff_the_one_that_is_less_damped_is_taken(damped):
+    """Whichever has the lower number."""
+    given = masonry([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
+    table = rows(kinds(2).line, 2, k=4.0, c=np.array(damped), friction=0.6)
+    found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
+    assert found.of_places(np.array([0 * 4 + 2]), np.ones(1), np.full(1, 1e9), 4)["c"][0] == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("in_space", [False, True])

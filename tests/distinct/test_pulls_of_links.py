@@ -219,6 +219,22 @@ def test_an_actuator_pushes_a_point_along_its_way_to_its_history(d):
 
 
 @BOTH
+def test_an_actuator_without_a_body_pushes_all_in_proportion_to_their_mass(d):
+    whole, row, way = driving(d)
+    row.body = -1
+    whole.bodies["mass"] = [3.0, 5.0]
+    account, shares = books(whole), np.array([3.0, 5.0]) / 8.0
+    rate = 0.4 - shares @ whole.bodies["velocity"] @ way
+    force = 300.0 * (0.05 - (shares @ whole.bodies["place"] @ way - 0.02)) + 2.0 * rate
+    links.pull_links(whole, account, 5.0, H, whole.axes)
+    np.testing.assert_allclose(whole.bodies["force"], np.outer(shares, force * way), rtol=1e-11)
+    np.testing.assert_array_equal(whole.bodies["moment"], 0.0)
+    assert (row.pulled, row.dragged) == pytest.approx((force, 2.0 * rate), rel=1e-11)
+    assert account.driven[0] == pytest.approx(0.5 * H * (5.0 + force) * 0.4, rel=1e-11)
+    assert account.dampers[1] == pytest.approx(0.5 * H * (1.0 + 2.0 * rate) * rate, rel=1e-10)
+
+
+@BOTH
 def test_a_constant_force_acts_at_a_point_and_has_a_potential(d):
     force = np.array([3.0, -2.0, 5.0])[:d]
     whole, _, _ = linked(d, "ground", "forces", between=force)

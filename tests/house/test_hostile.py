@@ -80,6 +80,13 @@ CALLS = OF_NUMBERS | {
         {"wall": WALL, "E": 1e9, "joint": (1e9, 0.01), "frequency": 4.0, "points": 2},
     ),
     "StiffnessRange": (mr.StiffnessRange, {"low": 1e8, "best": 2e8, "high": 3e8, "basis": "a guess"}),
+    "strengths_of_bar": (
+        mr.strengths_of_bar,
+        {
+            "diameter": 0.02, "yield_stress": 235e6, "plate": 0.3, "thickness": 0.5, "shear_strength": 3e4,
+            "compressive_strength": 2e6, "number": 2, "spacing": 1.0,
+        },
+    ),
     "crushed_inset": (mr.crushed_inset, {"wall": WALL, "f_c": 2e6, "load": 1e3}),
     "measured_stiffness": (mr.measured_stiffness, {"wall": WALL, "frequency": 5.0, "points": 2}),
     "layered_stiffness": (

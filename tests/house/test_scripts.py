@@ -27,6 +27,7 @@ WRITES = {
     "trouble": {"trouble.txt"},
     "law_range": {"law_range.txt"},
     "work_precision": {"work_precision.csv", "work_precision.png", "work_precision.txt"},
+    "records_accuracy": {f"records_accuracy.{ending}" for ending in ("png", "csv", "txt")},
     "peers": {"peers.csv", "peers.png", "peers.txt"},
     "masonry_precision": {f"masonry_precision.{ending}" for ending in ("png", "csv", "txt")},
     "convergence": {"convergence.png", "convergence.txt"},
@@ -163,6 +164,7 @@ LONG = {
     "throughput",
     "calibrate",
     "work_precision",
+    "records_accuracy",
     "validate_law",
     "fragility",
 } | {

@@ -8,7 +8,7 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 
 import mjrock as mr
 from mjrock.problem.masonry.limit_state import Programme, states_without_dilatancy
-from mjrock.problem.masonry.statics import weight_of
+from mjrock.problem.masonry.statics import Pulls, weight_of
 from scripts.checks import limit_analysis as study
 
 B, H = 0.4, 1.6
@@ -269,7 +269,7 @@ def test_a_state_that_does_not_hold_is_none():
     masonry = study.masonry_of([[1], [0.5, 0.5]], 0.9)
     grown = np.zeros((3, 3))
     grown[:, 0] = [mr.GRAVITY * masonry.blocks[i].mass for i in masonry.free]
-    programme = Programme.of(masonry, weight_of(masonry), grown, masonry.lines.across)
+    programme = Programme.of(masonry, weight_of(masonry), grown, masonry.lines.across, Pulls.of(masonry))
     state = states_without_dilatancy(programme)[0]
     assert programme.holds(state)
     assert not programme.holds(state._replace(multiplier=state.multiplier + 1e-3))

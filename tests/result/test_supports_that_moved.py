@@ -52,13 +52,16 @@ def test_a_base_that_carries_its_block_leaves_it_or_lifts_it(friction, way, slid
 
 @pytest.mark.parametrize("in_space", [False, True])
 def test_a_lintel_whose_piers_part_falls_between_them(in_space):
-    """Each bears 0.1 m of it and goes by 0.3 m. It has fallen when it is lower by half its height of 0.3 m."""
+    """Each bears 0.1 m of it and goes by 0.3 m. It has fallen when it is lower by half its height of 0.3 m.
+
+    A face is 2 % longer than it is, 2 mm that take 5 ms, and samples are 2 ms apart.
+    """
     piers = [box(-2.5, -0.9, -1, 0, fixed=True, name="left"), box(0.9, 2.5, -1, 0, fixed=True, name="right")]
     floor = box(-4, 4, -3, -2, fixed=True, name="floor")
     masonry = made([*piers, floor, box(-1, 1, 0, 0.3, name="lintel")], in_space, k_n=1e9, xi=0.5)
     run = moved(masonry, 0.9, left=(-0.3, 0), right=(0.3, 0))
     bare = float(np.interp(0.1 / 0.3, EASED, T))
-    assert dict(run.fallen) == {"lintel": pytest.approx(bare + math.sqrt(0.3 / mr.GRAVITY), abs=4e-3)}
+    assert dict(run.fallen) == {"lintel": pytest.approx(bare + math.sqrt(0.3 / mr.GRAVITY), abs=7e-3)}
     assert run.outcome is mr.Outcome.OVERTURNED
     assert "1 block fell" in run.message
     np.testing.assert_allclose(run.sliding, 0.3 * np.interp(0.9, T, EASED), atol=1e-3)

@@ -70,12 +70,62 @@ def test_a_constant_load_stands_beside_loads_that_grow(in_space):
     assert one.forces.normal[0] == pytest.approx(2 * weight)
 
 
+def tie_of(in_space, z, strength, **more):
+    """A tie of the wall at a height to an anchor 3 m behind it."""
+    place = {"at": (0.0, 0.0, z), "anchor": (-3.0, 0.0, z)} if in_space else {"height": z, "length": 3.0}
+    return mr.Tie(stiffness=1e7, strength=strength, ultimate=0.1, block="wall", **place | more)
+
+
+@BOTH
+@pytest.mark.parametrize("associated", [True, False])
+def test_ties_hold_up_to_their_strength_and_what_they_pull_is_said(in_space, associated):
+    """Outwards they yield at (W b / 2 + sum T z) / (W h / 2); inwards they are slack; a third of a thrust is held."""
+    masonry = wall(in_space)
+    weight = masonry.blocks[1].mass * mr.GRAVITY
+    held, turned = weight * 0.5 * THICK, weight * 0.5 * HIGH
+    ties = tie_of(in_space, 1.5, 0.1 * weight), tie_of(in_space, 1.9, 0.05 * weight)
+    out = mr.collapse_multiplier(masonry, 1, associated=associated, effects=ties)
+    assert out.multiplier == pytest.approx((held + weight * (0.1 * 1.5 + 0.05 * 1.9)) / turned)
+    assert out.pulls == pytest.approx([0.1 * weight, 0.05 * weight])
+    inwards = mr.collapse_multiplier(masonry, -1, associated=associated, effects=ties)
+    assert inwards.multiplier == pytest.approx(held / turned)
+    assert inwards.pulls == pytest.approx([0.0, 0.0], abs=1e-6 * weight)
+    thrust = mr.Thrust(force=0.3 * weight, **at(in_space, 0.2, 1.5))  # without the tie the wall would fall
+    strong = tie_of(in_space, 1.5, 0.2 * weight)
+    both = mr.collapse_multiplier(masonry, 1, associated=associated, effects=[thrust, strong])
+    assert both.multiplier == pytest.approx((held + weight * (0.2 - 0.3) * 1.5) / turned)
+    with pytest.raises(ValueError, match="wall would fall under the weight and the effects"):
+        mr.collapse_multiplier(masonry, 1, associated=associated, effects=[thrust, tie_of(in_space, 1.5, 0.1 * weight)])
+
+
+@pytest.mark.parametrize("associated", [True, False])
+@pytest.mark.parametrize("strength", [0.1, math.inf])
+def test_a_tie_between_blocks_pulls_on_both(strength, associated):
+    """The wall on the ground beside a wide block. A tie that never yields makes both slide and turn as they may."""
+    wide = mr.Polygon([(-5, 0), (-1, 0), (-1, HIGH), (-5, HIGH)], name="wide")
+    masonry = mr.Masonry([*wall(False).blocks, wide], friction=0.9)
+    weight = masonry.blocks[1].mass * mr.GRAVITY
+    tie = mr.Tie(
+        height=1.5, stiffness=1e7, strength=strength * weight, length=1.0, block="wall", anchor_block="wide",
+        ultimate=None if strength == math.inf else 0.1,
+    )  # fmt: skip
+    found = mr.collapse_multiplier(masonry, 1, associated=associated, effects=tie)
+    yields = (0.5 * THICK + 0.1 * 1.5) / (0.5 * HIGH)
+    if strength == 0.1:
+        assert found.multiplier == pytest.approx(yields)
+        assert found.moving == ("wall",)
+    else:
+        assert yields < found.multiplier <= 0.9 + 1e-9
+
+
 def test_effects_that_are_no_constant_forces_and_what_falls_under_them_are_refused():
     masonry = wall(False)
     weight = masonry.blocks[1].mass * mr.GRAVITY
-    tie = mr.Tie(height=1.0, stiffness=1e6, strength=1e4, length=3.0, ultimate=0.01, block=1)
-    with pytest.raises(TypeError, match=r"effects\[1\] is a Tie, whose force depends on the motion; .* Load, Thrust"):
-        mr.collapse_multiplier(masonry, effects=[mr.Load(1.0, HIGH, block=1), tie])
+    damper = mr.Damper(height=1.0, c=1e4, length=3.0, block=1)
+    with pytest.raises(TypeError, match=r"effects\[1\] is a Damper, whose force depends on the motion; .* and Tie"):
+        mr.collapse_multiplier(masonry, effects=[mr.Load(1.0, HIGH, block=1), damper])
+    with pytest.raises(ValueError, match=r"effects\[0\], slack = 0.02 m: the tie holds nothing as the masonry begins"):
+        mr.collapse_multiplier(masonry, effects=tie_of(False, 1.0, 1e4, slack=0.02))
     with pytest.raises(ValueError, match="wall would fall under the weight and the effects"):
         mr.collapse_multiplier(masonry, effects=mr.Thrust(height=HIGH, force=0.2 * weight, block=1))
     with pytest.raises(ValueError, match=r"effects\[0\], block = 'roof' is no block"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -15,7 +16,7 @@ from .joint_law import Law, shear_limit
 from .joints_in_space import axes_along
 from .limit_state import Programme, states_without_dilatancy
 from .masonry import Masonry
-from .statics import bonded, cones, edges_of, method, moving, sizes_of, weight_of
+from .statics import Pulls, bonded, cones, edges_of, method, moving, sizes_of, weight_of
 
 LARGEST = 1e6
 """Multiplier from which it counts as infinite [-]."""
@@ -41,6 +42,7 @@ class Collapse:
         masonry: the masonry.
         wedged: names of blocks that stand only by wedging: friction holds them if their joints were pressed together
             before, and no load on joints without load presses them so. Solvers let them fall.
+        pulls: of the ties among the effects, in their order [N], shape (ties,).
     """
 
     multiplier: float
@@ -51,10 +53,17 @@ class Collapse:
     others: tuple[float, ...] = ()
     masonry: Masonry | None = field(default=None, compare=False, repr=False)
     wedged: tuple[str, ...] = field(default=(), compare=False)
+    pulls: Array | None = field(default=None, compare=False, repr=False)
 
 
 def limit_of(
-    masonry: Masonry, push: Array, grown: Array, applied: Array | float = 0.0, *, associated: bool = True
+    masonry: Masonry,
+    push: Array,
+    grown: Array,
+    applied: Array | float = 0.0,
+    *,
+    associated: bool = True,
+    ties: Pulls | None = None,
 ) -> Collapse:
     """The multiplier at which rigid masonry moves that stands under its weight, and its mechanism.
 
@@ -65,6 +74,7 @@ def limit_of(
             space (free, 6).
         applied: constant ones beside the weight, likewise.
         associated: whether sliding opens joints.
+        ties: that hold the blocks, or None.
 
     Raises:
         ValueError: if no state without dilatancy is found.
@@ -72,13 +82,21 @@ def limit_of(
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
     turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
     across = axes_along(lines.normal, resultant) if turned else lines.across
-    found = (_associated if associated else _without_dilatancy)(masonry, weight + np.ravel(applied), grown, across)
+    search, ties = _associated if associated else _without_dilatancy, ties or Pulls.of(masonry)
+    found = search(masonry, weight + np.ravel(applied), grown, across, ties)
     if found is None:
         return Collapse(math.inf, push, (), np.zeros_like(grown), masonry=masonry)
-    multipliers, velocities, on_lines = found
-    motion = (velocities / sizes_of(masonry)).reshape(grown.shape)
-    forces = joint_forces(masonry, float(np.abs(weight).sum()) * on_lines)
-    return Collapse(multipliers[0], push, moving(masonry, velocities), motion, forces, multipliers[1:], masonry)
+    total, multipliers = float(np.abs(weight).sum()), found.multipliers
+    return Collapse(
+        multipliers[0],
+        push,
+        moving(masonry, found.velocities),
+        (found.velocities / sizes_of(masonry)).reshape(grown.shape),
+        joint_forces(masonry, total * found.lines),
+        multipliers[1:],
+        masonry,
+        pulls=total * found.pulls,
+    )
 
 
 def pushed(masonry: Masonry, push: Array) -> Array:
@@ -89,21 +107,34 @@ def pushed(masonry: Masonry, push: Array) -> Array:
     return force
 
 
-def _associated(
-    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...]
-) -> tuple[tuple[float], Array, Array] | None:
-    """The multiplier, velocities of the mechanism over the size of their block, and forces of the contact lines.
+class Found(NamedTuple):
+    """A state at the limit.
 
-    The forces are those that the lines press with, over the weight of all blocks, shape (m, d).
+    Args:
+        multipliers: of all states found, the least first [-].
+        velocities: of the mechanism, over the size of their block.
+        lines: forces that the contact lines press with, over the weight of all blocks, shape (m, d).
+        pulls: of the ties, likewise, shape (t,).
     """
+
+    multipliers: tuple[float, ...]
+    velocities: Array
+    lines: Array
+    pulls: Array
+
+
+def _associated(
+    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+) -> Found | None:
+    """The state of associated friction, None where nothing gives way."""
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
     pressed, lines = cones(masonry, friction, across), masonry.lines
-    raised, count = (grown.ravel() / total / sizes)[:, None], pressed.shape[1]
     pulls, held, ways = bonded(masonry, across)
-    highest = np.concatenate([np.full(count, np.inf), held / total, [np.inf]])
+    raised, count, end = (grown.ravel() / total / sizes)[:, None], pressed.shape[1], pressed.shape[1] + len(held)
+    highest = np.concatenate([np.full(count, np.inf), held / total, ties.strength / total, [np.inf]])
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
     prices[-1] = -1.0
-    columns = hstack([pressed, pulls, raised])
+    columns = hstack([pressed, pulls, ties.columns, raised])
     answer = scipy.optimize.linprog(
         prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry)
     )
@@ -116,17 +147,18 @@ def _associated(
         shear_limit(Law(friction=friction[lines.joint]), 1.0),
     )
     forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(across))).sum(axis=0)
-    forces += (answer.x[count:-1].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)
-    return (float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces
+    forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)
+    return Found((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
 
 
 def _without_dilatancy(
-    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...]
-) -> tuple[tuple[float, ...], Array, Array] | None:
-    """The same, with the multipliers of all states found, the least first."""
-    programme = Programme.of(masonry, constant, grown, across)
+    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+) -> Found | None:
+    """The least state without dilatancy, None where nothing gives way."""
+    programme = Programme.of(masonry, constant, grown, across, ties)
     states = states_without_dilatancy(programme)
     if not states:
         return None
-    multipliers = tuple(state.multiplier for state in states)
-    return multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, states[0].x)
+    multipliers, x = tuple(state.multiplier for state in states), states[0].x
+    pulls = x[programme.pulled : programme.pulled + programme.ties]
+    return Found(multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, x), pulls)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,7 +34,8 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
         force = effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added)
-        total[masonry.free.index(effect.block)] += acting(masonry, effect, np.array(force))
+        arm = placed(masonry, effect) - masonry.centroids[effect.block]
+        total[masonry.free.index(effect.block)] += acting(arm, np.array(force)[_axes(masonry)])
     return total
 
 
@@ -41,18 +43,34 @@ def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
     """The same of the weight of added masses along a unit vector, shape (2,), in space (3,)."""
     total = np.zeros((len(masonry.free), 6 if masonry.in_space else 3))
     for effect in effects:
-        force = GRAVITY * effect.mass_added * (way if masonry.in_space else np.array([way[0], 0.0, way[1]]))
-        total[masonry.free.index(effect.block)] += acting(masonry, effect, force)
+        arm = placed(masonry, effect) - masonry.centroids[effect.block]
+        total[masonry.free.index(effect.block)] += acting(arm, GRAVITY * effect.mass_added * way)
     return total
 
 
-def acting(masonry: Masonry, effect: Effect, force: Array) -> Array:
-    """A force where an effect acts, along x, y and z [N], and its moment about the centroid of the block, see
-    `applied`."""
-    arm = np.array(placed(masonry, effect)) - masonry.centroids[effect.block]
-    if masonry.in_space:
-        return np.array([*force, *np.cross(arm, force)])
-    return np.array([force[0], force[2], force[0] * arm[1] - force[2] * arm[0]])
+def pulls_of(masonry: Masonry, ties: Sequence[Anchored]) -> Array:
+    """Forces and moments on the free blocks of each link that pulls with 1 N, shape (t, free, 3), in space
+    (t, free, 6)."""
+    pulls = np.zeros((len(ties), len(masonry.free), 6 if masonry.in_space else 3))
+    for pull, tie in zip(pulls, ties, strict=True):
+        held = np.array(placed(masonry, tie))
+        anchor = tie.anchor_of(held)
+        way = (anchor - held) / np.linalg.norm(anchor - held)
+        for block, point, force in ((tie.block, held, way), (tie.anchor_block, anchor, -way)):
+            if block is not None and block in masonry.free:
+                pull[masonry.free.index(block)] += acting(point - masonry.centroids[block], force)
+    return pulls
+
+
+def acting(arm: Array, force: Array) -> Array:
+    """A force and its moment about a centroid, from where it acts from there [m], see `applied`."""
+    turn = np.cross(arm, force) if len(arm) == 3 else [arm[1] * force[0] - arm[0] * force[1]]
+    return np.array([*force, *turn])
+
+
+def _axes(masonry: Masonry) -> list[int]:
+    """The axes of the world along which blocks of the masonry move."""
+    return [0, 1, 2] if masonry.in_space else [0, 2]
 
 
 def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:

@@ -24,13 +24,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack
+from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, hstack, vstack
 
 from ...quantities import Array, Flags, Integers
 from .joint_law import Law, shear_limit
 from .lines import rates
 from .masonry import Masonry
-from .statics import edges_of, method, sizes_of, weight_of
+from .statics import Pulls, edges_of, method, sizes_of, weight_of
 
 SLOPE, SHRINKS, LEAST_SLOPE = 0.3, 0.9, 0.01
 """Dilatancy of the first cone that follows the pressures, over the friction, its factor a turn, and the least [-]."""
@@ -82,6 +82,7 @@ class Programme(NamedTuple):
         leader: number of the first contact line of each group, shape (groups,). In the plane the lines of a joint are
             one group: they slide as one. In space each is its own.
         unknowns: of the blocks.
+        ties: how many there are, whose pulls come last in x, followed by what is left of their strengths.
         method: how linear programmes are solved.
     """
 
@@ -92,12 +93,13 @@ class Programme(NamedTuple):
     edges: Array
     leader: Integers
     unknowns: int
+    ties: int
     method: str
 
     @classmethod
-    def of(cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...]) -> Programme:
+    def of(cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls) -> Programme:
         """Those of masonry under forces that are constant, its weight among them, and forces that grow [N, N m], of all
-        unknowns.
+        unknowns, and of ties.
 
         The edges of the cones begin at the first of the directions `across` along the faces.
         """
@@ -115,7 +117,14 @@ class Programme(NamedTuple):
         grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [held, rest]]))
         total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
         down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (constant, grown))
-        return cls(matrix, grip, down, pushed, edges[:, leader], leader, len(sizes), method(masonry))
+        count, yields = len(ties.strength), np.isfinite(ties.strength)
+        if count:  # a pull and what is left of it are the strength
+            pulls, limit = vstack([ties.columns, csr_array((len(leader), count))]), csr_array(eye_array(count))[yields]
+            matrix = csc_array(block_array([[matrix, pulls, None], [None, -limit, -eye_array(limit.shape[0])]]))
+            grip = csc_array(block_array([[grip, None], [None, csr_array((limit.shape[0], count + limit.shape[0]))]]))
+            down, pushed = np.append(down, ties.strength[yields] / total), np.append(pushed, np.zeros(limit.shape[0]))
+        numbers = len(sizes), count
+        return cls(matrix, grip, down, pushed, edges[:, leader], leader, *numbers, method(masonry))
 
     def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> Any:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""
@@ -154,11 +163,17 @@ class Programme(NamedTuple):
         missing = np.abs(self.matrix @ state.x + state.multiplier * self.grown + self.weight).max()
         return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < HELD)
 
+    @property
+    def pulled(self) -> int:
+        """Where the pulls of the ties begin in x."""
+        limited = self.matrix.shape[0] - self.unknowns - len(self.leader)
+        return int(self.matrix.shape[1] - self.ties - limited)
+
     def on_lines(self, masonry: Masonry, x: Array) -> Array:
         """Forces x of a state as those of the contact lines, over the weight of all blocks, shape (m, d)."""
         m, count = len(masonry.lines.k), len(self.edges)
         forces = x[:m, None] * masonry.lines.normal
-        shares = x[m:].reshape(count + 1, -1)[:count]
+        shares = x[m : self.pulled].reshape(count + 1, -1)[:count]
         forces[self.leader] += np.einsum("eg,egd->gd", shares, self.edges)
         return np.asarray(forces)
 

@@ -14,7 +14,7 @@ from ...linear import averaged, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Integers
 from ..damping.interface import contact_lines
 from .compound import AnyBlock
-from .joints import Joint
+from .joints import LEVEL, Joint
 from .joints_in_space import SpaceJoint, axes_across
 from .polygon import Polygon
 from .sides import Side
@@ -69,15 +69,20 @@ def lines_of(
     k_n: Array,
     points: int,
     bonded: Sequence[bool] | None = None,
+    *,
+    mirrored: bool = True,
 ) -> Lines:
     """The contact lines of all joints, or in space their contact points.
 
     The point is on the block above. Where that one overhangs, the corner or edge is that of the block below, and the
-    point is on the block below, unless that one is fixed. The stiffness of each joint is k_n [N/m3], shape (joints,).
-    A joint has so many lines as `points` says, in space see `geometry.convex.spread`. Those that are `bonded` have the
-    stiffness k_n I in bending, see `geometry.convex.sectioned`.
+    point is on the block below, unless that one is fixed. Lines are `mirrored` where the masonry is: of two blocks
+    beside each other the point is on the one that is farther from the middle of the masonry, where both or neither
+    have a corner there. If they are as far, it is on either, with half the stiffness. The stiffness of each joint is
+    k_n [N/m3], shape (joints,). A joint has so many lines as `points` says, in space see `geometry.convex.spread`.
+    Those that are `bonded` have the stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
+    middle = np.mean([block.centroid for block in blocks if not block.fixed], axis=0)
     for number, joint in enumerate(joints):
         k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
@@ -86,14 +91,31 @@ def lines_of(
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
             flat, areas = sectioned(joint.flat, points) if exact else spread(joint.flat, points)
             own = _on_face(joint, faces, flat, k_joint * areas)
+        below, above = blocks[joint.below], blocks[joint.above]
+        beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) < LEVEL and not below.fixed else ()
         for place, stiffness, overhangs in own:
-            turned = overhangs and not blocks[joint.below].fixed
-            rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
-            at.append(place)
-            normal.append(-joint.normal if turned else joint.normal)
-            k.append(stiffness)
+            turns: tuple[bool, ...] = (overhangs and not below.fixed,)
+            if beside and _has_corner(below, place) == _has_corner(above, place):
+                turns = beside
+            for turned in turns:
+                rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
+                at.append(place)
+                normal.append(-joint.normal if turned else joint.normal)
+                k.append(stiffness / len(turns))
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
+
+
+def _outer(above: AnyBlock, below: AnyBlock, middle: Array) -> tuple[bool, ...]:
+    """Whether the point of a joint is on the block below, as that is farther from the middle of the masonry, apart from
+    heights. Both ways where the two blocks are as far."""
+    own, other = (float(np.linalg.norm((block.centroid - middle)[:-1])) for block in (above, below))
+    return (False, True) if abs(other - own) <= EDGE else (other > own,)
+
+
+def _has_corner(block: AnyBlock, place: Array) -> bool:
+    """Whether a corner of a block is at a place."""
+    return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE)
 
 
 def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[tuple[Array, float, bool]]:

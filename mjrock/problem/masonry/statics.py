@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -34,7 +34,28 @@ EDGES = 8
 the pyramid has cos(pi/8) = 0.924 of the friction."""
 
 
-def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
+class Pulls(NamedTuple):
+    """Ties that pull with what equilibrium asks, up to their strength.
+
+    Args:
+        columns: forces of a pull of 1 N on all unknowns, moments over the size of the block, shape (unknowns, t).
+        strength: of each [N], shape (t,).
+    """
+
+    columns: csc_array
+    strength: Array
+
+    @classmethod
+    def of(cls, masonry: Masonry, pulls: Array | None = None, strength: Array | None = None) -> Pulls:
+        """Those of forces and moments of unit pulls on the free blocks, shape (t, free, 3), in space (t, free, 6);
+        none without."""
+        sizes, strength = sizes_of(masonry), np.zeros(0) if strength is None else strength
+        shape = (len(strength), len(sizes))
+        rows = np.zeros(shape) if pulls is None else np.reshape(pulls, shape)
+        return cls(csc_array(rows.T / sizes[:, None]), strength)
+
+
+def falling(masonry: Masonry, applied: Array | float = 0.0, ties: Pulls | None = None) -> tuple[str, ...]:
     """Names of the blocks that fall if the blocks are rigid; none where the joints can carry the weight.
 
     A linear programme looks for forces at the contact lines, pressing and within the cone of friction, that leave the
@@ -47,8 +68,9 @@ def falling(masonry: Masonry, applied: Array | float = 0.0) -> tuple[str, ...]:
         masonry: the masonry.
         applied: further forces on each free block and their moment about its centroid, positive where it turns the top
             to the right [N, N, N m], shape (free, 3). In space three forces and three moments, shape (free, 6).
+        ties: that hold the blocks, or None.
     """
-    answer = _balanced(masonry, applied, masonry.joint_friction)
+    answer = _balanced(masonry, applied, masonry.joint_friction, ties=ties)
     if _stands(answer):
         return ()
     lacks = _lacking(masonry, answer.x)
@@ -177,7 +199,13 @@ def edges_of(across: tuple[Array, ...]) -> Array:
     return np.asarray(np.einsum("ea,amd->emd", spread, np.stack(across)))
 
 
-def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None) -> Any:
+def _balanced(
+    masonry: Masonry,
+    applied: Array | float,
+    friction: Array,
+    dear: Array | None = None,
+    ties: Pulls | None = None,
+) -> Any:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
     The unknowns are the forces along the edges of the cone of each line, then what is missing. With `dear`, a wider
@@ -192,8 +220,9 @@ def _balanced(masonry: Masonry, applied: Array | float, friction: Array, dear: A
             edges.append(cones(masonry, cone))
             cost.append(np.full(edges[-1].shape[1], price))
     missing = eye_array(len(weight))
-    pulls, limits, _ = bonded(masonry)
-    columns = hstack([*edges, missing, -missing, pulls])
+    (pulls, limits, _), ties = bonded(masonry), ties or Pulls.of(masonry)
+    limits = np.append(limits, ties.strength)
+    columns = hstack([*edges, missing, -missing, pulls, ties.columns])
     prices = np.concatenate([*cost, np.ones(2 * len(weight)), np.zeros(len(limits))])
     highest = np.append(np.full(len(prices) - len(limits), np.inf), limits / total)
     bounds = np.column_stack([np.zeros_like(highest), highest])
