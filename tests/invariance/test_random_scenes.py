@@ -14,7 +14,7 @@ from tests.invariance.quantities import changed, moved, scaled, turned
 from tests.invariance.random_scenes import PLACES, draw
 from tests.invariance.runs import solve
 
-FIRST, SCENES, CHUNK, DRAWN = 1000, 300, 10, 4
+FIRST, SCENES, CHUNK, DRAWN = 1000, 300, 10, 3
 """Of the slow scenes: the first seed, how many there are, how many are one test, and how many invariances each is
 under."""
 EVERY_DAY = (2, 5, 7, 12, 22)
