@@ -75,12 +75,12 @@ OWN = {
     **{f"distinct/{name}.py": ("encounters", "encounters_in_space", "overlap_of_blocks") for name in FINDING},
     "problem/masonry/joint_forces.py": ("collapse_without_dilatancy",),
     "problem/masonry/joint_law.py": ("joint_law", "explicit", "encounters"),
-    "result/joint_motion.py": ("masonry_motion", "masonry", "masonry_in_space", "explicit_in_space", "motion_in_space"),
+    "result/joint_motion.py": ("masonry_motion", "masonry", "supports_that_moved", "explicit_in_space"),
     "result/reading.py": ("reading", "fallen", "end_of_run", "overhang"),
     "result/ledger.py": ("ledger",),
     **{f"result/{name}.py": ("files_of_motion",) for name in ("bodies", "gltf", "vtk")},
     "result/ties.py": ("ties_that_break", "friction_damper", "masonry_effects"),
-    "engine/run.py": ("marks", "end_of_run", "ledger"),
+    "engine/run.py": ("marks", "end_of_run", "ledger", "books_of_masonry"),
     "engine/sliding.py": ("slipping", "sliding"),
     "problem/masonry/pile.py": ("pile",),
     "problem/masonry/polygon.py": ("polygon",),
@@ -173,13 +173,10 @@ EQUIVALENT = {
             "if half <= SMALL:",
         )
     },
-    "handover.py: alike = sense / there.sense * dot(vector(found.normal, i, axes), there.normal)": (
+    "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > ALIKE:": (
         "a sense is 1 or -1"
     ),
     "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
-    "pair_law.py: share = np.maximum(stiffest / np.where(alone, 2.0, sums[:, 0]), 0.5)": (
-        "what a block without a joint has is infinite, whatever it is divided by"
-    ),
     "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
     "bonds.py: if gap < 1 and bond.bears < math.inf:": "what is open is not crushed by the law, either",
     "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
@@ -210,7 +207,6 @@ EQUIVALENT = {
     "handover.py: share = min(REGAINED, had / force, math.sqrt(held / energy)) if force > 0 else 1": (
         "where no place presses, none has an overlap that a share is taken of"
     ),
-    "handover.py: if overlap == 1 or ends[0] == ends[1]:": "of no overlap nothing presses in the last line, either",
     "handover.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: PASSES = 6": "more passes take time only",
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (

@@ -121,7 +121,9 @@ class PairLaw(NamedTuple):
         both, fixed = self.of_block[0][ends], self.fixed[ends]
         over = both[::-1, :, -1] / both[..., -1]
         both = both * np.where(fixed, over, 1.0)[..., None]
-        first = both[0, :, 0] <= both[1, :, 0]
+        less, more = both[0] < both[1], both[0] > both[1]
+        unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
+        first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
         second = fixed[0] | (~fixed[1] & ~first)
         rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
         return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)

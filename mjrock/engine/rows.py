@@ -37,13 +37,15 @@ class RowInertia(NamedTuple):
 
     Args:
         weight: sum of MuJoCo's inverse weights of the two bodies W [1/kg], shape (m,).
-        overdamped: c h W from which a dashpot is stiff for a step, see `solref.row` [-], shape (m,).
+        overdamped, resolved: c h W from which a dashpot is stiff for a step with ringing and for one without, see
+            `solref.row` [-], shape (m,).
         friction: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
         growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
     """
 
     weight: Array
     overdamped: Array
+    resolved: Array
     friction: Array
     growth: float
 
@@ -80,7 +82,8 @@ class ContactRows(NamedTuple):
 @inlined
 def row_of(law: ContactLaw, inertia: RowInertia, i: int, step: Step) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `solref.row`."""
-    return row(law.k[i], law.c[i], step.h, inertia.weight[i], step.beta[i], step.ringing[i], inertia.overdamped[i])
+    stiff = inertia.overdamped[i] if step.ringing[i] > 0 else inertia.resolved[i]
+    return row(law.k[i], law.c[i], step.h, inertia.weight[i], step.beta[i], step.ringing[i], stiff)
 
 
 @inlined

@@ -43,9 +43,8 @@ from .stepping import fitted_steps, fixed_steps
 Asked = tuple[Case | MasonryCase, Contacts | None]
 """A case and its contacts; those of masonry are its own."""
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
-"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground. Rocking under a record
-multiplies an error of its first impacts, two-sided by some 10 in the median and by more than 100 in one of ten
-(`scripts/measure/records_accuracy.py`)."""
+"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground, whose rocking
+multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
 SPACING = 1e-3
 """Distance of samples between fitted steps, where none is asked for [s]."""
 

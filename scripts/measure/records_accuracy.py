@@ -1,7 +1,7 @@
 """Accuracy under records: errors of the peak rotation of shaken walls, and how far rocking multiplies an error.
 
 Walls one-sided and two-sided, on three bases, each under a synthetic record: those that rock by explicit steps and
-stand by the reference, `simulate(accuracy=1e-6)`, in the order of their seeds. Explicit steps and SciPy on the same
+stand by the reference, `simulate(accuracy=1e-5)`, in the order of their seeds. Explicit steps and SciPy on the same
 contacts stand beside it. Times are those of the processor, in one process, for one run. Rocking theory says how much a
 peak changes with the restitution of every impact. Writes records_accuracy.csv and records_accuracy.png, and prints the
 tables.
@@ -27,7 +27,7 @@ from scripts.shared import cli
 BASES = (5e8, 5e9, 1.5e10)
 """Interface stiffness [N/m3]."""
 SIDES = {"one-sided": True, "two-sided": False}
-REFERENCE = 1e-6
+REFERENCE = 1e-5
 ROCKS = 3.0
 """Peak over uplift rotation from which a wall rocks [-]."""
 SCATTER = (1e-4, 0.014, 0.046)
@@ -102,14 +102,13 @@ def methods(quick: bool) -> dict[tuple[str, str], tuple[Solve, int]]:
     def scipy(rtol: float) -> Solve:
         return lambda case, contacts: mr.solve_compliant(case, contacts, rtol=rtol, atol=1e-2 * rtol)
 
-    accuracies = (1e-3, 1e-4) if quick else (1e-3, 3e-4, 1e-4, 1e-5)
+    accuracies = (1e-3, 1e-4) if quick else (1e-3, 3e-4, 1e-4, 3e-5)
     made: dict[tuple[str, str], tuple[Solve, int]] = {
         ("MuJoCo, fitted steps", f"accuracy {a:g}"): (fitted(a), sys.maxsize) for a in accuracies
     }
     made["explicit steps", "default"] = mr.solve_explicit, sys.maxsize
     if not quick:
-        made["SciPy", "rtol 1e-05"] = scipy(1e-5), 2
-        made["SciPy", "rtol 1e-07"] = scipy(1e-7), 2
+        made["SciPy", "rtol 1e-06"] = scipy(1e-6), 2
     return made
 
 

@@ -173,6 +173,15 @@ def test_the_softer_block_of_two_is_taken_whichever_comes_first():
         assert (one["k"][0], one["friction"][0]) == (4.0, 0.5)
 
 
+@pytest.mark.parametrize("damped", [(0.1, 0.2), (0.2, 0.1)])
+def test_of_two_blocks_as_stiff_the_one_that_is_less_damped_is_taken(damped):
+    """Whichever has the lower number."""
+    given = masonry([block(1.0)] * 4, [(0, 1), (2, 3)], [0.5] * 2, np.full(2, 0.9))
+    table = rows(kinds(2).line, 2, k=4.0, c=np.array(damped), friction=0.6)
+    found = pair_law.PairLaw.of_joints(given, table, np.arange(2))
+    assert found.of_places(np.array([0 * 4 + 2]), np.ones(1), np.full(1, 1e9), 4)["c"][0] == pytest.approx(0.1)
+
+
 @pytest.mark.parametrize("in_space", [False, True])
 def test_faces_without_a_joint_that_hardly_lie_over_each_other_have_less(in_space):
     """In proportion below a tenth of the area of the joints of the softer block, of which edges have none."""

@@ -93,7 +93,11 @@ def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
     rows, none = ContactRows.of(2), np.zeros(2)
     law = ContactLaw(np.full(2, 1e-9), c, np.where(np.array(held) > 0, 0.5, 0.0))
     inertia = RowInertia(
-        weight=np.full(2, 0.01), overdamped=np.full(2, METHOD.overdamped), friction=np.array(held), growth=0.0
+        weight=np.full(2, 0.01),
+        overdamped=np.full(2, METHOD.overdamped),
+        resolved=np.full(2, METHOD.borne),
+        friction=np.array(held),
+        growth=0.0,
     )
     found = set_rows(law, inertia, Step(H, none, none), rows)
     assert found == pytest.approx(impratio, rel=1e-9)

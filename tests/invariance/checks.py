@@ -12,6 +12,7 @@ from mjrock.problem.masonry.effects import laden
 
 from .balance import is_stepwise, unbalanced, unbalanced_bodies
 from .quantities import Scene
+from .random_scenes import DENSITY
 
 UNBALANCED = 1e-6
 """Largest force that is missing in the balance of all bodies in a step, over their weight and the largest reaction [-].
@@ -38,7 +39,7 @@ def complaints(scene: Scene, answer: mr.Response, said: list[str]) -> Iterator[s
         yield "not finite"
         return
     overlapping = any("lie inside each other" in text for text in said)
-    if answer.stats.get("overlap", 0.0) > OVERLAP and not overlapping:
+    if answer.stats.get("overlap", 0.0) > OVERLAP + pressed(scene) and not overlapping:
         yield f"overlap without a warning: {answer.stats['overlap']:.1%}"
     if answer.ledger is not None:
         yield from complaints_of_ledger(answer.ledger, said)
@@ -50,6 +51,14 @@ def complaints(scene: Scene, answer: mr.Response, said: list[str]) -> Iterator[s
         alone = scene["place"] != "wall" and answer.stats["overlap"] == 0
         if alone and (missing := unbalanced_bodies(answer)) > UNBALANCED:
             yield f"a body is out of balance: {missing:.1e} of the weight"
+
+
+def pressed(scene: Scene) -> float:
+    """Share of the smallest block by which twice the weight of a column as high as the scene closes its joint [-]."""
+    if scene["place"] == "wall":
+        return 0.0
+    smallest = min(float(np.ptp(part["corners"], axis=0).min()) for unit in scene["units"] for part in unit["parts"])
+    return 2 * DENSITY * mr.GRAVITY * scene["size"] / scene["k_n"] / smallest
 
 
 def finite(answer: mr.Response) -> bool:

@@ -71,8 +71,8 @@ def judge(seed: int, names: Collection[str] | None = None) -> dict[str, Any]:
         for name in INVARIANCES if names is None else names:
             if (found := tried(trial, name)) is not None:
                 row["apart"][name] = found
-        if "growth" in vars(trial):
-            row["growth"] = trial.growth
+        if "nudged" in vars(trial):
+            row["nudged"] = trial.nudged
     return row | {"took": time.perf_counter() - began}
 
 

@@ -191,7 +191,7 @@ def test_a_wall_that_leans_inwards_over_a_low_stop_is_not_safe():
     assert row["inwards_over_alpha"] == leaning.inwards_over_alpha
     assert row["outcome"] == "time ended"
     assert mr.lost([row]).tolist() == [True]
-    assert "leaned inwards over the side stop of 0.4 m, by up to 1.16 alpha" in row["message"]
+    assert "leaned inwards over the side stop of 0.4 m, by up to 1.17 alpha" in row["message"]
 
 
 def test_a_wall_that_turns_over_a_low_stop_has_overturned():
