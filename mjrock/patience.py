@@ -33,6 +33,10 @@ MOST = 3
 """Processes that this one starts to compile. Another kind of scene needs another one."""
 
 
+class NotStoredError(Exception):
+    """A loop is not stored."""
+
+
 class Run(NamedTuple):
     """A call of a solver, which another process can repeat."""
 

@@ -24,7 +24,7 @@ from .record import Record
 from .rows import set_rows
 from .setting import Setting, push
 from .shaken import add_change, find_answer, is_shaken, take_mean
-from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed
+from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed, time_to_stop
 from .sticking import Moved, put_sticking_edges_back
 from .touches import Openings, closure_changed, follow_openings, step_to_break, step_to_touch
 
@@ -232,7 +232,8 @@ def fitted_loop(
             ahead = step / pace.method.approach if shaken else step
             to_touch = step_to_touch(state.springs, openings, ahead, allowed, least, pace.short, state.touches)
             if shaken:
-                step, to_touch = approached(pace, step, to_touch)
+                stop = time_to_stop(points.places, sliding, state.frames, state.velocity_now, state.acceleration_now)
+                step, to_touch = approached(pace, min(step, max(pace.method.approach * stop, pace.short)), to_touch)
             to_break = step_to_break(setting.ties, openings, step, pace.short)
             if to_break > 0 and not 0 < to_touch < to_break:
                 to_touch = to_break

@@ -233,6 +233,23 @@ def sliding_changed(sliding: Sliding) -> bool:
 
 
 @inlined
+def time_to_stop(places: Places, sliding: Sliding, frames: Array, v: Array, a: Array) -> float:
+    """Time in which the slip of a contact that slid in the last step ends [s], infinite where it does in none.
+
+    Friction turns round as a slip does. Within a long step the velocity would miss much of that.
+    """
+    soonest = math.inf
+    for i in range(len(sliding.slid)):
+        if sliding.slid[i]:
+            meets = where_friction_acts(places, meeting(places, i, frames))
+            now = slipping(places, i, meets, frames, v)
+            faster = dot(now.way, over_face(places, i, meets, frames, a))
+            if now.speed * faster < 0:
+                soonest = min(soonest, -now.speed / faster)
+    return soonest
+
+
+@inlined
 def give_rows_back(memory: EngineArrays, sliding: Sliding) -> None:
     """Give every contact that slid its row back, and clear the applied forces."""
     memory.applied[:] = 0.0

@@ -17,8 +17,7 @@ from ..problem.masonry.lines import slips
 from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.statics import MOVES, Pulls, falling
 from ..problem.wall.effect import Effect
-from ..problem.wall.effects import AddedMass, Load, Thrust
-from ..problem.wall.tie import Tie
+from ..problem.wall.effects import links_of
 from ..quantities import (
     Array,
     Implausible,
@@ -34,6 +33,8 @@ from ..scene.masonry import wedged
 
 NOTHING, BORNE = 1e-6, 1e-3
 """Multiplier that counts as none, and that of associated friction from which something is borne [-]."""
+ROUNDING = 1e-9
+"""Slack that counts as none [m]."""
 
 
 def collapse_multiplier(
@@ -108,8 +109,8 @@ def collapse_multiplier(
     grown = _loads(masonry, {} if loads is None else loads) + pushed(masonry, push) + dragged(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
-    links = tuple(effect for effect in given if isinstance(effect, Tie))
-    strength, constant = np.array([tie.strength for tie in links]), applied(masonry, given)
+    links = tuple(links_of(given).values())
+    strength, constant = np.array([tie.law.strength for tie in links]), applied(masonry, given)
     ties = Pulls.of(masonry, pulls_of(masonry, links), strength)
     falls = falling(masonry, constant, ties)
     if falls:
@@ -139,16 +140,19 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
     """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
     given = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
     for i, effect in enumerate(given):
-        if not isinstance(effect, Load | Thrust | AddedMass | Tie):
+        links = links_of([effect]).values()
+        if effect.force_vector is None and not effect.mass_added and not any(link.law.holds for link in links):
             raise TypeError(
                 f"effects[{i}] is a {type(effect).__name__}, whose force depends on the motion; limit analysis takes "
                 "Load, Thrust, AddedMass and Tie"
             )
-        if isinstance(effect, Tie) and effect.slack > 0:
-            raise ValueError(
-                f"effects[{i}], slack = {effect.slack:g} m: the tie holds nothing as the masonry begins to move; the "
-                "valid value is 0"
-            )
+        for link in links:
+            slack = link.law.reach - link.span
+            if slack > ROUNDING:
+                raise ValueError(
+                    f"effects[{i}], slack = {slack:g} m: the tie holds nothing as the masonry begins to move; the "
+                    "valid value is 0"
+                )
     return given
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import compiled
+from mjrock import compiled, stored
 
 PACKAGE = Path(mr.__file__).parent
 
@@ -123,9 +123,9 @@ def test_the_stamp_of_a_module_is_that_of_what_it_imports(tmp_path):
         return {name for name, stamp in stamps().items() if stamp != after[name]}
 
     def stamps():
-        compiled._imports.cache_clear()
+        stored._imports.cache_clear()
         names = ("engine/loop.py", "theory/arcs.py", "distinct/loop.py")
-        return {name: compiled.stamp(copy / name) for name in names}
+        return {name: stored.stamp(copy / name) for name in names}
 
     assert edited("distinct/loop.py") == {"distinct/loop.py"}
     assert edited("distinct/contact.py") == {"distinct/loop.py"}
@@ -193,13 +193,13 @@ def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):
     monkeypatch.setattr(FunctionCache._impl_class, "_locator_classes", [])
     compiled.compiled(PROBE)(np.ones(2))
     assert capfd.readouterr().err == ""  # what takes no time is not worth a line
-    monkeypatch.setitem(compiled.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
+    monkeypatch.setitem(stored.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
     compiled.compiled(PROBE)(np.ones(2))
     assert capfd.readouterr().err == f"mjrock: compiling probes, some 7 s of a core, {ANEW}\n"
 
 
 def test_loops_that_take_seconds_to_compile_are_there():
-    for name in compiled.SLOW:
+    for name in stored.SLOW:
         module, function = name.rsplit(".", 1)
         assert callable(getattr(importlib.import_module(module), function))
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock import compiled, patience
+from mjrock import compiled, patience, stored
 
 PACKAGE = Path(mr.__file__).parent
 THIRTY = Path(__file__).with_name("thirty_scenes.py")
@@ -53,7 +53,7 @@ def said(folder, program=WALL, interpret="1", **environment):
     return out.split()
 
 
-def stored(folder, loop="fitted_loop"):
+def has_stored(folder, loop="fitted_loop"):
     """Whether a loop is stored."""
     return any((folder / "mjrock/engine/__pycache__").glob(f"loop.{loop}*.nbc"))
 
@@ -89,7 +89,7 @@ def test_the_process_that_compiles_ends_with_its_parent(fresh, ending):
     while is_alive(process) and time.monotonic() < until:
         time.sleep(0.05)
     assert not is_alive(process)
-    assert not stored(fresh)
+    assert not has_stored(fresh)
 
 
 @pytest.mark.slow
@@ -141,7 +141,7 @@ if __name__ == "__main__":
         check=True,
     )
     assert run.stderr.count("compiling steps in MuJoCo that fit the motion") == 1
-    assert stored(fresh)
+    assert has_stored(fresh)
 
 
 def test_switched_off_it_compiles(fresh, monkeypatch):
@@ -217,13 +217,11 @@ def test_a_disk_that_refuses(patient, monkeypatch, written):
 
 
 def test_the_disk_is_full_where_a_lock_should_be(patient, monkeypatch):
-    import filelock
-
-    class Full(filelock.FileLock):
+    class Full(stored.FileLock):
         def acquire(self, *arguments, **named):
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(filelock, "FileLock", Full)
+    monkeypatch.setattr(stored, "FileLock", Full)
     room = np.array([1.0])
     compiled.compiled(double)(room)
     assert list(room) == [2.0]

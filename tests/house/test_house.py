@@ -10,7 +10,8 @@ import mjrock
 
 ROOT = Path(mjrock.__file__).parent
 FLOORS = (
-    ("_version", "interrupts"),
+    ("_version", "interrupts", "patience"),
+    ("stored",),
     ("compiled", "files", "method", "quantities"),
     ("geometry", "linear"),
     ("problem.ground",),

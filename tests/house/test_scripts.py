@@ -45,7 +45,7 @@ WRITES = {
     "limit_analysis": {f"limit_analysis.{ending}" for ending in ("png", "csv", "txt")},
     "slow_push": {f"slow_push.{ending}" for ending in ("png", "csv", "txt")},
     "tilting_table": {"tilting_table.csv", "tilting_table.txt"},
-    "mortar": {"mortar.csv", "mortar.txt"},
+    "mortar": {"mortar.csv", "mortar.txt", "mortar_lines.csv", "mortar_lines.txt"},
     "bonded_facade": {f"bonded_facade.{ending}" for ending in ("png", "csv", "txt")},
     "sliding": {"sliding.png", "sliding.txt"},
     "heap": {"heap.png", "heap.txt"},

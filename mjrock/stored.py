@@ -1,0 +1,143 @@
+"""Compiled loops on disk, and what a user is told while they are compiled. Importing this module imports numba."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import re
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+from numba.core import event
+from numba.core.caching import FunctionCache
+
+from .patience import NotStoredError, allowed, is_behind
+
+SLOW = {
+    "mjrock.theory.arcs.rocking_loop": ("rocking theory", 3),
+    "mjrock.engine.loop.fitted_loop": ("steps in MuJoCo that fit the motion", 20),
+    "mjrock.engine.loop.fixed_loop": ("steps in MuJoCo of one length", 10),
+    "mjrock.distinct.loop.advance": ("explicit steps", 12),
+    "mjrock.distinct.finder.find": ("contacts of explicit steps where blocks are", 5),
+}
+"""Loops whose compilation takes seconds: what they do, and how many [s], on one core that has nothing else to do
+(`scripts/measure/speed.py`). All others take two seconds or less."""
+NOWHERE = "no folder is found that can be written; name one in the environment variable NUMBA_CACHE_DIR"
+IMPORT = re.compile(r"^from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
+"""An import from the package as a module is imported itself, not in a function or for a type checker."""
+
+
+def notice(text: str) -> None:
+    """Tell the user a line."""
+    sys.stderr.write(f"mjrock: {text}\n")
+
+
+@cache
+def _imports(path: Path) -> list[Path]:
+    """The modules of the package that a module imports as it is imported itself."""
+    found = []
+    for dots, module, names in IMPORT.findall(path.read_text(encoding="utf-8")):
+        folder = path.parents[len(dots) - 1].joinpath(*module.split("."))
+        found += [folder.with_suffix(".py"), *(folder / f"{name}.py" for name in re.findall(r"\w+", names))]
+    return [module for module in found if module.is_file()]
+
+
+def stamp(path: Path) -> str:
+    """A digest of the modules with compiled functions among a module and all that it imports, directly or not.
+
+    numba recompiles a function when its own file has changed. A compiled function also contains the functions of other
+    files that it calls, so that a change in any of these files has to recompile it as well.
+    """
+    found, ahead = set(), [path]
+    while ahead:
+        module = ahead.pop()
+        if module not in found:
+            found.add(module)
+            ahead += _imports(module)
+    digest = hashlib.sha256()
+    for module in sorted(found):
+        text = module.read_bytes()
+        if any(mark in text for mark in (b"@compiled", b"@inlined")):
+            digest.update(text)
+    return digest.hexdigest()
+
+
+class LoopCache(FunctionCache):  # type: ignore[misc]
+    """numba's cache on disk, which is a convenience: whatever is wrong with it, the function is compiled anew."""
+
+    def __init__(self, function: Callable[..., Any], at_once: bool) -> None:
+        super().__init__(function)
+        self._at_once = at_once
+        self._cache_file._source_stamp = stamp(Path(function.__code__.co_filename))
+        self._locked: Any = None
+
+    def load_overload(self, *key: Any) -> Any:
+        """The compiled function, or None where there is none that can be read. This process then compiles it, and
+        others wait. What is stored makes room for it.
+
+        Raises:
+            NotStoredError: if there is none, and the run need not wait for it.
+        """
+        if (stored := self._stored(*key)) is None:
+            if allowed(self._at_once):
+                raise NotStoredError
+            self._lock()
+            if (stored := self._stored(*key)) is not None:
+                self._unlock()
+        return stored
+
+    def _stored(self, *key: Any) -> Any:
+        try:
+            return super().load_overload(*key)
+        except Exception:
+            with contextlib.suppress(OSError):
+                self.flush()
+            return None
+
+    def _lock(self) -> None:
+        """Wait while another process compiles this function, which frees the lock also where it is killed.
+
+        A process that compiles for another one goes on to the next function instead.
+        """
+        with contextlib.suppress(OSError):  # a disk that cannot be written stores nothing either
+            try:
+                self._locked = FileLock(f"{self._cache_file._index_path}.lock")
+                self._locked.acquire(blocking=not is_behind())
+            except Timeout:
+                raise NotStoredError from None
+
+    def _unlock(self) -> None:
+        if self._locked is not None:
+            self._locked.release()
+
+    def save_overload(self, *key: Any) -> None:
+        """Store the compiled function unless the disk refuses."""
+        with contextlib.suppress(OSError):
+            super().save_overload(*key)
+        self._unlock()
+
+
+class Compilations(event.Listener):  # type: ignore[misc]
+    """Says which loop is being compiled where that takes seconds, how many, and where it is stored."""
+
+    def on_start(self, event: Any) -> None:
+        """Tell the user why nothing seems to happen."""
+        dispatcher = event.data.get("dispatcher")
+        function = getattr(dispatcher, "py_func", None)
+        slow = SLOW.get(f"{function.__module__}.{function.__name__}") if function is not None else None
+        if slow is not None:
+            folder = dispatcher._cache.cache_path
+            stored = f"once; stored in {folder}" if folder is not None else f"in every process: {NOWHERE}"
+            notice(f"compiling {slow[0]}, some {slow[1]} s of a core, {stored}")
+
+    def on_end(self, event: Any) -> None:
+        """Nothing to say."""
+
+
+def tell_of_compilations() -> None:
+    """From now on, tell the user of compilations that take seconds."""
+    event.register("numba:compile", Compilations())
