@@ -142,6 +142,10 @@ EQUIVALENT = {
     },
     "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
+    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardens": "at the peak both are the same",
+    "bond_law.py: if math.hypot(bond.k * (gap + closing), sheared) <= hardened(bond, closing):": (
+        "no closing that is tried bears to the last bit what presses"
+    ),
     "bond_law.py: if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears / bond.bears:": (
         "what is not crushed closes by zero in the search, too"
     ),

@@ -338,9 +338,7 @@ INVARIANCES = {
         Invariance(mirrored, "of two equal faces the first has the lines", 1e-12, 0.05, **OTHERWISE),
         Invariance(quarter_turn, SUMS, 1e-12, **OTHERWISE),
         Invariance(renumbered, SUMS, 1e-12, **OTHERWISE),
-        Invariance(
-            in_space, "prisms have twice the lines and are larger", 1e-8, rigid=0.05, meets=0.15, drawn=0.02, nudges=100
-        ),
+        Invariance(in_space, "prisms have twice the lines and are larger", 1e-8, 1e-3, 0.05, 0.15, 0.02, 100),
         Invariance(larger, "the search for rest ends within rounding", 1e-12, **OTHERWISE),
         Invariance(heavier, "the search for rest ends within rounding", 1e-12, **OTHERWISE),
         Invariance(longer, "products by three are rounded", 1e-12, **OTHERWISE),
