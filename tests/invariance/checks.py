@@ -23,7 +23,7 @@ UNPAID = 0.01
 """Largest residual of the ledger over its largest part without a warning [-], as `solve_explicit` warns."""
 GIVEN_BACK = 5e-3
 """Most that an account which can only take gives back, over the largest part of the ledger [-]."""
-BELOW = 0.15
+BELOW = 0.25
 """How far a corner may lie below the ground, over the size of its block [-], where no overlap is warned of."""
 
 
