@@ -334,7 +334,7 @@ INVARIANCES = {
         Invariance(from_the_middle, "the end of a run has all that its steps keep", 1e-12, nudges=100),
         Invariance(zeros_after, BITS),
         Invariance(far_block, "what is near is sorted otherwise", 1e-12, rigid=1e-3, nudges=100),
-        Invariance(elsewhere, "coordinates are rounded to 1e-13 m", 1e-9, **OTHERWISE | {"nudges": 1e4}),
+        Invariance(elsewhere, "coordinates are rounded to 1e-13 m", 1e-9, **OTHERWISE | {"nudges": 1e5}),
         Invariance(mirrored, "of two equal faces the first has the lines", 1e-12, 0.05, **OTHERWISE),
         Invariance(quarter_turn, SUMS, 1e-12, **OTHERWISE),
         Invariance(renumbered, SUMS, 1e-12, **OTHERWISE),
