@@ -1,7 +1,8 @@
-# `make demo` and `make test` set up what they need in .venv and are quick the second time.
+# `make demo` sets up the package in .venv, `make test` adds what tests need. Both are quick the second time.
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
+TEST := .venv/.test
 DOCS := .venv/.docs
 OLDEST := .venv-oldest
 INSTALLED := out/installed
@@ -16,7 +17,7 @@ test test-slow test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 demo: $(READY)
 	$(BIN)/python scripts/paper/compare_wall.py --check --out out/demo
 
-test: $(READY)
+test: $(TEST)
 	$(BIN)/pytest -n auto
 
 docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.html; a warning is an error
@@ -27,7 +28,7 @@ docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.
 test-slow: $(DOCS)
 	$(BIN)/pytest -n auto --dist worksteal -m slow
 
-mutants: $(READY) # changes one operator or number of the physics at a time and names what no test notices; some minutes
+mutants: $(TEST) # changes one operator or number of the physics at a time and names what no test notices; some minutes
 	$(BIN)/python tests/mutants.py $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED))
 
 test-oldest: $(OLDEST)/.ready # the everyday tests with the oldest Python and versions that pyproject.toml allows
@@ -47,7 +48,7 @@ test-installed:
 		files/mjrock-*.tar.gz
 	cd $(INSTALLED) && venv/bin/python -m pytest -n auto --ignore tests/house
 
-lint: $(READY)
+lint: $(TEST)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -125,6 +126,7 @@ robots: $(READY) # public robots; PACKAGES=folder of packages that carry their m
 
 $(READY): INSTALL = pip install --quiet --disable-pip-version-check
 $(OLDEST)/.ready: PYTHON = python3.11
+$(OLDEST)/.ready: EXTRA = [test]
 $(OLDEST)/.ready: INSTALL = pip install --quiet --disable-pip-version-check uv && \
 	$(OLDEST)/bin/python -m uv pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct
 
@@ -139,10 +141,14 @@ $(READY) $(OLDEST)/.ready: %/.ready: pyproject.toml $$(STALE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "mjrock needs Python 3.11 or newer; name one with: make PYTHON=python3.12 ..."; exit 1; }
 	$(PYTHON) -m venv $(if $(filter stale,$^),--clear) $*
-	$*/bin/python -m $(INSTALL) --editable '.[test]'
+	$*/bin/python -m $(INSTALL) --editable '.$(EXTRA)'
 	@touch $@
 
-$(DOCS): $(READY)
+$(TEST): $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@touch $@
+
+$(DOCS): $(TEST)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	@touch $@
 

@@ -2,22 +2,26 @@
 
 `compiled` marks a loop for compilation at its first call. The result is stored in the folder that the environment
 variable NUMBA_CACHE_DIR names, or in `__pycache__` beside the module, or in the user's cache folder where the package
-lies on a read-only disk. Where none of them can be written, each process compiles anew. `inlined` marks a function that
-compiled loops call, which takes the place of its call; called from Python it runs as Python. With NUMBA_DISABLE_JIT=1,
-and on a Python that has no numba, all of them run as plain Python with the same results.
+lies on a read-only disk. Where none of them can be written, each process compiles anew. Of processes that need a loop
+at once one compiles it, and the others wait. Short runs need not wait at all, see `patience`. `inlined` marks a
+function that compiled loops call, which takes the place of its call; called from Python it runs as Python. With
+NUMBA_DISABLE_JIT=1, and on a Python that has no numba, all of them run as plain Python with the same results.
 """
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
+import os
 import re
 import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
+from . import patience
 from .interrupts import interrupts_held_back
 
 SLOW = {
@@ -95,12 +99,28 @@ def _imported_numba() -> Any:
     class _Cache(numba.core.caching.FunctionCache):  # type: ignore[misc]
         """numba's cache on disk, which is a convenience: whatever is wrong with it, the function is compiled anew."""
 
-        def __init__(self, function: Function) -> None:
+        def __init__(self, function: Function, at_once: bool) -> None:
             super().__init__(function)
+            self._at_once = at_once
             self._cache_file._source_stamp = stamp(Path(function.__code__.co_filename))
+            self._locked: Any = None
 
         def load_overload(self, *key: Any) -> Any:
-            """The compiled function, or None where it cannot be read. What is stored then makes room for it."""
+            """The compiled function, or None where there is none that can be read. This process then compiles it, and
+            others wait. What is stored makes room for it.
+
+            Raises:
+                NotStoredError: if there is none, and the run need not wait for it.
+            """
+            if (stored := self._stored(*key)) is None:
+                if patience.allowed(self._at_once):
+                    raise NotStoredError
+                self._lock()
+                if (stored := self._stored(*key)) is not None:
+                    self._unlock()
+            return stored
+
+        def _stored(self, *key: Any) -> Any:
             try:
                 return super().load_overload(*key)
             except Exception:
@@ -108,10 +128,27 @@ def _imported_numba() -> Any:
                     self.flush()
                 return None
 
+        def _lock(self) -> None:
+            """Wait while another process compiles this function, which frees the lock also where it is killed. A
+            process that compiles for another one goes on to the next function instead."""
+            from filelock import FileLock, Timeout
+
+            with contextlib.suppress(OSError):  # a disk that cannot be written stores nothing either
+                try:
+                    self._locked = FileLock(f"{self._cache_file._index_path}.lock")
+                    self._locked.acquire(blocking=not patience.is_behind())
+                except Timeout:
+                    raise NotStoredError from None
+
+        def _unlock(self) -> None:
+            if self._locked is not None:
+                self._locked.release()
+
         def save_overload(self, *key: Any) -> None:
             """Store the compiled function unless the disk refuses."""
             with contextlib.suppress(OSError):
                 super().save_overload(*key)
+            self._unlock()
 
     class _Compilations(event.Listener):  # type: ignore[misc]
         """Says which loop is being compiled where that takes seconds, how many, and where it is stored."""
@@ -160,22 +197,74 @@ def inlined(function: Function) -> Function:
     return function
 
 
-def compiled(function: Function) -> Function:
-    """Compile a function at its first call, and store the result on disk where that is possible.
+class NotStoredError(Exception):
+    """A loop is not stored."""
 
-    The function allocates nothing: it writes into arrays that it is given. numba then need not count references to
-    arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
-    numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
 
-    Products and sums are not fused (numba's `fastmath={"contract"}`), although explicit steps would be 13 to 17 %
-    faster. Last digits would then differ between processors that fuse and others, and masonry that slides or falls
-    makes of last digits another motion: what one machine has found another could not repeat.
+class Loop:
+    """A function that numba compiles when it is called, or that runs as plain Python while `patience` allows it.
+
+    Args:
+        function: allocates nothing: it writes into arrays that it is given. numba then need not count references to
+            arrays, which would take longer than the arithmetic. It returns numbers or plain tuples: for a NamedTuple
+            numba calls its class, and a signal that raises in this call, such as Ctrl-C, ends the interpreter.
+        at_once: whether plain Python is too slow for it.
     """
-    numba = _numba()
-    if numba is None:
-        return function
-    dispatcher = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)(function)
-    if dispatcher is not function:  # it is with NUMBA_DISABLE_JIT=1
-        with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
-            dispatcher._cache = globals()["_Cache"](function)
-    return dispatcher  # type: ignore[no-any-return]
+
+    def __init__(self, function: Callable[..., Any], *, at_once: bool = False) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func, self._at_once = function, at_once
+        self._loaded, self._looked = False, -1
+
+    def __call__(self, *arguments: Any) -> Any:
+        """What the function returns."""
+        patient = patience.allowed(self._at_once)
+        if not patient or self._loaded or self._looked != patience.news():
+            self._looked = patience.news()
+            if not patient or self._loaded or may_be_stored(self.py_func):
+                with contextlib.suppress(NotStoredError):
+                    found = self.dispatcher(*arguments)
+                    self._loaded = True
+                    return found
+        return patience.as_plain_python(self.py_func, arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        """What numba knows of the function, such as its signatures."""
+        if name.startswith("__") or name == "dispatcher":
+            raise AttributeError(f"{self.py_func.__qualname__} has no attribute {name!r}")
+        return getattr(self.dispatcher, name)
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        """The function as numba calls it; as it is, where numba is missing or switched off.
+
+        Products and sums are not fused (numba's `fastmath={"contract"}`), although explicit steps would be 13 to 17 %
+        faster. Last digits would then differ between processors that fuse and others, and masonry that slides or falls
+        makes of last digits another motion: what one machine has found another could not repeat.
+        """
+        numba = _numba()
+        if numba is None:
+            return self.py_func
+        dispatcher = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)(self.py_func)
+        if dispatcher is not self.py_func:  # it is with NUMBA_DISABLE_JIT=1
+            with contextlib.suppress(RuntimeError):  # neither the package nor the user's folder can be written
+                dispatcher._cache = globals()["_Cache"](self.py_func, self._at_once)
+        return dispatcher
+
+
+def may_be_stored(function: Callable[..., Any]) -> bool:
+    """Whether a look at what is stored is worth importing numba, which takes half a second."""
+    module = Path(function.__code__.co_filename)
+    beside = module.parent / "__pycache__"
+    elsewhere = "NUMBA_CACHE_DIR" in os.environ or not os.access(beside if beside.exists() else module.parent, os.W_OK)
+    return "numba" in globals() or elsewhere or any(beside.glob(f"{module.stem}.{function.__qualname__}-*.nbi"))
+
+
+def compiled(function: Function) -> Function:
+    """Compile a function when it is called, and store the result on disk where that is possible, see `Loop`."""
+    return Loop(function)  # type: ignore[return-value]
+
+
+def compiled_at_once(function: Function) -> Function:
+    """Compile a function when it is called also where a run is short: plain Python is too slow for it."""
+    return Loop(function, at_once=True)  # type: ignore[return-value]

@@ -1,10 +1,13 @@
 import contextlib
+import os
 from collections.abc import Callable
 
 import pytest
 
 import mjrock as mr
 from scripts.shared.paper import FIGURE_3, K_N
+
+os.environ.setdefault("MJROCK_INTERPRET", "0")  # tests compile; those of first answers switch it on
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

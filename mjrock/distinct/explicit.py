@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from ..patience import first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
@@ -25,6 +27,9 @@ from .overlap import checked_overlap
 from .reading import Run, response_of
 from .setup import carried_on, setup_of, slowed
 from .system import Books, Samples
+
+SHORT = 0.02
+"""Duration of the run by which another process compiles the loops [s]."""
 
 
 def solve_explicit(
@@ -94,7 +99,8 @@ def solve_explicit(
     state = None if start is None else required_start(start, case)
     if isinstance(case, Case) and start is None:
         warn_if_still(case, forces=forces)
-    setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
+    with first_answer(solve_shortly, case=case, contacts=contacts):
+        setup = slowed(carried_on(setup_of(case, contacts, state), start), mass_damping, local_damping)
     scene, limit = setup.scene, setup.limit
     steps = Stepping.of(setup, timestep, spacing)
     count, bodies = steps.samples, len(scene.bodies.names)
@@ -131,3 +137,8 @@ def solve_explicit(
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     return response
+
+
+def solve_shortly(case: Case | MasonryCase, contacts: Contacts | None) -> None:
+    """The first steps of a case, which call all loops."""
+    solve_explicit(replace(case, duration=min(case.duration, SHORT)), contacts)

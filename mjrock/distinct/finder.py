@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.frames import SPACE
 from ..geometry.vectors import Vector, dot, minus, plus, scaled, spun, vector
 from ..problem.masonry.compound import AnyBlock
@@ -206,7 +206,7 @@ def among(values: Integers, number: int) -> bool:
     return low < len(values) and values[low] == number
 
 
-@compiled
+@compiled_at_once
 def find(solids: Solids, near: Near, table: Array, room: Array) -> int:
     """Write the places of all pairs that are near, see `clipping.clip`, those of faces in the grid of their joint where
     they had one.

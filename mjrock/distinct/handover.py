@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -290,7 +290,7 @@ def give_to_nearest(
             give(gone, new.rows[i], 1 / count, both, blocks, axes)
 
 
-@compiled
+@compiled_at_once
 def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks, axes: tuple[int, ...]) -> None:
     """Write the lines of places, and let them take over what the lines of their pair had that are gone.
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.vectors import components, dot, minus, plus, put, spin_components, vector
 from ..problem.masonry.joint_law import stored
 from ..quantities import GRAVITY, Array, Flags, Integers
@@ -111,7 +111,7 @@ class Wear(NamedTuple):
     left: Array
 
 
-@compiled
+@compiled_at_once
 def take_motion(system: System, blocks: Blocks, motion: Motion) -> None:
     """Write where the blocks are that move, and how fast, and take the inertia of the bodies there."""
     write_motion(system, blocks, motion, system.axes)
@@ -179,7 +179,7 @@ def fallen(look: float) -> float:
     return 0.5 * GRAVITY * look**2
 
 
-@compiled
+@compiled_at_once
 def watch(motion: Motion, sizes: Array, reach: Reach, seen: Seen, left: Flags, since: float) -> bool:
     """Bring up to date which blocks are looked at, and name those whose places serve no longer.
 
@@ -228,7 +228,7 @@ def closing(motion: Motion, one: int, other: int) -> float:
     return speed
 
 
-@compiled
+@compiled_at_once
 def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags, look: float) -> None:
     """Write for how long places serve that have been found.
 
@@ -259,7 +259,7 @@ def wait(found: Found, motion: Motion, sizes: Array, seen: Seen, soon: Flags, lo
                 soon[i] = found.gap[i] < SURE * (speed * until + 2 * fallen(look) + NEAR * size)
 
 
-@compiled
+@compiled_at_once
 def wears(system: System, wear: Wear) -> bool:
     """Bring slip and gap of joints up to date. Returns whether a pair has left its joints."""
     return wears_joints(system, wear, system.axes)
@@ -294,7 +294,7 @@ def wears_joints(system: System, wear: Wear, axes: tuple[int, ...]) -> bool:
     return left
 
 
-@compiled
+@compiled_at_once
 def held(system: System, which: Integers, depth: Array) -> float:
     """Energy in the springs along the normal of some of the lines [J], and write how deep each presses [m]."""
     return held_by_lines(system, which, depth, system.axes)

@@ -10,7 +10,7 @@ import math
 import sys
 from typing import NamedTuple
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -241,7 +241,7 @@ def is_astray(bodies: Rows, ends: float, axes: tuple[int, ...]) -> bool:
     return False
 
 
-@compiled
+@compiled_at_once
 def advance(system: System, books: Books, samples: Samples, clock: Clock) -> tuple[int, int, bool]:
     """Steps up to that before which to stop. Samples and looks are made of every so many, and of the last.
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.vectors import (
     Vector,
     components,
@@ -153,7 +153,7 @@ def squared(a: Array, square: Array) -> float:
     return trace
 
 
-@compiled
+@compiled_at_once
 def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room, axes: tuple[int, ...]) -> None:
     """Write the share of their law that the places of each body have left, see `shares_within`.
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled, inlined
+from ..compiled import compiled_at_once, inlined
 from ..geometry.frames import SPACE
 from ..geometry.hull import prism
 from ..geometry.vectors import Vector, increase, put, vector
@@ -121,7 +121,7 @@ def changed(change: Array, a: Vector) -> Vector:
     )
 
 
-@compiled
+@compiled_at_once
 def move(solids: Solids, place: Array, change: Array, moved: Solids) -> None:
     """Write where solids are, see `Solids.moved`."""
     for b in range(len(place)):

@@ -22,6 +22,11 @@ or strikes, and where much does. Columns of 16 and 64 blocks take 1.2e-6 and 0.7
 WEAK_IN_SPACE, STRONG_IN_SPACE = 1.5e-6, 140e-6
 """`WEAK` and `STRONG` for points in space [s2]. A column of 12 drums takes 2e-6 to 3e-6, a facade with return walls
 1e-5 under a weak sine and 1.4e-4 under a strong one (`scripts/studies/columns_in_space.py`)."""
+INTERPRETED = 10.0
+"""Time of steps that fit the motion as plain Python over the middle of what compiled ones may take [-]. Walls take 2 to
+9, stacks 15."""
+A_BODY, A_LINE = 7e-5, 5e-6
+"""What each body and each contact line adds to a step of one length as plain Python [s]."""
 WORTH_SAYING = 3.0
 """How many times faster explicit steps must be than the middle of what fitted steps may take to be spoken of [-]."""
 
@@ -41,6 +46,14 @@ def fitted_seconds(scene: Scene) -> tuple[float, float]:
     unit = len(scene.contacts.k) * scene.highest_frequency
     weak, strong = (WEAK, STRONG) if scene.freedom == PLANE else (WEAK_IN_SPACE, STRONG_IN_SPACE)
     return weak * unit, strong * unit
+
+
+def interpreted_seconds(scene: Scene, duration: float, timestep: float | None) -> float:
+    """Time of a run as plain Python [s], the middle of what it may take; with a fixed step where one is given [s]."""
+    if timestep is not None:
+        return duration / timestep * (A_BODY * len(scene.bodies.mass) + A_LINE * len(scene.contacts.k))
+    weak, strong = fitted_seconds(scene)
+    return INTERPRETED * duration * math.sqrt(weak * strong)
 
 
 def warn_if_slow(scene: Scene, masonry: Masonry) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..method import METHOD, Method
+from ..patience import expect, first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.block import Block
@@ -23,7 +24,7 @@ from ..scene.course import Course
 from ..scene.explicit_step import warn_if_tiny
 from ..scene.of_case import course_of, require_case, scene_of
 from ..scene.scene import Scene
-from .estimate import warn_if_slow
+from .estimate import interpreted_seconds, warn_if_slow
 from .mjcf import pair_rows
 from .model import engine_of
 from .pace import short_step
@@ -42,9 +43,8 @@ from .stepping import fitted_steps, fixed_steps
 Asked = tuple[Case | MasonryCase, Contacts | None]
 """A case and its contacts; those of masonry are its own."""
 ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
-"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground. Rocking under a record
-multiplies an error of its first impacts, two-sided by some 10 in the median and by more than 100 in one of ten
-(`scripts/measure/records_accuracy.py`)."""
+"""Accuracy of fitted steps where none is asked for [-], the second for a wall on moving ground, whose rocking
+multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
 SPACING = 1e-3
 """Distance of samples between fitted steps, where none is asked for [s]."""
 
@@ -191,7 +191,7 @@ def simulate(
         >>> answer.outcome.value
         'at rest'
     """
-    watch = Stopwatch()
+    given, watch = locals().copy(), Stopwatch()
     require_case(case, contacts)
     accuracy = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, accuracy, newmark_beta, coulomb, output_step, ledger, forces, method)
@@ -208,20 +208,21 @@ def simulate(
     if forces:
         required_room(case, case.duration / options.apart)
     state = None if start is None else required_start(start, case)
-    scene = scene_of(case, contacts, method)
-    course = course_of(case, scene)
-    if state is not None:
-        course = course.continued(*state)
-    asked = case, contacts
-    if options.timestep is None:
-        if isinstance(case, MasonryCase):
-            warn_if_slow(scene, case.masonry)
-        run, settings = fitted(asked, scene, course, options)
-    else:
-        warn_if_coarse(scene, options.timestep)
-        warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
-        run, settings = fixed(asked, scene, course, options, options.timestep)
-    response = run.response(options.spacing, options.stride, options.ledger, options.forces, settings)
+    with first_answer(simulate, **given):
+        scene = scene_of(case, contacts, method)
+        course = course_of(case, scene)
+        if state is not None:
+            course = course.continued(*state)
+        expect(interpreted_seconds(scene, course.duration, options.timestep))
+        if options.timestep is None:
+            if isinstance(case, MasonryCase):
+                warn_if_slow(scene, case.masonry)
+            run, settings = fitted((case, contacts), scene, course, options)
+        else:
+            warn_if_coarse(scene, options.timestep)
+            warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
+            run, settings = fixed((case, contacts), scene, course, options, options.timestep)
+        response = run.response(options.spacing, options.stride, options.ledger, options.forces, settings)
     if not (options.timestep is None or options.slides):
         warn_if_lifted(scene, run.steps)
     if isinstance(case, Case) and contacts is not None:

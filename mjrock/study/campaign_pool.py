@@ -124,6 +124,7 @@ def _unscripted() -> Iterator[None]:
 def start_worker() -> None:
     """What a worker process does first. It can then be ended at once, also while compiled code runs."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    os.environ["MJROCK_INTERPRET"] = "0"  # many runs: one worker compiles a loop, and the others wait for it
     tqdm.set_lock(threading.RLock())  # its own is a semaphore, which a process that is killed would leave behind
     if not sys.warnoptions:
         warnings.simplefilter("always", UserWarning)  # the campaign counts them

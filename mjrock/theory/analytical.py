@@ -10,6 +10,7 @@ import warnings
 
 import numpy as np
 
+from ..patience import first_answer
 from ..problem.damping.restitution import Restitution
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
@@ -78,11 +79,12 @@ def solve_analytical(
         warnings.warn(unlike, Implausible, stacklevel=2)
     warn_if_still(case)
     watch = Stopwatch()
-    motion = _rocking(case, e, rtol, rest)
-    outcome = _outcome(case, motion)
-    t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
-    samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
-    theta, omega = motion.sample(samples)
+    with first_answer(solve_analytical, case=case, e=e, rtol=rtol, output_step=output_step, rest=rest):
+        motion = _rocking(case, e, rtol, rest)
+        outcome = _outcome(case, motion)
+        t_end = motion.t if outcome is Outcome.OVERTURNED else case.duration
+        samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
+        theta, omega = motion.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
     stretched, plastic = _with_ties(case, motion, samples, theta)
     if outcome is not Outcome.OVERTURNED:

@@ -75,6 +75,7 @@ WRITES = {
     "facade": {"facade.png", "facade.txt"},
     "vaults": {"vaults.png", "vaults.txt"},
     "throughput": {"throughput.txt"},
+    "first_minute": {"first_minute.csv", "first_minute.txt"},
     "stack_before_and_after": {"stack_before_and_after.gif", "stack_before_and_after.txt"},
     "stacks_grippers_feet": {"stacks_grippers_feet.txt"},
     "asked_and_found": {"asked_and_found.csv", "asked_and_found.txt"},

@@ -1,0 +1,262 @@
+"""Where no loop is stored, a short run has its answer as plain Python while another process compiles: `patience`."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mjrock as mr
+from mjrock import compiled, patience
+
+PACKAGE = Path(mr.__file__).parent
+THIRTY = Path(__file__).with_name("thirty_scenes.py")
+pytest.importorskip("numba")
+
+WALL = """
+import sys, time
+import mjrock as mr
+from mjrock import patience
+wall = mr.Block.from_size(0.6, 4.2)
+contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
+case = mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False)
+answer = mr.simulate(case, contacts)
+behind = patience._here.compiling
+print(answer.theta[-1].hex(), "numba" in sys.modules, behind and behind.pid, flush=True)
+"""
+
+
+@pytest.fixture
+def fresh(tmp_path):
+    """A copy of the package that has stored nothing."""
+    shutil.copytree(PACKAGE, tmp_path / "mjrock", ignore=shutil.ignore_patterns("__pycache__"))
+    return tmp_path
+
+
+def started(folder, program=WALL, interpret="1", **environment):
+    """A program in a process of its own that takes the package in a folder."""
+    setting = os.environ | {"PYTHONPATH": str(folder), "MJROCK_INTERPRET": interpret} | environment
+    piped = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen([sys.executable, "-c", program], env=setting, cwd=folder, **piped)
+
+
+def said(folder, program=WALL, interpret="1", **environment):
+    """What a program prints: on the first line its answer, whether numba is imported, which process compiles."""
+    out, err = started(folder, program, interpret, **environment).communicate()
+    assert err == "", err
+    return out.split()
+
+
+def stored(folder, loop="fitted_loop"):
+    """Whether a loop is stored."""
+    return any((folder / "mjrock/engine/__pycache__").glob(f"loop.{loop}*.nbc"))
+
+
+def is_alive(process):
+    """Whether a process runs, and is no zombie."""
+    try:
+        return "Z" not in Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+
+
+def test_an_answer_comes_without_a_compiler_and_with_the_same_digits(fresh):
+    theta, numba, _ = said(fresh)
+    assert numba == "False"
+    wall = mr.Block.from_size(0.6, 4.2)
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
+    assert theta == mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False), contacts).theta[-1].hex()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="it looks into /proc")
+@pytest.mark.parametrize("ending", ["ends", "killed"])
+def test_the_process_that_compiles_ends_with_its_parent(fresh, ending):
+    parent = started(fresh, WALL + "sys.stdin.read()")
+    process = parent.stdout.readline().split()[-1]
+    if process == "None":
+        pytest.skip("one core: nothing compiles behind a run")
+    assert is_alive(process)
+    if ending == "killed":
+        parent.kill()
+    parent.communicate("")
+    until = time.monotonic() + 20
+    while is_alive(process) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not is_alive(process)
+    assert not stored(fresh)
+
+
+@pytest.mark.slow
+def test_later_calls_take_what_another_process_has_stored(fresh):
+    waiting = """
+first, until = answer.theta, time.monotonic() + 300
+while "numba" not in sys.modules and time.monotonic() < until:
+    time.sleep(0.5)
+    patience._here.taken = 0.0  # as if plain Python took no time
+    answer = mr.simulate(case, contacts)
+assert (answer.theta == first).all()
+from mjrock.engine import loop
+print(bool(loop.fitted_loop.signatures), sum(loop.fitted_loop.stats.cache_hits.values()))
+"""
+    assert said(fresh, WALL + waiting)[-2:] == ["True", "1"]
+
+
+@pytest.mark.slow
+def test_two_processes_at_once_compile_a_loop_once(fresh):
+    """The second waits for the first, and then takes what it has stored."""
+    once = """
+from mjrock.engine import loop
+print(sum(loop.fitted_loop.stats.cache_misses.values()), sum(loop.fitted_loop.stats.cache_hits.values()))
+"""
+    both = [started(fresh, WALL + once, interpret="0") for _ in range(2)]
+    found = [process.communicate()[0].split() for process in both]
+    assert found[0][0] == found[1][0]
+    assert sorted(counts[-2:] for counts in found) in ([["0", "1"], ["1", "0"]], [["1", "0"], ["1", "1"]])
+
+
+@pytest.mark.slow
+def test_campaign_workers_compile(fresh):
+    program = """
+import mjrock as mr
+def build(scale):
+    wall = mr.Block.from_size(0.6, 4.2)
+    contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
+    return mr.Analysis(mr.Case(wall, scale * wall.alpha, 0.2, side_stop=False), contacts)
+if __name__ == "__main__":
+    mr.campaign(mr.Grid(build, scale=[0.2, 0.3, 0.4, 0.5]), "walls.sqlite", workers=2)
+"""
+    (fresh / "walls.py").write_text(program)
+    run = subprocess.run(
+        [sys.executable, "walls.py"],
+        env=os.environ | {"PYTHONPATH": str(fresh), "MJROCK_INTERPRET": "1"},
+        cwd=fresh,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert run.stderr.count("compiling steps in MuJoCo that fit the motion") == 1
+    assert stored(fresh)
+
+
+def test_switched_off_it_compiles(fresh, monkeypatch):
+    monkeypatch.setenv("MJROCK_INTERPRET", "0")
+    with patience.first_answer(print):
+        assert not patience.allowed(at_once=False)
+    monkeypatch.setenv("MJROCK_INTERPRET", "1")
+    with patience.first_answer(print):
+        assert patience.allowed(at_once=False)
+        assert not patience.allowed(at_once=True)
+        monkeypatch.setattr(patience._here, "taken", patience.COMPILING)
+        assert not patience.allowed(at_once=False)
+    monkeypatch.setattr(patience._here, "taken", 0.0)
+    assert not patience.allowed(at_once=False)
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    with patience.first_answer(print):
+        assert not patience.allowed(at_once=False)
+
+
+def test_a_long_run_compiles_at_once(monkeypatch):
+    monkeypatch.setenv("MJROCK_INTERPRET", "1")
+    monkeypatch.setattr(patience._here, "taken", 0.0)
+    with patience.first_answer(print):
+        patience.expect(0.5 * patience.COMPILING)
+        assert patience.allowed(at_once=False)
+        monkeypatch.setattr(patience._here, "taken", 0.6 * patience.COMPILING)
+        patience.expect(0.5 * patience.COMPILING)
+        assert not patience.allowed(at_once=False)
+
+
+@pytest.fixture
+def patient(monkeypatch):
+    """First answers in this process, by loops that nobody compiles behind it."""
+    monkeypatch.setenv("MJROCK_INTERPRET", "1")
+    monkeypatch.setattr(patience._here, "taken", 0.0)
+    monkeypatch.setattr(patience._here, "started", patience.MOST)
+
+
+def double(values):
+    for i in range(len(values)):
+        values[i] = 2 * values[i]
+
+
+def test_the_time_of_plain_python_counts(patient, monkeypatch):
+    """Once it is as long as compiling, the loop is compiled."""
+    loop, room = compiled.compiled(double), np.array([1.0, 2.0])
+    monkeypatch.setattr(compiled, "may_be_stored", lambda function: False)
+    with patience.first_answer(print):
+        loop(room)
+        assert 0 < patience._here.taken < 1
+        assert "dispatcher" not in vars(loop)
+        monkeypatch.setattr(patience._here, "taken", patience.COMPILING)
+        loop(room)
+    assert len(loop.signatures) == 1
+    assert list(room) == [4.0, 8.0]
+
+
+@pytest.mark.parametrize("written", ["never", "not read"])
+def test_a_disk_that_refuses(patient, monkeypatch, written):
+    """A full or damaged disk: short runs go on as plain Python, and what is compiled in the end runs."""
+    from numba.core.caching import FunctionCache
+
+    def refused(self, *key):
+        raise OSError(28, "No space left on device")
+
+    for name in ("save_overload", "load_overload") if written == "never" else ("load_overload",):
+        monkeypatch.setattr(FunctionCache, name, refused)
+    loop, room = compiled.compiled(double), np.array([1.0])
+    with patience.first_answer(print):
+        loop(room)
+    loop(room)
+    assert list(room) == [4.0]
+
+
+def test_the_disk_is_full_where_a_lock_should_be(patient, monkeypatch):
+    import filelock
+
+    class Full(filelock.FileLock):
+        def acquire(self, *arguments, **named):
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(filelock, "FileLock", Full)
+    room = np.array([1.0])
+    compiled.compiled(double)(room)
+    assert list(room) == [2.0]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_ends_a_run_in_plain_python(fresh):
+    """The run of a record of 30 s, which takes some seconds as plain Python; the next one has its answer."""
+    program = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests run in the background
+record = mr.GroundMotion.synthetic(peak=4.0, duration=30.0, seed=1)
+try:
+    print("begins", flush=True)
+    mr.simulate(mr.Case(wall, 0.0, 30.0, motion=record, side_stop=False), contacts)
+except KeyboardInterrupt:
+    print((mr.simulate(case, contacts).theta == answer.theta).all(), "numba" in sys.modules)
+"""
+    run = started(fresh, WALL + program)
+    while run.stdout.readline() != "begins\n":
+        pass
+    time.sleep(0.5)
+    run.send_signal(signal.SIGINT)
+    assert run.communicate() == ("True False\n", "")
+
+
+@pytest.mark.slow
+def test_thirty_scenes_have_the_same_bits_as_plain_python():
+    def digests(**environment):
+        command = [sys.executable, str(THIRTY)]
+        run = subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=True)
+        return json.loads(run.stdout)
+
+    plain, fast = digests(NUMBA_DISABLE_JIT="1"), digests()
+    assert len(plain) >= 30
+    assert plain == fast
