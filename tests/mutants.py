@@ -36,6 +36,8 @@ OTHERS = (
     "scene/rest.py",
     "result/history.py",
     "reference/equations.py",
+    *(f"problem/masonry/{name}.py" for name in ("bond", "compound", "effects", "support", "surface", "tilt")),
+    "distinct/encounters.py",
 )
 """Modules of the method without compiled functions."""
 TOOLS = (
@@ -69,6 +71,12 @@ OWN = {
     "distinct/slowing.py": ("push",),
     "distinct/bonds.py": ("bonds", "bonded_masonry"),
     "problem/masonry/bond_law.py": ("bond_law", "bonds", "bonded_masonry"),
+    "problem/masonry/bond.py": ("bonds", "first_cracks", "masonry_inputs"),
+    "problem/masonry/compound.py": ("compound", "compound_blocks"),
+    "problem/masonry/effects.py": ("masonry_effects", "actuator_inputs", "links_between_blocks"),
+    "problem/masonry/support.py": ("supports", "links_on_supports", "supports_that_moved"),
+    "problem/masonry/surface.py": ("compound", "compound_blocks"),
+    "problem/masonry/tilt.py": ("tilt", "tilting"),
     "problem/masonry/actuator.py": ("actuators",),
     "distinct/links.py": ("actuators", "breaks_inside_a_step", "explicit_in_space", "explicit"),
     "distinct/encounters.py": ("encounters", "encounters_in_space"),
@@ -142,6 +150,12 @@ EQUIVALENT = {
     },
     "joint_law.py: force[i], energy[i] = normal_force(row, gap[i], 1), stored(row, gap[i])": "no dashpot is read",
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
+    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardens": (
+        "at the peak both are the same"
+    ),
+    "bond_law.py: if math.hypot(bond.k * (gap + closing), sheared) <= hardened(bond, closing):": (
+        "no closing that is tried bears to the last bit what presses"
+    ),
     "bond_law.py: if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears / bond.bears:": (
         "what is not crushed closes by zero in the search, too"
     ),
@@ -176,6 +190,8 @@ EQUIVALENT = {
     "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > ALIKE:": (
         "a sense is 1 or -1"
     ),
+    "pair_law.py: per_area = per_area * np.append(length / masonry.joints[softest].length / np.ones(4), "
+    "np.ones_like(length), 1)": "one multiplies and divides alike",
     "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
     "bonds.py: if gap <= 0 and bond.bears < math.inf:": "at a gap of zero nothing is crushed",
     "bonds.py: if gap < 1 and bond.bears < math.inf:": "what is open is not crushed by the law, either",

@@ -8,6 +8,7 @@ import pytest
 from bonded import MORTAR, joint
 
 import mjrock as mr
+from mjrock.distinct.setup import setup_of_masonry
 
 HUGE = mr.Bond(1e9, 1e9, 1e12, 1e12)
 WEAK = {"k_n": 2e9, "k_s": 1e9, "points": 3, "frequency": 500.0, "bond": mr.Bond(2e3, 2.8e3, 0.05, 0.5)}
@@ -276,3 +277,17 @@ def test_units_whose_bonds_are_strong_and_stiff_vibrate_as_one_block(in_space):
     one, units = np.concatenate(found[:2]), np.concatenate(found[2:])
     np.testing.assert_allclose(units, one, rtol=1e-6)
     assert one[2] == pytest.approx(math.sqrt(2.5e7 * 0.16 / (2000 * 0.4 * 0.4 * 1.2)), rel=1e-6)
+
+
+@pytest.mark.parametrize("in_space", [False, True])
+def test_each_line_of_a_bond_has_its_part_of_the_area(in_space):
+    """Damage of a joint is a mean over its area, of which each line has the part that it has of the stiffness."""
+    bond = {"k_n": 1e9, "k_s": 5e8, "points": 5, "bond": mr.Bond(1e5, 1e5, 10.0, 50.0)}
+    masonry = mr.Masonry.column(0.5, 2.0, 2, **bond)
+    if not in_space:
+        masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 1.0)] * 2, **bond)
+    system = setup_of_masonry(mr.MasonryCase(masonry, 0.1), None).system
+    for group in range(len(masonry.joints)):
+        bonds = system.bonds[system.lines["group"] == group]
+        np.testing.assert_allclose(bonds["share"], bonds["k"] / bonds["k"].sum(), rtol=1e-12)
+        assert bonds["share"].sum() == pytest.approx(1.0)

@@ -8,6 +8,7 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
+from mjrock.distinct.encounters import Encounters
 
 TABLE = box(-1, 0, 0, 1, name="table")
 
@@ -121,3 +122,22 @@ def test_a_wall_falls_into_a_heap_and_the_books_close():
     over_the_ground = np.abs(run.pose[-1, :, 0] + wall.centroids[list(wall.free), 0] - 1.0) < 1.5
     heights = run.pose[-1, :, 1] + wall.centroids[list(wall.free), 1]
     assert heights[over_the_ground].min() > 0.1  # none is in the ground
+
+
+def test_a_soft_place_that_presses_stays_soft(monkeypatch):
+    """A box that lands and slides on is found again and again. The spring that has caught it holds energy, and would
+    give back more if it became stiffer."""
+    kept, pressed = [], []
+
+    def stable(self, found, *others):
+        if pressed:
+            kept.append(self.met.share[self.met.pair == pressed[0]].max(initial=0.0))
+        pressing = found.gap < 0
+        if pressing.any() and not pressed:
+            pressed.append(int(self._numbers(found)[pressing][0]))
+        return np.full(len(found.gap), 1.0 if pressed else 0.1)
+
+    monkeypatch.setattr(Encounters, "_stable", stable)
+    masonry = mr.Masonry([GROUND, box(-3, 3, 0, 0.5), box(-0.1, 0.1, 0.501, 0.6)], k_n=1e8, friction=0.1, xi=0.1)
+    mr.solve_explicit(mr.MasonryCase(masonry, 0.3, velocity=[(0, 0, 0), (1.0, 0, 0)], settled=False))
+    assert kept[:5] == [0.1] * 5  # until it bounces off

@@ -56,3 +56,8 @@ def test_a_displacement_along_one_axis_may_be_too_large(far):
     histories = [0.0, 1.0], *([0.0, value] for value in rows.values())
     with pytest.raises(ValueError, match="a displacement of 200 m is outside the valid range to 100 m"):
         mr.MasonryCase(COLUMN, 1.0, supports={"ground": histories})
+
+
+def test_rows_of_different_lengths_are_refused():
+    with pytest.raises(ValueError, match="supports, ground"):
+        mr.MasonryCase(COLUMN, 1.0, supports={"ground": ([0.0, 1.0], [0.0, 0.1, 0.2], [0.0, 0.0])})
