@@ -128,9 +128,11 @@ def setup_of_masonry(case: MasonryCase, state: State | None) -> Setup:
     scene, at_rest, drawn = standing(masonry, case.passive, case.settled)
     course = continued(masonry_course(case, scene), state)
     system = moved_by(copied(at_rest), scene, masonry, case.supports)._replace(ground=course.ground)
+    unguided = longest_step(system)
     system = driven_by(system, scene, masonry, tuple(case.actuators.values()))
-    limit, impacts = longest_step(system), Impacts.at_joints(system)
-    step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * limit)))
+    limit = longest_step(system) if case.actuators else unguided
+    impacts = Impacts.at_joints(system)
+    step = impacts.step(SHARE * min(limit, max(drawn.longest, SPLINTERS * min(limit, unguided))))
     share, system = step / limit, bonded(system, masonry, scene.contacts.joint)
     of, blocks = (masonry, case.passive), tuple(support.block for support in case.supports)
     encounters = drawn.begun(blocks)
