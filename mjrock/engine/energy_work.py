@@ -228,7 +228,7 @@ def drag_of(law_k: float, dashpot: float, inertia: float, step: Step, i: int, ra
         step, i: the step, and which contact.
         rate, curve: mean velocity of the contact in the step, and its acceleration [m/s, m/s2].
     """
-    sprung = step.beta[i] * step.h**2 * law_k * curve
+    sprung = step.beta[i] * (step.h * step.h) * law_k * curve
     # the row acts on the velocity that the leapfrog keeps, half a step before the pose
     return Drag(dashpot * (rate - 0.5 * step.h * curve) + inertia * curve - sprung, sprung)
 

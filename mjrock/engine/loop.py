@@ -253,7 +253,7 @@ def fitted_loop(
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points.reach, openings)
         sliding_turned = sliding_changed(sliding)
         change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned) / energy
-        unpredictable = change > pace.method.abrupt**2
+        unpredictable = change > pace.method.abrupt * pace.method.abrupt
         settle_pose(memory, setting, pace, state, record, n)
 
         # judge

@@ -172,7 +172,7 @@ def judged(pace: Pace, h: float, change: float, calm: int) -> tuple[float, int]:
         change: (h |da| / |v|)^2 of the step just made [-].
         calm: the steps that were calm before it.
     """
-    tolerated = (pace.method.change * pace.accuracy) ** 2
+    tolerated = (pace.method.change * pace.accuracy) * (pace.method.change * pace.accuracy)
     if change > tolerated:
         return max(0.5 * h, pace.short), 0
     if 16 * change >= tolerated:

@@ -75,7 +75,7 @@ def impedance_of(inertia: float, inverse_weight: float) -> float:
 @inlined
 def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) -> float:
     """m_i = h c / 2 + beta h^2 k [kg], which makes the Euler step Newmark's with centred damping."""
-    return 0.5 * timestep * c + newmark_beta * timestep**2 * k
+    return 0.5 * timestep * c + newmark_beta * (timestep * timestep) * k
 
 
 @inlined

@@ -131,6 +131,6 @@ def _on_plates(places: Places, reach: float, pose: Array, frames: Array) -> int:
         for i in range(len(places.body)):
             if places.face_body[i] >= 0:
                 meets = meeting(places, i, frames)
-                if meets.gap < 0 and dot(meets.across, meets.across) - meets.gap**2 > reach**2:
+                if meets.gap < 0 and dot(meets.across, meets.across) - meets.gap * meets.gap > reach * reach:
                     return n
     return len(pose)

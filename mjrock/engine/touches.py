@@ -112,7 +112,7 @@ def predict(springs: Springs, openings: Openings, now: float, h: float, least: f
         if g < 0 or g + now * (g1 + 0.5 * now * g2) > 0:
             continue
         closing = math.sqrt(max(0.0, g1 * g1 - 2 * g * g2))
-        if (0.25 * springs.k[i] * h + springs.c[i]) * h * closing**2 > least:
+        if (0.25 * springs.k[i] * h + springs.c[i]) * h * (closing * closing) > least:
             touches.time[i], touches.speed[i] = 2 * g / (closing - g1), closing
             first = min(first, touches.time[i])
     return first

@@ -95,7 +95,7 @@ def _energies(
     for step in range(len(q)):
         take_frames(q[step], frames, places.axes)
         for j in range(len(masses)):
-            parts[step, 0] += 0.5 * masses[j] * v[step, j] ** 2
+            parts[step, 0] += 0.5 * masses[j] * (v[step, j] * v[step, j])
         if len(structure.products) > 0:
             parts[step, 0] += 0.5 * coupling(structure.products, v[step])
         parts[step, 1] = weight_energy(masses, q[step], places.axes)

@@ -1,6 +1,7 @@
 """The compiled loops: they run as plain Python with the same results, are stored, and are made anew when they must
 be."""
 
+import ast
 import importlib
 import os
 import pickle
@@ -196,6 +197,19 @@ def test_where_no_folder_can_be_written_it_says_so(monkeypatch, capfd):
     monkeypatch.setitem(stored.SLOW, f"{PROBE.__module__}.PROBE", ("probes", 7))
     compiled.compiled(PROBE)(np.ones(2))
     assert capfd.readouterr().err == f"mjrock: compiling probes, some 7 s of a core, {ANEW}\n"
+
+
+def test_squares_are_products():
+    """A power of a NumPy number and of a compiled one may differ in the last bit, which plain Python must not."""
+    powers = []
+    for folder in ("engine", "geometry", "problem", "result", "scene", "theory"):
+        for path in (PACKAGE / folder).rglob("*.py"):
+            for function in ast.walk(ast.parse(path.read_text())):
+                marks = {getattr(mark, "id", "") for mark in getattr(function, "decorator_list", ())}
+                if marks & {"compiled", "inlined"}:
+                    found = [node for node in ast.walk(function) if isinstance(getattr(node, "op", None), ast.Pow)]
+                    powers += [f"{path.relative_to(PACKAGE)}:{node.lineno}" for node in found]
+    assert powers == []
 
 
 def test_loops_that_take_seconds_to_compile_are_there():

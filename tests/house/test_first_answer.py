@@ -127,7 +127,7 @@ import mjrock as mr
 def build(scale):
     wall = mr.Block.from_size(0.6, 4.2)
     contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
-    return mr.Analysis(mr.Case(wall, scale * wall.alpha, 0.2, side_stop=False), contacts)
+    return mr.Analysis(mr.Case(wall, scale * wall.alpha, 0.2, side_stop=False), "MuJoCo", contacts=contacts)
 if __name__ == "__main__":
     mr.campaign(mr.Grid(build, scale=[0.2, 0.3, 0.4, 0.5]), "walls.sqlite", workers=2)
 """

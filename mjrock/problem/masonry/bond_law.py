@@ -92,7 +92,8 @@ def crush(bond: Any, gap: float, sheared: float) -> float:
     """Crush a joint at a gap [m] under a force along the face [N]. Returns by how much it closes for good [m]."""
     sheared *= 3
     closing: float = 0.0
-    if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears * bond.bears:
+    pressed = bond.k * gap
+    if pressed * pressed + sheared * sheared <= bond.bears * bond.bears:
         return 0.0
     if bond.crushed < bond.hardens:
         closing = harden(bond, gap, sheared)

@@ -49,7 +49,8 @@ def shear_limit(row: Any, push: Any) -> Any:
 @inlined
 def stored(row: Any, gap: float) -> float:
     """Energy in the spring along the normal [J]."""
-    energy: float = 0.5 * row.k * min(gap, 0.0) ** 2
+    depth = min(gap, 0.0)
+    energy: float = 0.5 * row.k * (depth * depth)
     return energy
 
 
