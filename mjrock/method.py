@@ -28,9 +28,9 @@ class Method(NamedTuple):
         taut: (omega h)^2 of the longest step with a taut tie over the accuracy, omega the frequency of the bodies on it
             alone. MuJoCo integrates ties explicitly, and the energy of a bounce on one errs by about (omega h)^2 / 12.
         smooth: omega h below which a step resolves the contacts and takes Newmark's beta = 1/12 (stable below 2.45). A
-            longer step takes a beta above 1/4, which is stable at every step. The closed contacts hardly move then. On
-            moving ground they do, where a wall rocks by little more than its uplift rotation, and the ringing of longer
-            steps would damp that.
+            longer step takes a beta above 1/4, which is stable at every step. The closed contacts hardly move then.
+        smooth_shaken: the same on moving ground, where walls rock by little more than their uplift rotation, and the
+            ringing of longer steps would damp that [-].
         ringing_borne, ringing_open: extra dashpot h k r of a contact in a step that does not resolve it, with beta =
             (1 + r^2)/4 [-]: of a contact that bears weight at rest, and of one that is open at rest. beta above 1/4
             alone would let what is left of a vibration ring on from step to step. Where weight is borne, the dashpot
@@ -49,8 +49,11 @@ class Method(NamedTuple):
         overdamped: c h W above which a dashpot acts on the velocity at the end of the step instead of the mean velocity
             [-]. The inverse mass that a contact of the wall feels is up to six times W. A centred dashpot leaves a
             quarter of the velocity there.
-        borne: the same for a joint that bears weight, whose dashpot a resolving step centres well [-]. It stays closed
-            in long steps, and a dashpot at their end would damp small rocking to first order in the step.
+        resolved: the same of a wall's base in a step that resolves its contacts [-]. In free rocking an edge lands with
+            a speed that a centred dashpot would leave a part of.
+        borne: the same for a joint of several bodies that bears weight, and on moving ground for `resolved`: a
+            resolving step centres its dashpot well [-]. It stays closed in long steps, and a dashpot at their end would
+            damp small rocking to first order in the step.
         held_masses: inertia of a friction row in masses of the body that it holds [-]. A horizontal acceleration a
             creeps at a h / held_masses. It is no larger, because two edges that both hold rigidly do work against each
             other.
@@ -86,7 +89,8 @@ class Method(NamedTuple):
     loaded: float = 0.5
     stable: float = 1.0
     taut: float = 12.0
-    smooth: float = 2.2
+    smooth: float = 1.5
+    smooth_shaken: float = 2.2
     ringing_borne: float = 0.1
     ringing_open: float = 1.0
     faded: float = 0.01
@@ -94,6 +98,7 @@ class Method(NamedTuple):
     near: float = 6.0
     abrupt: float = 0.1
     overdamped: float = 0.2
+    resolved: float = 0.2
     borne: float = 2.0
     held_masses: float = 1e3
     held_growth: float = 3e5
@@ -106,6 +111,10 @@ class Method(NamedTuple):
     held_friction: float = 30.0
     free_friction: float = 1.0
     self_work: float = 1e-4
+
+    def on_moving_ground(self) -> Method:
+        """The constants for a run whose ground moves."""
+        return self._replace(smooth=self.smooth_shaken, resolved=self.borne)
 
 
 METHOD = Method()

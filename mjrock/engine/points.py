@@ -58,19 +58,19 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
     """The contacts of a scene.
 
     Friction of a base that holds is a number that holds it, and no law of sliding. A joint that bears weight, and whose
-    dashpot is weaker than the stiffest vibration, has it centred in steps that resolve it, and in longer ones too where
-    the scene asks for that.
+    dashpot is weaker than the stiffest vibration, has it centred where the method or the scene asks for that.
     """
     weight = inverse_weights(scene)
     held = method.held_masses * scene.freedom.translations / (3 * weight)
     mild = (scene.bears > 0) & (scene.contacts.c * weight < scene.highest_frequency)
-    resolved = np.where(mild, method.borne, method.overdamped)
+    joints = scene.limits.damped_joints
+    resolved = np.where(mild, method.borne if joints else method.resolved, method.overdamped)
     return Points(
         places=scene.places,
         law=ContactLaw(scene.contacts.k, scene.contacts.c, scene.contacts.friction),
         inertia=RowInertia(
             weight=weight,
-            overdamped=resolved if scene.limits.damped_joints else np.full_like(resolved, method.overdamped),
+            overdamped=resolved if joints else np.full_like(resolved, method.overdamped),
             resolved=resolved,
             friction=frozen(np.where(scene.contacts.friction > 0, held, 0.0)),
             growth=0.0 if np.any(scene.contacts.holds) else method.held_growth,

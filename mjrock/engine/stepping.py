@@ -29,6 +29,7 @@ from .pace import Pace
 from .progress import Progress, StepClock
 from .record import Record, StepKinds, Steps
 from .setting import Setting
+from .shaken import is_shaken
 from .shapes import PLATE
 from .sliding import Sliding
 from .sticking import Joints
@@ -44,6 +45,7 @@ def fitted_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
+    method = method.on_moving_ground() if is_shaken(course.ground) else method
     memory, setting, pace = engine.memory, Setting.of(scene, course, method), Pace.of(scene, course, accuracy, method)
     places, released_on = setting.points.places, engine.closed
     engine.model.tendon_damping[:] = 0.0  # dampers act as applied forces, at the velocity of the pose
