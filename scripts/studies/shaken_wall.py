@@ -249,7 +249,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     runs = list(RUNS)[:1] if args.quick else list(RUNS)
     pulse = np.sin(2 * np.pi * np.arange(0.0, 0.1, 0.005) / 0.1)
     table = {"HU12": (pulse, 0.005)} if args.quick else table_of(args.records)
-    masonry = wall_of(2 if args.quick else POINTS)
+    masonry = wall_of(3 if args.quick else POINTS)
     motions = [
         mr.GroundMotion(RUNS[run].scale * table[RUNS[run].record][0], table[RUNS[run].record][1]) for run in runs
     ]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from scripts.shared.paper import K_N
+from scripts.shared.paper import K_N, TABLE_2
 
 
 @pytest.mark.parametrize("points", [2, 3, 8, 33])
@@ -104,9 +104,23 @@ def test_a_base_too_soft_for_a_rebound_is_warned_of():
     stays on its side. On the k_n that the warning names, and two-sided, nothing is said."""
     wall = mr.Block.from_slenderness(15.0, 2.255)
     e = mr.Restitution.from_geometry(wall)
-    with pytest.warns(UserWarning, match=r"no rebound can follow from 0.5 alpha: .* 0.53 times .* above 9.5e\+07 N/m3"):
+    with pytest.warns(UserWarning, match=r"as e asks for it from 0.5 alpha: .* 0.53 times .* above 9.5e\+07 N/m3"):
         soft = mr.Contacts.from_law(wall, e, k_base=5e7, k_side=5e7)
     assert not mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 3.0), soft).restitution.size
     firm = mr.Contacts.from_law(wall, e, k_base=1e8, k_side=1e8)
     assert mr.simulate(mr.Case(wall, 0.5 * wall.alpha, 3.0), firm).restitution.size
     mr.Contacts.from_law(wall, e, k_base=5e7)
+
+
+@pytest.mark.filterwarnings("ignore:CALIBRATED:UserWarning", "ignore:no rebound:UserWarning")
+@pytest.mark.parametrize(("k_n", "lifts"), [(5e8, False), (8e8, False), (1.25e9, True), (2e9, True)])
+def test_the_rebound_lifts_an_edge_where_the_warning_says_so(k_n, lifts):
+    """The slenderest specimen of the paper's Table 2, h/b 27, on either side of the 1.005e9 N/m3 that its e takes. The
+    law meets e within a tenth there. Without damping the wall rebounds on each base: the bound is that of e."""
+    block, e = TABLE_2[3].block, TABLE_2[3].restitution
+    case = mr.Case(block, 0.5 * block.alpha, 1.0)
+    least = mr.Contacts.from_damping(block, k_base=k_n, xi_base=0.0, k_side=k_n, xi_side=0.0)
+    for contacts, expected in ((mr.Contacts.from_law(block, e, k_base=k_n, k_side=k_n), lifts), (least, True)):
+        run = mr.simulate(case, contacts)
+        back = run.theta[run.t > run.impacts[0].t].max()
+        assert (back > contacts.uplift_rotation(block)) == expected

@@ -1,6 +1,7 @@
 """The paper's Table 2: damping ratios of six specimens."""
 
 import math
+from contextlib import nullcontext
 
 import pytest
 from everyday import among
@@ -42,9 +43,16 @@ def test_geometry_and_warning(specimen):
 
 @pytest.mark.parametrize("specimen", among(TABLE_2, *TABLE_2[::4]), ids=lambda s: s.slug)
 def test_mujoco_follows_the_contact_law(specimen):
-    contacts = mr.Contacts.from_law(specimen.block, specimen.restitution, k_base=K_N, k_side=K_N, law="PUBLISHED")
-    case = mr.Case(specimen.block, 0.5 * specimen.block.alpha, 0.8)
+    """The slenderest specimen, h/b 27, is warned of: its rebound ends before an edge lifts off its base."""
+    block, e = specimen.block, specimen.restitution
+    lifts = specimen.slug != "brick_h163_cd06_t01"
+    with nullcontext() if lifts else pytest.warns(UserWarning, match="no rebound can lift an edge as e asks for it"):
+        contacts = mr.Contacts.from_law(block, e, k_base=K_N, k_side=K_N, law="PUBLISHED")
+    case = mr.Case(block, 0.5 * block.alpha, 0.8)
     found = mr.compare(mr.solve_compliant(case, contacts), mr.simulate(case, contacts))
+    if not lifts:
+        run = found.candidate
+        assert run.theta[run.t > run.impacts[0].t].max() < 0.1 * contacts.uplift_rotation(block)
     assert found.rms < 0.003
     share = [impact.restitution for impact in (found.reference.impacts[0], found.candidate.impacts[0])]
     assert share[1] == pytest.approx(share[0], abs=0.01)

@@ -187,8 +187,8 @@ class Contacts:
 
         Warns:
             UserWarning: what the law warns of; where it was fitted for another number of lines or another friction; and
-                one-sided where it was fitted in another code, as PUBLISHED was, or where the base is so soft that no
-                rebound can follow.
+                one-sided where it was fitted in another code, as PUBLISHED was, or where the base is so soft that the
+                rebound that `e` asks for lifts no edge.
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)
@@ -208,9 +208,9 @@ class Contacts:
             warnings.warn(unlikely, Implausible, stacklevel=2)
         if k_side is not None and (lifts := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
             warnings.warn(
-                f"no rebound can follow from {amplitude:g} alpha: it would turn the wall {lifts:.2g} times as far as "
-                f"it takes to lift an edge off a base of {k_base:g} N/m3, whatever the damping; one above "
-                f"{k_base / max(lifts, 1e-9):.2g} N/m3 gives a rebound",
+                f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
+                f"{lifts:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then "
+                f"elastic or larger than asked for. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3",
                 stacklevel=2,
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))

@@ -226,8 +226,8 @@ class DampingLaw:
 def rebound_over_uplift(wall: Block, e: Restitution, k_n: float, amplitude: float) -> float:
     """Rotation of the first rebound from a side stop over that at which an edge of the wall lifts off its base [-].
 
-    A wall that is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3] has no rebound below 1, whatever
-    its damping.
+    The wall is released from `amplitude` theta_0/alpha on a base of `k_n` [N/m3], and rebounds as `e` says. Below 1
+    that rebound lifts no edge: it is an elastic motion of the base. One that lifts an edge is larger than `e` says.
     """
     released = float(wall.potential_energy(amplitude * wall.alpha))
     rebound = wall.rotation_at(e.lumped**2 * released) / wall.alpha
