@@ -262,10 +262,10 @@ def find_pair(
         return count
     if count + len(room) > len(table):
         return count + len(room)
+    least = best - SOUGHT * min(solids.extent[face], solids.extent[other_face])
     if other_apart + LEAD * (solids.extent[other_face] - solids.extent[face]) > apart:
         face, blocks = other_face, (b, a)
     if best < 0:
-        least = best - SOUGHT * min(solids.extent[face], solids.extent[other_face])
         face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
         if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FLUSH:

@@ -303,6 +303,8 @@ def test_of_faces_that_are_as_far_apart_the_larger_one_is_taken(monkeypatch):
 def test_faces_that_come_into_question_are_deeper_by_a_share_of_the_smaller_outline(monkeypatch):
     assert decided(monkeypatch, (-0.1, -0.3)) == (("faces", 0, (0, 1)), pytest.approx(-0.1 - 0.06 * 4.0))
     assert decided(monkeypatch, (-0.3, -0.1)) == (("faces", 6, (1, 0)), pytest.approx(-0.1 - 0.06 * 4.0))
+    turned = decided(monkeypatch, (-0.3, -0.1), outlines=(4.0, 6.0))
+    assert turned == (("faces", 6, (1, 0)), pytest.approx(-0.1 - 0.06 * 4.0))
     assert decided(monkeypatch, (0.0, 0.0)) == (("faces", 0, (0, 1)),)
     assert decided(monkeypatch, (0.005, 0.0)) == (("faces", 0, (0, 1)),)
 
@@ -438,6 +440,18 @@ def test_places_in_the_plane_do_not_depend_on_the_size_of_other_blocks(beside):
     np.testing.assert_allclose(places.gap.min(), -0.001, rtol=1e-9)
     np.testing.assert_allclose(places.place[places.gap.argmin()], [0.0, -0.0005], atol=1e-12)
     np.testing.assert_allclose(places.normal, [[0.0, 1.0]] * 2, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_a_small_polygon_meets_the_end_of_a_long_face_in_any_order(order):
+    """One of its faces is deepest in that of the long block, and the one beside it comes not into question."""
+    long = mr.Polygon([(0.1886, 0.2616), (0.3629, 0.2518), (0.3668, 0.3215), (0.1926, 0.3313)])
+    small = mr.Polygon([(0.3324, 0.3330), (0.3427, 0.3227), (0.3605, 0.3173), (0.3581, 0.3382), (0.3514, 0.3451)])
+    _, places = found([(long, small)[i] for i in order], reach=0.0)
+    way = np.array([0.0098, 0.1742]) / math.hypot(0.0098, 0.1742)
+    depth = [way @ (np.array(corner) - (0.1926, 0.3313)) for corner in ((0.3605, 0.3173), (0.3427, 0.3227))]
+    np.testing.assert_allclose(np.sort(places.gap), depth, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(places.normal, [way] * 2, rtol=0, atol=1e-15)
 
 
 def test_a_corner_of_the_plane_of_any_angle_meets_a_face():
