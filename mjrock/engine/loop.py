@@ -23,8 +23,8 @@ from .progress import Progress, StepClock
 from .record import Record
 from .rows import set_rows
 from .setting import Setting, push
-from .shaken import add_change, find_answer, is_shaken, take_mean
-from .sliding import Sliding, find_acceleration, give_rows_back, slide, sliding_changed, time_to_stop
+from .shaken import add_change, find_answer, take_mean
+from .sliding import Sliding, any_slid, find_acceleration, give_rows_back, slide, sliding_changed, time_to_stop
 from .sticking import Moved, put_sticking_edges_back
 from .touches import Openings, closure_changed, follow_openings, step_to_break, step_to_touch
 
@@ -107,7 +107,7 @@ def shift_velocity(
     memory: EngineArrays, setting: Setting, state: Progress, t: float, step: float, previous: float
 ) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
-    if is_shaken(setting.ground):
+    if setting.splits:
         find_answer(memory, setting, state.sliding, state.frames, state.shaken, t)
     late, middle = 0.5 * (step - previous), 0.25 * (previous + step)
     for j in range(len(state.rate)):
@@ -147,15 +147,20 @@ def release(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Ar
 def change_of_acceleration(
     memory: EngineArrays, setting: Setting, state: Progress, t: float, previous: float, step: float, no_rate: bool
 ) -> float:
-    """(h |da|)^2 of the step just made, but for the answer to the ground; brings acceleration and rate up to date."""
+    """(h |da|)^2 of the step just made; brings acceleration and rate up to date.
+
+    What bodies answer to the ground does not count, but where a contact slides: friction turns with it.
+    """
     for j in range(len(state.change)):
         state.change[j] = memory.acceleration[j] - state.acceleration[j]
         state.acceleration[j] = memory.acceleration[j]
+    whole = kinetic(setting.masses, setting.products, state.change)
     add_change(state.shaken, setting.ground, t, step, -1.0, state.change)
     take_mean(state.shaken, setting.ground, t, step)
     for j in range(len(state.change)):
         state.rate[j] = 0.0 if no_rate else state.change[j] / previous
-    return step * step * kinetic(setting.masses, setting.products, state.change)
+    counts = whole if any_slid(state.sliding) else kinetic(setting.masses, setting.products, state.change)
+    return step * step * counts
 
 
 @inlined
@@ -214,7 +219,7 @@ def fitted_loop(
     """
     t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
-    axes, shaken = points.places.axes, is_shaken(setting.ground)
+    axes, shaken = points.places.axes, setting.splits
     if previous == 0:
         set_step(memory, points, pace, allowed)
         before_the_release(memory, setting, state, allowed)

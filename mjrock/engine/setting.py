@@ -33,6 +33,8 @@ class Setting(NamedTuple):
         damping: their forces in the last step [N], shape (d,).
         refines: whether dampers, and what MuJoCo's gyroscopic moments lack, act as applied forces at the velocity of
             the pose; otherwise the engine does what is in its text.
+        splits: whether accelerations are split into the answer to the ground and what is smooth, see
+            `mjrock.engine.shaken`: those of one body on moving ground.
         duration: how long the motion is followed [s].
     """
 
@@ -44,13 +46,15 @@ class Setting(NamedTuple):
     dampers: Dampers
     damping: Array
     refines: bool
+    splits: bool
     duration: float
 
     @classmethod
     def of(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
         ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.c))
-        acting = scene.dampers, damping, refines, float(course.duration)
+        splits = len(scene.bodies.names) == 1 and any(len(shaking.accel) for shaking in course.ground)
+        acting = scene.dampers, damping, refines, splits, float(course.duration)
         return cls(points_of(scene, method), ties, scene.bodies.masses, scene.bodies.products, course.ground, *acting)
 
 

@@ -4,7 +4,8 @@ The acceleration of the ground has a kink at every sample of its record, and bod
 once. Extrapolated from the last steps it would be the largest error of a run. So the accelerations of the bodies are
 split, q'' = s + G a: a is the acceleration of the ground, whose mean over any time is known exactly, and s changes
 smoothly between touches. The engine itself tells G wherever the length of the step changes: contacts hold and let go as
-they do then, and the ground accelerates by one unit more.
+they do then, and the ground accelerates by one unit more. Accelerations of several bodies are not split: where they
+slide and strike, their answer changes from step to step.
 """
 
 from __future__ import annotations
@@ -38,12 +39,6 @@ class Shaken(NamedTuple):
         """Before the first step."""
         directions = len(setting.points.places.axes)
         return cls(np.zeros(directions), np.zeros((directions, len(setting.masses))))
-
-
-@inlined
-def is_shaken(ground: Ground) -> bool:
-    """Whether the ground moves."""
-    return len(ground[0].accel) + len(ground[1].accel) + len(ground[2].accel) > 0
 
 
 @inlined

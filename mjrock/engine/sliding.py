@@ -233,6 +233,15 @@ def sliding_changed(sliding: Sliding) -> bool:
 
 
 @inlined
+def any_slid(sliding: Sliding) -> bool:
+    """Whether a contact slid in the last step."""
+    slid = False
+    for i in range(len(sliding.slid)):
+        slid = slid or sliding.slid[i]
+    return slid
+
+
+@inlined
 def time_to_stop(places: Places, sliding: Sliding, frames: Array, v: Array, a: Array) -> float:
     """Time in which the slip of a contact that slid in the last step ends [s], infinite where it does in none.
 

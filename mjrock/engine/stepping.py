@@ -29,7 +29,6 @@ from .pace import Pace
 from .progress import Progress, StepClock
 from .record import Record, StepKinds, Steps
 from .setting import Setting
-from .shaken import is_shaken
 from .shapes import PLATE
 from .sliding import Sliding
 from .sticking import Joints
@@ -45,8 +44,11 @@ def fitted_steps(
     Raises:
         StepError: if the engine warns or the state is not finite.
     """
-    method = method.on_moving_ground() if is_shaken(course.ground) else method
-    memory, setting, pace = engine.memory, Setting.of(scene, course, method), Pace.of(scene, course, accuracy, method)
+    setting = Setting.of(scene, course, method)
+    if setting.splits:
+        method = method.on_moving_ground()
+        setting = Setting.of(scene, course, method)
+    memory, pace = engine.memory, Pace.of(scene, course, accuracy, method)
     places, released_on = setting.points.places, engine.closed
     engine.model.tendon_damping[:] = 0.0  # dampers act as applied forces, at the velocity of the pose
     settle_ties(memory, setting, frames_of(memory.pose, places.freedom))
