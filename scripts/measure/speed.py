@@ -118,7 +118,7 @@ class Version:
     """A version of the package in a process of its own."""
 
     def __init__(self, tree: Path, script: str = __file__) -> None:
-        self.environment = os.environ | {"PYTHONPATH": f"{tree}{os.pathsep}{ROOT}"}
+        self.environment = os.environ | {"PYTHONPATH": f"{tree}{os.pathsep}{ROOT}", "MJROCK_INTERPRET": "0"}
         command = [sys.executable, script, "--serve"]
         self.process = subprocess.Popen(
             command, env=self.environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True

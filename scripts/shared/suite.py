@@ -22,7 +22,7 @@ SETTLING = 5.0
 """Time that a wall is followed after the record [s]."""
 OPTIONS: Mapping[str, Mapping[str, object]] = {
     "analytical": {"rtol": 1e-8, "output_step": 0.05},
-    "MuJoCo": {"accuracy": 1e-3, "output_step": 0.05},
+    "MuJoCo": {"output_step": 0.05},
 }
 """Options of both solvers: what is kept of a run is its peak and its outcome."""
 SOLVERS = tuple(OPTIONS)
