@@ -156,12 +156,10 @@ EQUIVALENT = {
     "bond_law.py: if math.hypot(bond.k * (gap + closing), sheared) <= hardened(bond, closing):": (
         "no closing that is tried bears to the last bit what presses"
     ),
-    "bond_law.py: if (bond.k * gap) ** 2 + sheared * sheared <= bond.bears / bond.bears:": (
+    "bond_law.py: if pressed * pressed + sheared * sheared <= bond.bears / bond.bears:": (
         "what is not crushed closes by zero in the search, too"
     ),
-    "bond_law.py: if (bond.k / gap) ** 2 + sheared * sheared <= bond.bears * bond.bears:": (
-        "what is not crushed closes by zero in the search, too"
-    ),
+    "bond_law.py: pressed = bond.k / gap": ("what is not crushed closes by zero in the search, too"),
     "bond_law.py: if bond.k * (far + crack) <= strength:": (
         "once there is a crack, the spring holds what is left of the strength, or more where slip has worn it"
     ),

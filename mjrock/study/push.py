@@ -29,6 +29,8 @@ from .limit_analysis import horizontal
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
 """Pieces of a push, points of the curve in each, and samples of a point."""
+SHORTEST = 1e-6
+"""Least displacement of a push [m]."""
 TRIES = 5
 """How often a piece is made at most, each time at half the rate."""
 HELPS = 0.75
@@ -156,6 +158,8 @@ def push(
     falls_to = require_within("falls_to", falls_to, 0.0, 1.0)
     turns = require_row("to", np.atleast_1d(np.asarray(to)), "displacement")
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST, LARGEST, "m")
+    if turns.any():
+        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST, "m")
     given = _required(masonry, effects, start)
     options = {"mass_damping": mass_damping, "local_damping": local_damping}
     if isinstance(driver, Actuator) and angle is None:

@@ -334,3 +334,8 @@ def test_an_angle_is_for_a_direction_in_space():
         mr.push(panel(0.9), JACK, 0.1, angle=0.5)
     with pytest.raises(ValueError, match=r"angle = 0\.5.* is for masonry in space; in the plane give driver = 1 or -1"):
         mr.push(panel(0.9), 1, 0.1, angle=0.5)
+
+
+def test_a_displacement_of_nothing_is_refused():
+    with pytest.raises(ValueError, match=r"to = 1e-300 m is outside the valid range 1e-06 to 10 m"):
+        mr.push(mr.Masonry.column(width=0.5, height=2.0, drums=2), 1, to=1e-300)
