@@ -24,7 +24,8 @@ from .sliding import STAGE_VELOCITY, Sliding, give_rows_back, slide
 
 
 class Shaken(NamedTuple):
-    """The ground in the last step, and the answer of the bodies. Directions are x, z, and y in space, as in `Ground`.
+    """The ground in the last step, and the answer of the bodies. Directions are x, z, and y in space, as in `Ground`;
+    there is none where accelerations are not split.
 
     Args:
         mean: mean acceleration of the ground over the window of the last step [m/s2], shape (2 or 3,).
@@ -37,7 +38,7 @@ class Shaken(NamedTuple):
     @classmethod
     def of(cls, setting: Setting) -> Shaken:
         """Before the first step."""
-        directions = len(setting.points.places.axes)
+        directions = len(setting.points.places.axes) if setting.splits else 0
         return cls(np.zeros(directions), np.zeros((directions, len(setting.masses))))
 
 
