@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import os
+import sys
 from collections.abc import Iterable, Sequence
 from numbers import Real as RealNumber
 from os import PathLike
@@ -255,6 +256,8 @@ def _holds_truth(values: object) -> bool:
 
 def _is_masked(values: ArrayLike) -> bool:
     """Whether an array, or one of a list of arrays, has masked values."""
+    if "numpy.ma" not in sys.modules:  # nobody has made any
+        return False
     rows = values if isinstance(values, list | tuple) else [values]
     return any(isinstance(row, np.ma.MaskedArray) and np.ma.is_masked(row) for row in rows)
 
