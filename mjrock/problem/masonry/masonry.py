@@ -35,7 +35,6 @@ from ...quantities import (
 from ..damping.contacts import AnyLaw, required_law
 from ..wall.block import Block
 from ..wall.effects import SideStop
-from ..wall.in_space import LATER
 from ..wall.section import Opening
 from .bond import Bond, Halved, OfBond, bonds_of, required_bond
 from .builders import MOST_BLOCKS, Ends, arch_of, between_beams, bonded_wall, curved, ground_below_all, side_of, stacked
@@ -138,7 +137,7 @@ class Masonry:
     tolerance: float = 1e-5
     law: AnyLaw | str | None = None
     k_s: OfJoint | None = None
-    bond: OfBond = field(default=None, kw_only=True, metadata=LATER)
+    bond: OfBond = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
