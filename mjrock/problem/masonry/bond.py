@@ -160,8 +160,8 @@ OfBond = Bond | Callable[[Any], Bond | None] | None
 
 BONDS = {
     # shear wall J4D of Raijmakers and Vermeltfoort, as two independent micro-models of it have its mortar, after
-    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; its crushing from memory
-    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0, 10.5e6, 5e3),
+    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; without crushing, for which no source was at hand
+    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0),
     # out-of-plane shake-table wall of the SAFEGO project, 3DEC deck of its authors; G_c = 15 + 0.43 f_c - 0.0036 f_c^2
     "clay brick, SAFEGO": Bond(0.2e6, 0.3e6, 13.0, 130.0, 20e6, 22.2e3),
     # calcium silicate bricks tested at EUCENTRE, deck of the group; G_I = 0.025 (2 f_t)^0.7 and G_II = 10 G_I in N/mm
