@@ -34,6 +34,7 @@ from .looking import (
     fallen,
     held,
     longest_time,
+    surges,
     take_motion,
     wait,
     watch,
@@ -119,7 +120,7 @@ class Encounters:
         self.kind, start = system.lines.dtype, self.motion(system).poses
         look = longest_time(self.sizes[self.blocks.free])
         self.reach = Reach(start, self._limits(start), STAYED * self.sizes, look)
-        self.wear = Wear(of[joint], *np.zeros((3, len(left))), left, rolled)
+        self.wear = Wear.unworn(of[joint], left, rolled)
         self.met = self._nothing_met()
 
     def begun(self, supports: tuple[str, ...]) -> Encounters:
@@ -131,7 +132,7 @@ class Encounters:
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
         fresh.finder, wear = self.finder.apart(), self.wear
-        fresh.wear, fresh.met = Wear(wear.pairs, *np.zeros((3, len(wear.left))), *wear[-2:]), self._nothing_met()
+        fresh.wear, fresh.met = Wear.unworn(wear.pairs, wear.left, wear.rolled), self._nothing_met()
         return fresh
 
     def _nothing_met(self) -> Met:
@@ -161,12 +162,13 @@ class Encounters:
         take_motion(system, self.blocks, motion)
         return motion
 
-    def look_on(self, system: System, books: Books, h: float) -> tuple[System, Books, int]:
-        """The system with the lines of the encounters that may happen until the next look, its books with room for
-        them, and the steps until then. With steps of h [s] they are stable."""
+    def look_on(self, system: System, books: Books, t: float, h: float) -> tuple[System, Books, int]:
+        """The system at a time [s] with the lines of the encounters that may happen until the next look, its books with
+        room for them, and the steps until then. With steps of h [s] they are stable."""
         met, seen = self.met, self.met.seen
         worn, left = self._worn(system)
         motion = self.motion(system)
+        self._add_surges(motion, system, t, t + h + self.reach.look)
         if watch(motion, self.sizes, self.reach, seen, left, met.since):
             met.handed = met.handed | worn
             stays = self._moves_of(met.pair) == met.found
@@ -183,6 +185,13 @@ class Encounters:
         steps = max(1, int(seen.due[seen.watched].min(initial=self.reach.look) / h))
         met.since = steps * h
         return system, books, steps
+
+    def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
+        """Add to the speeds of what is driven, a fixed block or one at a jack, by how much they change until a time."""
+        moves, jacks = np.flatnonzero(self.blocks.support >= 0), np.flatnonzero(system.actuators["body"] >= 0)
+        motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
+        driven = self.blocks.free[system.actuators["body"][jacks]]
+        np.add.at(motion.about, driven, surges(system.drives, t, until)[jacks])
 
     def _worn(self, system: System) -> tuple[Flags, Flags]:
         """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,
