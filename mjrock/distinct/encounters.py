@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..problem.masonry.joint_law import Law, stored_along
 from ..problem.masonry.lines import free_numbers
 from ..problem.masonry.masonry import Masonry
 from ..quantities import Array, Flags, Integers
@@ -253,7 +254,8 @@ class Encounters:
         system = system._replace(lines=lines).with_ways()
         given = min(sheared - in_shear(system), 0.0)  # what shear springs lose friction takes, and it gives nothing
         books.totals[0].friction -= given
-        books.ends[1] += before + given - held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        now = held(system, np.arange(len(lines) - size, len(lines)), new.depth)
+        books.totals[0].encounter_ends += before + given - now
         return system
 
     def _moves_of(self, pair: Integers) -> Integers:
@@ -273,7 +275,7 @@ def in_shear(system: System) -> float:
     energy = 0.0
     for table in (system.lines, system.bonds):
         sprung = np.asarray(table)[np.isfinite(table["k_s"])]
-        energy += 0.5 * float((sprung["k_s"] * (sprung["grip"].T ** 2).sum(axis=0)).sum())
+        energy += float(stored_along(Law(k_s=sprung["k_s"]), (sprung["grip"].T ** 2).sum(axis=0)).sum())
     return energy
 
 
