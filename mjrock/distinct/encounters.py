@@ -35,7 +35,6 @@ from .looking import (
     fallen,
     held,
     longest_time,
-    surges,
     take_motion,
     wait,
     watch,
@@ -46,6 +45,7 @@ from .pair_law import SHARED, PairLaw, least_among, pair_number
 from .rows import chosen, joined, rows, unsound
 from .softening import Sides, shares_within
 from .solids import Poses
+from .supports import surges
 from .system import Books, System
 
 STAYED = 2e-4
@@ -188,11 +188,12 @@ class Encounters:
         return system, books, steps
 
     def _add_surges(self, motion: Motion, system: System, t: float, until: float) -> None:
-        """Add to the speeds of what is driven, a fixed block or one at a jack, by how much they change until a time."""
-        moves, jacks = np.flatnonzero(self.blocks.support >= 0), np.flatnonzero(system.actuators["body"] >= 0)
+        """Add to the speeds of what is driven, a fixed block or one at a link, by how much they change until a time."""
+        moves = np.flatnonzero(self.blocks.support >= 0)
         motion.about[moves] += surges(system.supports, t, until)[self.blocks.support[moves]]
-        driven = self.blocks.free[system.actuators["body"][jacks]]
-        np.add.at(motion.about, driven, surges(system.drives, t, until)[jacks])
+        for table in system.links:
+            bodies, changes = table.surges(t, until)
+            np.add.at(motion.about, self.blocks.free[bodies], changes)
 
     def _worn(self, system: System) -> tuple[Flags, Flags]:
         """Which pairs of blocks have left their joints since the last look, shape (p,), and which blocks have left one,

@@ -16,7 +16,7 @@ from .contact import meeting
 from .finder import Found
 from .handover import Blocks
 from .solids import Poses
-from .system import Supports, System
+from .system import System
 from .turning import in_world, rotation_change, take_inverse_inertia, take_turn
 
 LOOK = 0.03
@@ -149,20 +149,6 @@ def write_motion(system: System, blocks: Blocks, motion: Motion, axes: tuple[int
         if blocks.support[block] >= 0:
             put(poses.moved[block], vector(supports.moved, blocks.support[block], axes))
             put(motion.velocity[block], vector(supports.moving, blocks.support[block], axes))
-
-
-def surges(supports: Supports, t: float, until: float) -> Array:
-    """By how much the velocity of each support, or of each drive of a jack, changes at most until a time [m/s], shape
-    (supports,)."""
-    surges, d = np.zeros(len(supports.moved)), supports.moved.shape[1]
-    for i, (first, last) in enumerate(zip(supports.first[:-1], supports.first[1:], strict=True)):
-        times = supports.t[first:last]
-        low, high = np.searchsorted(times, (t, until), side="right")
-        parts = slice(first + max(low - 1, 0), min(first + high + 1, last))
-        rates = np.diff(supports.displacement[parts], axis=0) / np.diff(supports.t[parts])[:, None]
-        still = np.zeros((int(low == 0 or high == len(times)), d))  # before and after its history
-        surges[i] = np.linalg.norm(np.concatenate([rates, still]) - supports.moving[i], axis=1).max()
-    return surges
 
 
 @inlined
