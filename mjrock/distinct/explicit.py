@@ -131,7 +131,7 @@ def solve_explicit(
     if isinstance(case, MasonryCase):
         stats["overlap"] = checked_overlap(setup, case, samples.pose, steps.times()[kept], steps.h)
     looked = steps.looks(followed.steps)
-    run = Run(case, contacts, scene, setup.course, followed, books, samples, steps.times()[kept], looked)
+    run = Run(case, contacts, scene, setup, followed, books, samples, steps.times()[kept], looked)
     response = response_of(run, ledger=ledger, stride=steps.stride, stats=stats)
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
