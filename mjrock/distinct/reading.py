@@ -19,14 +19,13 @@ from ..result.forces import Forces, Gathered, JointFrames, forces_of
 from ..result.ledger import ENERGY_GAIN, Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion
 from ..result.reading import BesidePoses, Reading, masonry_reading, wall_reading
-from ..result.response import Response
+from ..result.response import End, Response
 from ..result.samples import thinned
 from ..result.ties import Plastic, plastic_of, told_of_ties
 from ..scene.scene import Scene
 from .bonds import cracked
 from .following import Followed
 from .kinds.ties import Ties
-from .memory import remembered
 from .rows import Row, Rows
 from .setup import Setup
 from .system import Books, Samples
@@ -112,7 +111,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         actuators=run.forces_of("actuators", samples.pulled[kept]),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
-        end=remembered((samples.pose[-1].copy(), samples.velocity[-1].copy()), run.followed.memory),
+        end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.followed.memory),
     )
     if response.ledger is not None:
         residual = float(np.abs(response.ledger.residual).max())
