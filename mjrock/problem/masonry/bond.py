@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 from ...quantities import Implausible, keep, require_within
 from .bond_law import HARDENED, YIELDS
-from .of_joint import AnyJoint, FunctionOfJoint
 
 LEAST_POINTS = 3
 """Fewest contact lines of a joint with a bond: of these the stiffness in bending can be k_n I."""
@@ -162,28 +161,10 @@ class Bond:
         return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
 
 
-@dataclass(frozen=True)
-class Halved:
-    """Bonds of a wall of divided units: `between` them, one or a function of the joint, and `within` them."""
-
-    between: OfBond
-    within: Bond
-
-    def __call__(self, joint: AnyJoint) -> Bond | None:
-        """The bond of a joint."""
-        first, second = joint.name.split("|")
-        if first[:-1] == second[:-1] and first[-1] + second[-1] == "ab":
-            return self.within
-        return self.between(joint) if callable(self.between) else self.between
-
-
-OfBond = Bond | FunctionOfJoint[Bond | None] | None
-"""A bond, a function of the joint that gives one or None where the joint is dry, or None where all are dry."""
-
 BONDS = {
     # shear wall J4D of Raijmakers and Vermeltfoort, as two independent micro-models of it have its mortar, after
-    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; its crushing from memory
-    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0, 10.5e6, 5e3),
+    # Lourenco and Rots, Journal of Engineering Mechanics 123, 1997; without crushing, for which no source was at hand
+    "cement mortar, wall J4D": Bond(0.25e6, 0.35e6, 18.0, 125.0),
     # out-of-plane shake-table wall of the SAFEGO project, 3DEC deck of its authors; G_c = 15 + 0.43 f_c - 0.0036 f_c^2
     "clay brick, SAFEGO": Bond(0.2e6, 0.3e6, 13.0, 130.0, 20e6, 22.2e3),
     # calcium silicate bricks tested at EUCENTRE, deck of the group; G_I = 0.025 (2 f_t)^0.7 and G_II = 10 G_I in N/mm
